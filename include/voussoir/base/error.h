@@ -1,0 +1,21 @@
+#ifndef voussoir_base_error_h
+#define voussoir_base_error_h
+
+#include <stdexcept>
+#include <string>
+
+namespace Voussoir
+{
+  /**
+   * A mistake in what the user gave us (parameters, mesh, record). The text is
+   * one plain sentence that names the place and the remedy; the program prints
+   * it on the first rank and ends with exit code 1.
+   */
+  class UserError : public std::runtime_error
+  {
+  public:
+    using std::runtime_error::runtime_error;
+  };
+} // namespace Voussoir
+
+#endif

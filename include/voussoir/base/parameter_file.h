@@ -1,0 +1,74 @@
+#ifndef voussoir_base_parameter_file_h
+#define voussoir_base_parameter_file_h
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace Voussoir
+{
+  /**
+   * A parameter file as the user wrote it, with the `--set` changes applied.
+   *
+   * deal.II's ParameterHandler wants every entry declared before it parses, but
+   * which sections a case has depends on the names the user lists in it
+   * (materials, loads). So the file is read once here, `given()` answers what
+   * must be known to declare, and `parse()` then hands all of it to the
+   * ParameterHandler, strictly.
+   */
+  class ParameterFile
+  {
+  public:
+    /** No file: everything at its default. */
+    ParameterFile() = default;
+
+    /**
+     * @param filename the parameter file
+     * @param changes  each "Section/Subsection/Entry=value"
+     */
+    explicit ParameterFile(const std::string &             filename,
+                           const std::vector<std::string> &changes = {});
+
+    /** The value given for an entry ("Section/Entry"), or @p otherwise. */
+    std::string
+    given(const std::string &path, const std::string &otherwise = "") const;
+
+    /**
+     * Sets all given values in @p prm. An entry that @p prm does not know, or a
+     * value it does not allow, is refused with file, line, section, entry, and
+     * what is allowed.
+     */
+    void
+    parse(dealii::ParameterHandler &prm) const;
+
+    /** Folder of the file: relative names in it start there. */
+    std::string
+    folder() const;
+
+    /** @p name as seen from the folder of this file. */
+    std::string
+    resolve(const std::string &name) const;
+
+  private:
+    struct Value
+    {
+      std::string text;
+      std::string place; // "case.prm, line 12" or "--set"
+    };
+
+    void
+    read(const std::string &filename);
+
+    std::string                  filename;
+    std::map<std::string, Value> values; // by "Section/Subsection/Entry"
+    std::map<std::string, std::string> sections; // path and place
+  };
+
+  /** Parts of a comma-separated list, without the blanks around them. */
+  std::vector<std::string>
+  split_list(const std::string &list, const char separator = ',');
+} // namespace Voussoir
+
+#endif

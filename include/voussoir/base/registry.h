@@ -1,0 +1,78 @@
+#ifndef voussoir_base_registry_h
+#define voussoir_base_registry_h
+
+#include <voussoir/base/error.h>
+#include <voussoir/base/text.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Voussoir
+{
+  /**
+   * The named classes of one kind (materials, loads, projections, observers).
+   * A class joins with one line in its own source file,
+   *
+   *   const Registry<Material>::Add<LinearElastic> registered(
+   *     "linear elastic", "Isotropic Hooke's law.");
+   *
+   * and from that line follow the allowed values in the parameter file, the
+   * manual, `--list` and the tests that run over all classes.
+   */
+  template <typename Base>
+  class Registry
+  {
+  public:
+    struct Entry
+    {
+      std::string                            description;
+      std::function<std::unique_ptr<Base>()> create;
+    };
+
+    template <typename Class>
+    struct Add
+    {
+      Add(const std::string &name, const std::string &description)
+      {
+        entries()[name] = {description,
+                           [] { return std::make_unique<Class>(); }};
+      }
+    };
+
+    /** All classes by name, in alphabetical order. */
+    static std::map<std::string, Entry> &
+    entries()
+    {
+      static std::map<std::string, Entry> all;
+      return all;
+    }
+
+    static std::vector<std::string>
+    names()
+    {
+      std::vector<std::string> result;
+      for (const auto &entry : entries())
+        result.push_back(entry.first);
+      return result;
+    }
+
+    /**
+     * A new object of the class called @p name. @p place tells where the name
+     * was read, for the message when there is no such class.
+     */
+    static std::unique_ptr<Base>
+    create(const std::string &name, const std::string &place)
+    {
+      const auto entry = entries().find(name);
+      if (entry == entries().end())
+        throw UserError(place + " does not know \"" + name + "\"" +
+                        known_names(name, names()) + ".");
+      return entry->second.create();
+    }
+  };
+} // namespace Voussoir
+
+#endif

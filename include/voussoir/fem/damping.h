@@ -1,0 +1,85 @@
+#ifndef voussoir_fem_damping_h
+#define voussoir_fem_damping_h
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <ostream>
+#include <vector>
+
+namespace Voussoir
+{
+  /** The entries of the section "Damping". */
+  struct DampingParameters
+  {
+    std::string  model             = "Maxwell";
+    double       ratio             = 0.05;
+    double       lowest_frequency  = 1.;
+    double       highest_frequency = 20.;
+    unsigned int branches          = 3;
+    double       reference         = 3.;
+
+    void
+    declare(dealii::ParameterHandler &prm);
+
+    void
+    check() const;
+  };
+
+  /**
+   * Coefficients of the damping model.
+   *
+   * Maxwell: a constant ratio over a band of frequencies by filters on the nodal
+   * displacement, f = K (u + s sum w_i), dw_i/dt = D_i du/dt - w_i/tau_i, with
+   * the damping factor s of the material. Rayleigh: C = alpha M + beta s K.
+   */
+  class Damping
+  {
+  public:
+    explicit Damping(const DampingParameters &parameters);
+
+    /** Mass-proportional coefficient alpha [1/s]. */
+    double mass_coefficient = 0.;
+
+    /** Stiffness-proportional coefficient beta [s]. */
+    double stiffness_coefficient = 0.;
+
+    /** Maxwell branches: D_i and tau_i [s]. */
+    std::vector<double> coefficients, relaxation_times;
+
+    /** Vectors of damping memory that a state has. */
+    unsigned int
+    n_branches() const;
+
+    /**
+     * gamma(dt) of the stable step: the cells act as if stiffer by
+     * 1 + s gamma.
+     */
+    double
+    stiffening(const double dt) const;
+
+    /** Damping ratio at a frequency [Hz] for a material of factor s. */
+    double
+    ratio(const double frequency, const double factor = 1.) const;
+
+    /** Storage modulus at a frequency [Hz] over the modulus at rest. */
+    double
+    modulus_ratio(const double frequency, const double factor = 1.) const;
+
+    /** Factor on the stiffness that makes the given moduli hold at the
+     *  reference frequency. */
+    double
+    stiffness_scale(const double factor) const;
+
+    /** Prints the achieved damping ratio over the frequency. */
+    void
+    print(std::ostream &out) const;
+
+  private:
+    void
+    fit_maxwell();
+
+    DampingParameters parameters;
+  };
+} // namespace Voussoir
+
+#endif

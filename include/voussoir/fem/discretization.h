@@ -1,0 +1,179 @@
+#ifndef voussoir_fem_discretization_h
+#define voussoir_fem_discretization_h
+
+#include <voussoir/fem/simd.h>
+#include <voussoir/mesh/grid.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/mapping_q1.h>
+
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/la_parallel_vector.h>
+
+#include <deal.II/matrix_free/matrix_free.h>
+
+#include <map>
+#include <set>
+
+namespace Voussoir
+{
+  using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
+
+  /** The entries of the section "Discretization". */
+  struct DiscretizationParameters
+  {
+    unsigned int degree     = 1;
+    std::string  quadrature = "Gauss";
+
+    void
+    declare(dealii::ParameterHandler &prm);
+  };
+
+  /** A face set on which some displacement components are held at zero. */
+  struct Support
+  {
+    std::string set;
+    bool        normal_only; // roller
+  };
+
+  /**
+   * Displacement space, constraints and matrix-free data, built once.
+   *
+   * The three displacement components of a node have consecutive numbers that
+   * start at a multiple of three, so "node i" of a rank means entries 3i, 3i+1,
+   * 3i+2 of its vectors, and a global node index is a global degree of freedom
+   * divided by three. Nodes are numbered in the order in which the cells meet
+   * them, which keeps the cell loop in the cache.
+   */
+  class Discretization
+  {
+  public:
+    using MatrixFree = dealii::MatrixFree<3, double, Lanes>;
+    using Cell       = dealii::DoFHandler<3>::active_cell_iterator;
+
+    /**
+     * @param material_of_cell index of the material of each active cell; a SIMD
+     *   batch holds cells of one material only
+     */
+    Discretization(
+      const Grid &                    grid,
+      const DiscretizationParameters &parameters,
+      const std::vector<Support> &    supports,
+      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell);
+
+    const Grid &                                   grid;
+    const unsigned int                             degree;
+    const dealii::FESystem<3>                      fe;
+    const dealii::MappingQ1<3>                     mapping;
+    dealii::DoFHandler<3>                          dof_handler;
+    dealii::AffineConstraints<double>              hanging_nodes;
+    /** Hanging nodes and supports. */
+    dealii::AffineConstraints<double>              constraints;
+    dealii::IndexSet                               owned_dofs, relevant_dofs;
+    MatrixFree                                     matrix_free;
+
+    /** Material index of each cell batch of the matrix-free data. */
+    std::vector<unsigned int> material_of_batch;
+
+    /** Position of each owned node [m]. */
+    std::vector<dealii::Point<3>> node_positions;
+
+    /** A zero vector in the layout of the matrix-free data. */
+    Vector
+    create_vector() const;
+
+    unsigned int
+    n_owned_nodes() const;
+
+    /** Local number of an owned node from its global index. */
+    unsigned int
+    owned_node(const dealii::types::global_dof_index global_node) const;
+
+    /** Nodes shared with other ranks (largest over the ranks). */
+    unsigned int
+    largest_interface() const;
+
+    /** A node that a hanging or free node stands on, with its weight. */
+    struct Share
+    {
+      dealii::types::global_dof_index node;
+      double                          weight;
+    };
+
+    /** The nodes that carry a value at this node: itself, or the masters of a
+     *  hanging node. */
+    std::vector<Share>
+    carriers(const dealii::types::global_dof_index global_node) const;
+
+    /** Global indices of a cell's nodes, in the order of the scalar element. */
+    std::vector<dealii::types::global_dof_index>
+    cell_nodes(const Cell &cell) const;
+
+    /** A cell of the triangulation as seen by the degrees of freedom. */
+    Cell
+    dof_cell(const dealii::Triangulation<3>::active_cell_iterator &cell) const;
+
+    /**
+     * Sends records to the ranks that own their nodes and sums up those of one
+     * node. @p Record needs `operator+=` and to be trivially copyable.
+     */
+    template <typename Record>
+    std::map<unsigned int, Record>
+    sum_at_owners(
+      const std::map<dealii::types::global_dof_index, Record> &records) const;
+
+    /** The rank that owns a global node. */
+    unsigned int
+    owner(const dealii::types::global_dof_index global_node) const;
+
+  private:
+    void
+    number_by_nodes();
+
+    void
+    make_constraints(const std::vector<Support> &supports);
+
+    std::vector<dealii::types::global_dof_index> first_dof_of_rank;
+  };
+
+
+
+  template <typename Record>
+  std::map<unsigned int, Record>
+  Discretization::sum_at_owners(
+    const std::map<dealii::types::global_dof_index, Record> &records) const
+  {
+    static_assert(std::is_trivially_copyable_v<Record>);
+    using Item = std::pair<dealii::types::global_dof_index, Record>;
+    std::map<unsigned int, std::vector<char>> outgoing;
+    for (const auto &[node, record] : records)
+      {
+        const Item item{node, record};
+        auto &     buffer = outgoing[owner(node)];
+        const auto bytes  = reinterpret_cast<const char *>(&item);
+        buffer.insert(buffer.end(), bytes, bytes + sizeof(Item));
+      }
+    // some_to_some returns a map ordered by rank, so the sums do not depend on
+    // the order of arrival
+    const auto incoming =
+      dealii::Utilities::MPI::some_to_some(grid.communicator(), outgoing);
+    std::map<unsigned int, Record> sums;
+    for (const auto &buffer : incoming)
+      for (std::size_t i = 0; i < buffer.second.size(); i += sizeof(Item))
+        {
+          Item item;
+          std::memcpy(&item, buffer.second.data() + i, sizeof(Item));
+          const auto [place, is_new] =
+            sums.emplace(owned_node(item.first), item.second);
+          if (!is_new)
+            place->second += item.second;
+        }
+    return sums;
+  }
+} // namespace Voussoir
+
+#endif

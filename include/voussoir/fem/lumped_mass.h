@@ -1,0 +1,55 @@
+#ifndef voussoir_fem_lumped_mass_h
+#define voussoir_fem_lumped_mass_h
+
+#include <voussoir/fem/discretization.h>
+
+namespace Voussoir
+{
+  /**
+   * The diagonal mass matrix by quadrature at the Gauss-Lobatto nodes; the mass
+   * at a hanging node goes to the nodes it hangs on.
+   */
+  class LumpedMass
+  {
+  public:
+    /**
+     * @param density        of each material index [kg/m3]
+     * @param driven_density the part of it that an inertial earthquake force
+     *                       (rigid base) acts on [kg/m3]
+     */
+    LumpedMass(const Discretization &     discretization,
+               const std::vector<double> &density,
+               const std::vector<double> &driven_density,
+               const std::function<unsigned int(const Grid::Cell &)>
+                 &material_of_cell);
+
+    /** Mass of each degree of freedom [kg], zero where held. */
+    Vector mass;
+
+    /** Its inverse [1/kg], zero where held. */
+    Vector inverse;
+
+    /** Mass that an inertial earthquake force acts on [kg]. */
+    Vector driven;
+
+    /** Mass of each material [kg]. */
+    std::vector<double> total;
+  };
+
+  /** Gauss-Lobatto weight times Jacobian at each node of a cell [m3]. */
+  class NodalVolumes
+  {
+  public:
+    explicit NodalVolumes(const Discretization &discretization);
+
+    const std::vector<double> &
+    of(const dealii::Triangulation<3>::active_cell_iterator &cell);
+
+  private:
+    dealii::FEValues<3> values;
+    std::vector<unsigned int> node_of_point;
+    std::vector<double> volumes;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,73 @@
+#ifndef voussoir_fem_nodal_terms_h
+#define voussoir_fem_nodal_terms_h
+
+#include <voussoir/fem/lumped_mass.h>
+
+#include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/base/tensor.h>
+
+namespace Voussoir
+{
+  /**
+   * What acts on a few nodes only: springs and dashpots of the absorbing
+   * boundary, applied forces. All of owned nodes; `slot` numbers them.
+   */
+  class NodalTerms
+  {
+  public:
+    using Matrix = dealii::SymmetricTensor<2, 3>;
+
+    /** Slot of an owned node, made if it is new. */
+    unsigned int
+    add_node(const unsigned int node);
+
+    std::vector<unsigned int>         nodes;
+    std::vector<Matrix>               springs;  // [N/m]
+    std::vector<Matrix>               dashpots; // [N s/m]
+    std::vector<dealii::Tensor<1, 3>> forces;   // of the present step [N]
+
+    /**
+     * Makes the inverses of M + dt/2 C for the step. Without @p central the
+     * dashpots act on the velocity of the last half step instead (the paper's
+     * scheme), and the inverse is that of M.
+     */
+    void
+    prepare(const LumpedMass &mass, const double time_step, const bool central);
+
+    /** Keeps what the correction needs of the state before the step. */
+    void
+    before_step(const Vector &displacement, const Vector &velocity);
+
+    /**
+     * Corrects displacement and velocity, which the step advanced as if these
+     * terms did not exist:
+     *   (M + dt/2 C) v+ = M v* + dt (F - K u) - dt/2 C v- .
+     */
+    void
+    correct(Vector &displacement, Vector &velocity);
+
+    /** Work of the forces, loss in the dashpots since the start [J]. */
+    double work_of_forces = 0., loss_in_dashpots = 0.;
+
+    /** Energy in the springs between two steps, u_n K u_(n-1) / 2 [J]. */
+    double
+    spring_energy(const Vector &displacement,
+                  const Vector &velocity) const;
+
+    /** Adds the springs, and the dashpots times @p dashpot_factor. */
+    void
+    add_to(Vector &      force,
+           const Vector &displacement,
+           const double  dashpot_factor) const;
+
+  private:
+    std::map<unsigned int, unsigned int> slot_of_node;
+    std::vector<dealii::Tensor<2, 3>>    inverse;
+    std::vector<dealii::Tensor<1, 3>>    masses; // diagonal
+    std::vector<dealii::Tensor<1, 3>>    last_displacement, last_velocity;
+    double                               time_step = 0.;
+    bool                                 central   = true;
+  };
+} // namespace Voussoir
+
+#endif

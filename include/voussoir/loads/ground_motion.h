@@ -1,0 +1,114 @@
+#ifndef voussoir_loads_ground_motion_h
+#define voussoir_loads_ground_motion_h
+
+#include <voussoir/loads/baseline.h>
+#include <voussoir/loads/record.h>
+#include <voussoir/loads/signal.h>
+#include <voussoir/loads/spectrum_motion.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <array>
+#include <memory>
+#include <string>
+
+namespace Voussoir
+{
+  /** Components in x, y, z; null where the ground does not move. */
+  using GroundMotionSignals = std::array<std::unique_ptr<Signal>, 3>;
+
+  /**
+   * Parameters of the prm section "Ground motion": the earthquake as functions
+   * of time across the valley (x), along the river (y) and upwards (z).
+   */
+  struct GroundMotion
+  {
+    /** "none", "record", "Ricker", "sine", "pulse" or "spectrum". */
+    std::string type = "none";
+
+    /**
+     * Where the motion was or would be recorded: "outcrop", "free surface" or
+     * "incident wave". Nothing here depends on it; see its entry.
+     */
+    std::string given_at = "outcrop";
+
+    /** Largest accelerations before the overload factor [g]. */
+    std::array<double, 3> peak_acceleration{{0., 0., 0.}};
+
+    double overload_factor = 1.;
+
+    struct Record
+    {
+      std::array<std::string, 3>  files;
+      std::array<unsigned int, 3> columns{{1, 1, 1}};
+      std::string                 unit       = "g";
+      double                      time_step  = 0.;
+      double                      start_time = 0.;
+      double                      duration   = 0.;
+      BaselineCorrection          baseline;
+
+      void
+      declare(dealii::ParameterHandler &prm);
+    };
+
+    struct Ricker
+    {
+      std::string quantity  = "displacement";
+      double      frequency = 5.;
+      double      middle    = 0.;
+
+      void
+      declare(dealii::ParameterHandler &prm);
+    };
+
+    struct Sine
+    {
+      double       frequency   = 2.;
+      unsigned int cycles      = 10;
+      unsigned int ramp_cycles = 2;
+
+      void
+      declare(dealii::ParameterHandler &prm);
+    };
+
+    struct Pulse
+    {
+      std::string quantity = "displacement";
+      double      duration = 0.5;
+
+      void
+      declare(dealii::ParameterHandler &prm);
+    };
+
+    Record         record;
+    Ricker         ricker;
+    Sine           sine;
+    Pulse          pulse;
+    SpectrumMotion spectrum;
+
+    void
+    declare(dealii::ParameterHandler &prm);
+
+    /** Throws UserError if entries contradict each other. */
+    void
+    check() const;
+
+    /**
+     * The motion in SI units, all factors included; nothing but null pointers
+     * for the type "none". Paths of records are relative to @p folder, the one
+     * of the parameter file. Throws UserError on unreadable records.
+     */
+    GroundMotionSignals
+    build(const std::string &folder) const;
+
+    /**
+     * Lines for the log: peaks of each component up to @p end_time [s], and for
+     * motions from a design spectrum how well they follow it and how far they
+     * are correlated.
+     */
+    std::string
+    summary(const GroundMotionSignals &signals, const double end_time) const;
+  };
+} // namespace Voussoir
+
+#endif

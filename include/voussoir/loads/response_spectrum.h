@@ -1,0 +1,39 @@
+#ifndef voussoir_loads_response_spectrum_h
+#define voussoir_loads_response_spectrum_h
+
+#include <voussoir/loads/time_series.h>
+
+namespace Voussoir
+{
+  /** Largest answers of single-degree-of-freedom oscillators to a motion. */
+  struct ResponseSpectrum
+  {
+    /** Natural periods [s]; a period of 0 is a rigid oscillator. */
+    std::vector<double> periods;
+
+    /** Largest displacement relative to the ground [m]. */
+    std::vector<double> displacement;
+
+    /** (2 pi / period)^2 times the displacement [m/s2]. */
+    std::vector<double> pseudo_acceleration;
+  };
+
+  /**
+   * The response spectrum of a ground acceleration [m/s2] for oscillators of a
+   * damping ratio below one, by the solution that is exact for an acceleration
+   * linear between its samples (Nigam and Jennings 1969). Peaks are looked for
+   * at least forty times in a period and until one period after the end.
+   */
+  ResponseSpectrum
+  response_spectrum(const TimeSeries          &acceleration,
+                    const std::vector<double> &periods,
+                    const double               damping_ratio);
+
+  /** @p number of values from @p first to @p last at constant ratio. */
+  std::vector<double>
+  logarithmic_grid(const double       first,
+                   const double       last,
+                   const unsigned int number);
+} // namespace Voussoir
+
+#endif

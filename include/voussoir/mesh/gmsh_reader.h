@@ -1,0 +1,19 @@
+#ifndef voussoir_mesh_gmsh_reader_h
+#define voussoir_mesh_gmsh_reader_h
+
+#include <voussoir/mesh/reader_assembly.h>
+#include <voussoir/mesh/reader_file.h>
+
+namespace Voussoir
+{
+  /**
+   * Read a Gmsh file, ASCII format 2.2 or 4.1. Physical volumes become cell
+   * sets, physical surfaces face sets, physical curves and points vertex sets;
+   * a physical group without a name is called "volume 3", "surface 3", "curve
+   * 3" or "point 3" after its number. Throws UserError.
+   */
+  FileMesh
+  read_gmsh(MeshFile &file);
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,46 @@
+#ifndef voussoir_mesh_mesh_geometry_h
+#define voussoir_mesh_mesh_geometry_h
+
+#include <voussoir/mesh/coarse_mesh.h>
+
+#include <array>
+#include <vector>
+
+namespace Voussoir
+{
+  /** The vertices of a face in deal.II's lexicographic order. */
+  std::array<unsigned int, 4>
+  face_vertices(const CoarseMesh &mesh, const CoarseMesh::Face &face);
+
+  /** A face of a cell as found by its four vertices, whatever their order. */
+  struct SortedFace
+  {
+    std::array<unsigned int, 4> vertices; // ascending
+    CoarseMesh::Face            face;
+  };
+
+  /**
+   * All faces of all cells, sorted by their vertices and then by cell, so that
+   * the two sides of an inner face stand next to each other.
+   */
+  std::vector<SortedFace>
+  sorted_faces(const CoarseMesh &mesh);
+
+  /**
+   * At each vertex of the cell, the triple product of the unit vectors along
+   * its three edges: 1 at a right angle, 0 where the corner is flat, negative
+   * where it is turned inside out.
+   */
+  std::array<double, 8>
+  corner_shapes(const CoarseMesh &mesh, const unsigned int cell);
+
+  /** Volume [length^3] of the trilinear cell, exact. */
+  double
+  cell_volume(const CoarseMesh &mesh, const unsigned int cell);
+
+  /** Area [length^2]; exact for plane faces, by 2x2 Gauss points for others. */
+  double
+  face_area(const CoarseMesh &mesh, const CoarseMesh::Face &face);
+} // namespace Voussoir
+
+#endif

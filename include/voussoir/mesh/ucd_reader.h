@@ -1,0 +1,18 @@
+#ifndef voussoir_mesh_ucd_reader_h
+#define voussoir_mesh_ucd_reader_h
+
+#include <voussoir/mesh/reader_assembly.h>
+#include <voussoir/mesh/reader_file.h>
+
+namespace Voussoir
+{
+  /**
+   * Read an AVS UCD file (ASCII). The material numbers of hexahedra make cell
+   * sets "material 3", those of quadrilaterals face sets "boundary 3". Throws
+   * UserError.
+   */
+  FileMesh
+  read_ucd(MeshFile &file);
+} // namespace Voussoir
+
+#endif

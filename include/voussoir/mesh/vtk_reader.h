@@ -1,0 +1,24 @@
+#ifndef voussoir_mesh_vtk_reader_h
+#define voussoir_mesh_vtk_reader_h
+
+#include <voussoir/mesh/reader_assembly.h>
+#include <voussoir/mesh/reader_file.h>
+
+#include <iosfwd>
+
+namespace Voussoir
+{
+  /**
+   * Read a VTK legacy file (ASCII or binary, versions 1 to 5) with an
+   * unstructured grid. Its numbers in the cell data array that is called, but
+   * for case and signs such as _, MaterialID, MaterialIDs, Material, BlockID,
+   * Block, CellEntityIDs or Region (the first of these that is there), make
+   * cell sets "material 3" of the hexahedra and face sets "boundary 3" of the
+   * quadrilaterals. Without such an array there are no sets, which @p report
+   * (may be null) says. Throws UserError.
+   */
+  FileMesh
+  read_vtk(MeshFile &file, std::ostream *report);
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,272 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/parameter_file.h>
+#include <voussoir/base/text.h>
+
+#include <deal.II/base/utilities.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace Voussoir
+{
+  namespace
+  {
+    using dealii::Utilities::trim;
+
+    std::string
+    join_path(const std::vector<std::string> &sections)
+    {
+      return join(sections, "/");
+    }
+
+    std::string
+    section_of(const std::string &path)
+    {
+      const auto slash = path.rfind('/');
+      return slash == std::string::npos ? "" : path.substr(0, slash);
+    }
+
+    std::string
+    entry_of(const std::string &path)
+    {
+      return path.substr(path.rfind('/') + 1);
+    }
+
+    std::string
+    in_section(const std::string &section)
+    {
+      return section.empty() ? "outside all sections" :
+                               "in section \"" + section + "\"";
+    }
+
+    struct Declared
+    {
+      std::string                                          section;
+      std::unique_ptr<dealii::Patterns::PatternBase>       pattern;
+    };
+
+    // All entries that prm knows, by path. ParameterHandler has no way to ask
+    // for them but its JSON form.
+    std::map<std::string, Declared>
+    declared_entries(const dealii::ParameterHandler &prm)
+    {
+      std::ostringstream text;
+      prm.print_parameters(text, dealii::ParameterHandler::JSON);
+      std::map<std::string, Declared> entries;
+
+      const std::function<void(const nlohmann::json &, const std::string &)>
+        collect = [&](const nlohmann::json &node, const std::string &section) {
+          for (const auto &[name, child] : node.items())
+            {
+              const std::string path =
+                section.empty() ? name : section + "/" + name;
+              if (child.contains("value") && child["value"].is_string())
+                entries[path] = {section,
+                                 dealii::Patterns::pattern_factory(
+                                   child["pattern_description"])};
+              else if (child.is_object())
+                collect(child, path);
+            }
+        };
+      collect(nlohmann::json::parse(text.str()), "");
+      return entries;
+    }
+  } // namespace
+
+
+
+  std::vector<std::string>
+  split_list(const std::string &list, const char separator)
+  {
+    std::vector<std::string> parts;
+    std::istringstream       in(list);
+    for (std::string part; std::getline(in, part, separator);)
+      if (part = trim(part); !part.empty())
+        parts.push_back(part);
+    return parts;
+  }
+
+
+
+  ParameterFile::ParameterFile(const std::string &             filename,
+                               const std::vector<std::string> &changes)
+    : filename(filename)
+  {
+    read(filename);
+    for (const std::string &change : changes)
+      {
+        const auto equals = change.find('=');
+        if (equals == std::string::npos)
+          throw UserError("--set \"" + change +
+                          "\" has no \"=\"; write it as "
+                          "--set \"Section/Entry=value\".");
+        std::vector<std::string> path =
+          split_list(change.substr(0, equals), '/');
+        values[join_path(path)] = {trim(change.substr(equals + 1)),
+                                   "--set \"" + change + "\""};
+      }
+  }
+
+
+
+  void
+  ParameterFile::read(const std::string &filename)
+  {
+    std::ifstream in(filename);
+    if (!in || std::filesystem::is_directory(filename))
+      throw UserError("The parameter file \"" + filename +
+                      "\" cannot be read; check its name and folder.");
+
+    std::vector<std::string> section;
+    std::string              line;
+    for (unsigned int number = 1; std::getline(in, line); ++number)
+      {
+        const std::string place =
+          filename + ", line " + std::to_string(number);
+        // a backslash at the end continues the line
+        while (!line.empty() && trim(line).size() > 0 &&
+               trim(line).back() == '\\')
+          {
+            line = trim(line);
+            line.pop_back();
+            std::string next;
+            if (!std::getline(in, next))
+              break;
+            ++number;
+            line += " " + trim(next);
+          }
+        line = trim(line.substr(0, line.find('#')));
+        if (line.empty())
+          continue;
+
+        std::istringstream words(line);
+        std::string        keyword, rest;
+        words >> keyword;
+        std::getline(words, rest);
+        rest = trim(rest);
+        if (keyword == "subsection")
+          {
+            section.push_back(rest);
+            sections.emplace(join_path(section), place);
+          }
+        else if (keyword == "end" && rest.empty())
+          {
+            if (section.empty())
+              throw UserError(place + ": \"end\" closes no section; remove "
+                                      "it or add the missing \"subsection\".");
+            section.pop_back();
+          }
+        else if (keyword == "set" && rest.find('=') != std::string::npos)
+          {
+            const auto  equals = rest.find('=');
+            std::string path   = join_path(section);
+            path += (path.empty() ? "" : "/") + trim(rest.substr(0, equals));
+            if (values.count(path) > 0)
+              throw UserError(place + ": \"" + entry_of(path) +
+                              "\" is set a second time (first in " +
+                              values[path].place + "); keep one of the two.");
+            values[path] = {trim(rest.substr(equals + 1)), place};
+          }
+        else
+          throw UserError(place + ": \"" + line +
+                          "\" is not understood; a line is \"subsection "
+                          "Name\", \"set Entry = value\", \"end\" or a "
+                          "comment that starts with \"#\".");
+      }
+    if (!section.empty())
+      throw UserError(filename + ": the section \"" + join_path(section) +
+                      "\" is never closed; add the missing \"end\".");
+  }
+
+
+
+  std::string
+  ParameterFile::given(const std::string &path,
+                       const std::string &otherwise) const
+  {
+    const auto value = values.find(path);
+    return value == values.end() ? otherwise : value->second.text;
+  }
+
+
+
+  void
+  ParameterFile::parse(dealii::ParameterHandler &prm) const
+  {
+    const auto            declared = declared_entries(prm);
+    std::set<std::string> declared_sections{""};
+    for (const auto &entry : declared)
+      for (std::string section = entry.second.section; !section.empty();
+           section             = section_of(section))
+        declared_sections.insert(section);
+
+    const auto refuse_section = [&](const std::string &section,
+                                    const std::string &place) {
+      std::vector<std::string> siblings;
+      for (const std::string &other : declared_sections)
+        if (!other.empty() && section_of(other) == section_of(section))
+          siblings.push_back(entry_of(other));
+      throw UserError(place + ": there is no section \"" + entry_of(section) +
+                      "\" " + in_section(section_of(section)) +
+                      known_names(entry_of(section), siblings) + ".");
+    };
+    for (const auto &[section, place] : sections)
+      if (declared_sections.count(section) == 0)
+        refuse_section(section, place);
+
+    for (const auto &[path, value] : values)
+      {
+        const std::string section = section_of(path);
+        if (declared_sections.count(section) == 0)
+          refuse_section(section, value.place);
+        const auto entry = declared.find(path);
+        if (entry == declared.end())
+          {
+            std::vector<std::string> siblings;
+            for (const auto &other : declared)
+              if (other.second.section == section)
+                siblings.push_back(entry_of(other.first));
+            throw UserError(value.place + ": there is no entry \"" +
+                            entry_of(path) + "\" " + in_section(section) +
+                            known_names(entry_of(path), siblings) + ".");
+          }
+        if (!entry->second.pattern->match(value.text))
+          throw UserError(
+            value.place + ": \"" + entry_of(path) + "\" " +
+            in_section(section) + " cannot be \"" + value.text +
+            "\"; allowed is: " +
+            entry->second.pattern->description(
+              dealii::Patterns::PatternBase::Text) +
+            ".");
+
+        const auto names = split_list(section, '/');
+        for (const std::string &name : names)
+          prm.enter_subsection(name);
+        prm.set(entry_of(path), value.text);
+        for (std::size_t i = 0; i < names.size(); ++i)
+          prm.leave_subsection();
+      }
+  }
+
+
+
+  std::string
+  ParameterFile::folder() const
+  {
+    const auto parent = std::filesystem::path(filename).parent_path().string();
+    return parent.empty() ? "." : parent;
+  }
+
+
+
+  std::string
+  ParameterFile::resolve(const std::string &name) const
+  {
+    return (std::filesystem::path(folder()) / name).lexically_normal().string();
+  }
+} // namespace Voussoir

@@ -1,0 +1,270 @@
+#include <voussoir/base/error.h>
+#include <voussoir/fem/discretization.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/dofs/dof_renumbering.h>
+#include <deal.II/dofs/dof_tools.h>
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  void
+  DiscretizationParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Degree",
+                      degree,
+                      "Polynomial degree of the displacement; 1 is fastest per "
+                      "unknown, 2 to 4 are more accurate per unknown.",
+                      Patterns::Integer(1, 4));
+    prm.add_parameter(
+      "Quadrature",
+      quadrature,
+      "Integration points of the stiffness, degree + 1 in each direction. "
+      "The mass is always lumped at the Gauss-Lobatto nodes.",
+      Patterns::Selection("Gauss|Gauss-Lobatto"));
+  }
+
+
+
+  Discretization::Discretization(
+    const Grid &                    grid,
+    const DiscretizationParameters &parameters,
+    const std::vector<Support> &    supports,
+    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell)
+    : grid(grid)
+    , degree(parameters.degree)
+    , fe(FE_Q<3>(parameters.degree), 3)
+    , dof_handler(grid.triangulation())
+  {
+    dof_handler.distribute_dofs(fe);
+    number_by_nodes();
+    owned_dofs = dof_handler.locally_owned_dofs();
+    DoFTools::extract_locally_relevant_dofs(dof_handler, relevant_dofs);
+    const auto owned_by_all =
+      Utilities::MPI::all_gather(grid.communicator(),
+                                 owned_dofs.n_elements());
+    first_dof_of_rank.push_back(0);
+    for (const auto owned : owned_by_all)
+      first_dof_of_rank.push_back(first_dof_of_rank.back() + owned);
+    make_constraints(supports);
+
+    MatrixFree::AdditionalData data;
+    data.tasks_parallel_scheme = MatrixFree::AdditionalData::none;
+    data.mapping_update_flags  = update_gradients | update_JxW_values;
+    data.cell_vectorization_categories_strict = true;
+    data.cell_vectorization_category.resize(
+      grid.triangulation().n_active_cells());
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        data.cell_vectorization_category[cell->active_cell_index()] =
+          material_of_cell(cell);
+
+    if (parameters.quadrature == "Gauss")
+      matrix_free.reinit(
+        mapping, dof_handler, constraints, QGauss<1>(degree + 1), data);
+    else
+      matrix_free.reinit(
+        mapping, dof_handler, constraints, QGaussLobatto<1>(degree + 1), data);
+
+    for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
+      material_of_batch.push_back(
+        material_of_cell(matrix_free.get_cell_iterator(batch, 0)));
+
+    node_positions.resize(n_owned_nodes());
+    FEValues<3> nodes(mapping,
+                      fe.base_element(0),
+                      Quadrature<3>(fe.base_element(0).get_unit_support_points()),
+                      update_quadrature_points);
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          nodes.reinit(
+            static_cast<Triangulation<3>::active_cell_iterator>(cell));
+          const auto indices = cell_nodes(cell);
+          for (unsigned int j = 0; j < indices.size(); ++j)
+            if (owned_dofs.is_element(3 * indices[j]))
+              node_positions[owned_node(indices[j])] =
+                nodes.quadrature_point(j);
+        }
+  }
+
+
+
+  void
+  Discretization::number_by_nodes()
+  {
+    const IndexSet &owned = dof_handler.locally_owned_dofs();
+    std::vector<types::global_dof_index> new_numbers(
+      owned.n_elements(), numbers::invalid_dof_index);
+    const types::global_dof_index first =
+      owned.n_elements() > 0 ? owned.nth_index_in_set(0) : 0;
+
+    std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
+    types::global_dof_index              next = first;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          cell->get_dof_indices(dofs);
+          for (unsigned int j = 0; j < fe.base_element(0).n_dofs_per_cell();
+               ++j)
+            {
+              const auto x = dofs[fe.component_to_system_index(0, j)];
+              if (owned.is_element(x) &&
+                  new_numbers[x - first] == numbers::invalid_dof_index)
+                for (unsigned int d = 0; d < 3; ++d)
+                  new_numbers[dofs[fe.component_to_system_index(d, j)] -
+                              first] = next++;
+            }
+        }
+    dof_handler.renumber_dofs(new_numbers);
+  }
+
+
+
+  void
+  Discretization::make_constraints(const std::vector<Support> &supports)
+  {
+    hanging_nodes.reinit(relevant_dofs);
+    DoFTools::make_hanging_node_constraints(dof_handler, hanging_nodes);
+    hanging_nodes.close();
+
+    constraints.reinit(relevant_dofs);
+    DoFTools::make_hanging_node_constraints(dof_handler, constraints);
+
+    FEFaceValues<3> normals(mapping,
+                            fe.base_element(0),
+                            QMidpoint<2>(),
+                            update_normal_vectors);
+    // ghost cells too: a rank must know the supports of all nodes it sees
+    for (const Support &support : supports)
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const unsigned int face : cell->face_indices())
+            if (grid.in_face_set(cell, face, support.set))
+              {
+                std::array<bool, 3> held{{true, true, true}};
+                if (support.normal_only)
+                  {
+                    normals.reinit(
+                      static_cast<Triangulation<3>::active_cell_iterator>(cell),
+                      face);
+                    const Tensor<1, 3> n = normals.normal_vector(0);
+                    for (unsigned int d = 0; d < 3; ++d)
+                      held[d] = std::abs(n[d]) > 1. - 1e-6;
+                    if (!held[0] && !held[1] && !held[2])
+                      throw UserError(
+                        "\"Roller\" in section \"Boundaries\" names \"" +
+                        support.set +
+                        "\", which is not perpendicular to a coordinate axis; "
+                        "rollers need faces of constant x, y or z, so use "
+                        "\"Fixed\" or an absorbing boundary there.");
+                  }
+                const auto nodes = cell_nodes(cell);
+                for (unsigned int j = 0;
+                     j < fe.base_element(0).n_dofs_per_cell();
+                     ++j)
+                  if (fe.base_element(0).has_support_on_face(j, face))
+                    for (unsigned int d = 0; d < 3; ++d)
+                      {
+                        const auto dof = 3 * nodes[j] + d;
+                        if (held[d] && constraints.can_store_line(dof) &&
+                            !constraints.is_constrained(dof))
+                          constraints.add_line(dof);
+                      }
+              }
+    constraints.close();
+  }
+
+
+
+  Vector
+  Discretization::create_vector() const
+  {
+    Vector vector;
+    matrix_free.initialize_dof_vector(vector);
+    return vector;
+  }
+
+
+
+  unsigned int
+  Discretization::n_owned_nodes() const
+  {
+    return owned_dofs.n_elements() / 3;
+  }
+
+
+
+  unsigned int
+  Discretization::owned_node(const types::global_dof_index global_node) const
+  {
+    const auto rank = Utilities::MPI::this_mpi_process(grid.communicator());
+    return global_node - first_dof_of_rank[rank] / 3;
+  }
+
+
+
+  unsigned int
+  Discretization::owner(const types::global_dof_index global_node) const
+  {
+    return std::upper_bound(first_dof_of_rank.begin(),
+                            first_dof_of_rank.end(),
+                            3 * global_node) -
+           first_dof_of_rank.begin() - 1;
+  }
+
+
+
+  unsigned int
+  Discretization::largest_interface() const
+  {
+    return Utilities::MPI::max(
+      matrix_free.get_vector_partitioner()->n_ghost_indices() / 3,
+      grid.communicator());
+  }
+
+
+
+  std::vector<Discretization::Share>
+  Discretization::carriers(const types::global_dof_index global_node) const
+  {
+    const auto *entries = hanging_nodes.get_constraint_entries(3 * global_node);
+    if (entries == nullptr)
+      return {{global_node, 1.}};
+    std::vector<Share> shares;
+    for (const auto &entry : *entries)
+      shares.push_back({entry.first / 3, entry.second});
+    return shares;
+  }
+
+
+
+  std::vector<types::global_dof_index>
+  Discretization::cell_nodes(const Cell &cell) const
+  {
+    std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
+    cell->get_dof_indices(dofs);
+    std::vector<types::global_dof_index> nodes(
+      fe.base_element(0).n_dofs_per_cell());
+    for (unsigned int j = 0; j < nodes.size(); ++j)
+      nodes[j] = dofs[fe.component_to_system_index(0, j)] / 3;
+    return nodes;
+  }
+
+
+
+  Discretization::Cell
+  Discretization::dof_cell(
+    const Triangulation<3>::active_cell_iterator &cell) const
+  {
+    return Cell(&grid.triangulation(),
+                cell->level(),
+                cell->index(),
+                &dof_handler);
+  }
+} // namespace Voussoir

@@ -1,0 +1,96 @@
+#include <voussoir/fem/lumped_mass.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/fe/fe_q.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  NodalVolumes::NodalVolumes(const Discretization &discretization)
+    : values(discretization.mapping,
+             discretization.fe.base_element(0),
+             QGaussLobatto<3>(discretization.degree + 1),
+             update_JxW_values)
+    , volumes(discretization.fe.base_element(0).n_dofs_per_cell())
+  {
+    // the points are the nodes, in lexicographic instead of hierarchic order
+    const auto &scalar =
+      dynamic_cast<const FE_Q<3> &>(discretization.fe.base_element(0));
+    node_of_point = scalar.get_poly_space_numbering_inverse();
+  }
+
+
+
+  const std::vector<double> &
+  NodalVolumes::of(const Triangulation<3>::active_cell_iterator &cell)
+  {
+    values.reinit(cell);
+    for (unsigned int q = 0; q < volumes.size(); ++q)
+      volumes[node_of_point[q]] = values.JxW(q);
+    return volumes;
+  }
+
+
+
+  LumpedMass::LumpedMass(
+    const Discretization &     discretization,
+    const std::vector<double> &density,
+    const std::vector<double> &driven_density,
+    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell)
+    : mass(discretization.create_vector())
+    , inverse(mass)
+    , driven(mass)
+    , total(density.size())
+  {
+    const MPI_Comm communicator = discretization.grid.communicator();
+    Vector         full(discretization.owned_dofs,
+                discretization.relevant_dofs,
+                communicator);
+    Vector         full_driven(full);
+
+    const auto &        scalar = discretization.fe.base_element(0);
+    NodalVolumes        nodal_volumes(discretization);
+    dealii::Vector<double>      cell_mass(discretization.fe.n_dofs_per_cell());
+    dealii::Vector<double>      cell_driven(cell_mass);
+    std::vector<types::global_dof_index> dofs(cell_mass.size());
+    for (const auto &cell : discretization.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          const unsigned int material = material_of_cell(cell);
+          const auto &       volumes  = nodal_volumes.of(cell);
+          for (unsigned int j = 0; j < scalar.n_dofs_per_cell(); ++j)
+            {
+              total[material] += density[material] * volumes[j];
+              for (unsigned int d = 0; d < 3; ++d)
+                {
+                  const auto i =
+                    discretization.fe.component_to_system_index(d, j);
+                  cell_mass[i]   = density[material] * volumes[j];
+                  cell_driven[i] = driven_density[material] * volumes[j];
+                }
+            }
+          cell->get_dof_indices(dofs);
+          // row sum of C^T M C for the hanging nodes
+          discretization.hanging_nodes.distribute_local_to_global(cell_mass,
+                                                                  dofs,
+                                                                  full);
+          discretization.hanging_nodes.distribute_local_to_global(cell_driven,
+                                                                  dofs,
+                                                                  full_driven);
+        }
+    full.compress(VectorOperation::add);
+    full_driven.compress(VectorOperation::add);
+    total = Utilities::MPI::sum(total, communicator);
+
+    for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
+      if (!discretization.constraints.is_constrained(
+            discretization.owned_dofs.nth_index_in_set(i)))
+        {
+          mass.local_element(i)    = full.local_element(i);
+          inverse.local_element(i) = 1. / full.local_element(i);
+          driven.local_element(i)  = full_driven.local_element(i);
+        }
+  }
+} // namespace Voussoir

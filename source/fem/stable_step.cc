@@ -1,0 +1,229 @@
+#include <voussoir/base/text.h>
+#include <voussoir/fem/stable_step.h>
+
+#include <deal.II/lac/tridiagonal_matrix.h>
+
+#include <iomanip>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // A start vector that is the same on any number of ranks and has a part in
+    // every mode.
+    void
+    fill_start(const Discretization &discretization, Vector &vector)
+    {
+      for (unsigned int node = 0; node < discretization.n_owned_nodes(); ++node)
+        {
+          const Point<3> &p = discretization.node_positions[node];
+          for (unsigned int d = 0; d < 3; ++d)
+            vector.local_element(3 * node + d) =
+              std::sin(1e3 * p[0] + 2e3 * p[1] + 3e3 * p[2] + 1.7 * d);
+        }
+    }
+
+
+
+    // Largest eigenvalue of M^-1/2 A M^-1/2 by Lanczos, which approaches it
+    // from below and fast, as it lies at the end of the spectrum.
+    double
+    largest_eigenvalue(
+      const Discretization &                                 discretization,
+      const LumpedMass &                                     mass,
+      const std::function<void(Vector &, const Vector &)> &  apply)
+    {
+      constexpr unsigned int max_iterations = 400;
+      Vector                 root(mass.inverse); // M^-1/2
+      for (double &entry : root)
+        entry = std::sqrt(entry);
+
+      Vector q = discretization.create_vector(), previous(q), w(q), scaled(q);
+      fill_start(discretization, q);
+      for (unsigned int i = 0; i < q.locally_owned_size(); ++i)
+        if (root.local_element(i) == 0.)
+          q.local_element(i) = 0.;
+      q /= q.l2_norm();
+
+      std::vector<double> alpha, beta;
+      double              value = 0., older = 0.;
+      for (unsigned int k = 0; k < max_iterations; ++k)
+        {
+          scaled = q;
+          scaled.scale(root);
+          apply(w, scaled);
+          w.scale(root);
+          alpha.push_back(w * q);
+          w.add(-alpha.back(), q);
+          if (k > 0)
+            w.add(-beta.back(), previous);
+          beta.push_back(w.l2_norm());
+
+          if (k % 5 == 4 || beta.back() < 1e-12 * alpha.back())
+            {
+              TridiagonalMatrix<double> tridiagonal(alpha.size(), true);
+              for (unsigned int i = 0; i < alpha.size(); ++i)
+                {
+                  tridiagonal(i, i) = alpha[i];
+                  if (i > 0)
+                    tridiagonal(i, i - 1) = beta[i - 1];
+                }
+              tridiagonal.compute_eigenvalues();
+              value = tridiagonal.eigenvalue(alpha.size() - 1);
+              if (k >= 29 && value - older < 1e-6 * value)
+                break;
+              if (beta.back() < 1e-12 * alpha.back())
+                break;
+              older = value;
+            }
+          previous.swap(q);
+          q.equ(1. / beta.back(), w);
+        }
+      return value;
+    }
+  } // namespace
+
+
+
+  double
+  stable_step(const Discretization &discretization,
+              const InternalForce & force,
+              const LumpedMass &    mass,
+              const StepLimits &    limits)
+  {
+    Vector     memory = discretization.create_vector();
+    const auto limit  = [&](const double dt) {
+      const double gamma = limits.stiffening(dt);
+      const auto   apply = [&](Vector &dst, const Vector &src) {
+        memory.equ(gamma, src);
+        force.sweep(
+          dst,
+          src,
+          &memory,
+          [&](const unsigned int begin, const unsigned int end) {
+            std::fill(dst.begin() + begin, dst.begin() + end, 0.);
+          },
+          {});
+        limits.add_diagonal(dst, src, dt);
+      };
+      return 2. / std::sqrt(largest_eigenvalue(discretization, mass, apply));
+    };
+
+    // With terms in 1/dt the limit is the fixed point of dt -> limit(dt), whose
+    // logarithm has a slope between 0 and 1/2: Aitken's extrapolation.
+    double log_dt = std::log(limit(1e30));
+    for (unsigned int iteration = 0; iteration < 20; ++iteration)
+      {
+        const double first  = std::log(limit(std::exp(log_dt)));
+        if (std::abs(first - log_dt) < 1e-5)
+          return std::exp(first);
+        const double second = std::log(limit(std::exp(first)));
+        if (std::abs(second - first) < 1e-5)
+          return std::exp(second);
+        log_dt -= (first - log_dt) * (first - log_dt) /
+                  (second - 2. * first + log_dt);
+      }
+    return std::exp(log_dt);
+  }
+
+
+
+  ElementSteps::ElementSteps(const Discretization &discretization,
+                             const std::vector<const CellKernel *> &kernels,
+                             const std::vector<double> &            density)
+    : smallest(std::numeric_limits<double>::max())
+  {
+    const auto &        matrix_free = discretization.matrix_free;
+    const unsigned int  n_batches   = matrix_free.n_cell_batches();
+    NodalVolumes        nodal_volumes(discretization);
+    std::vector<double> steps;
+    const unsigned int  n_nodes =
+      discretization.fe.base_element(0).n_dofs_per_cell();
+    AlignedVector<Lanes> masses(n_nodes);
+    const auto &lexicographic = matrix_free.get_shape_info()
+                                  .lexicographic_numbering;
+    for (unsigned int batch = 0; batch < n_batches; ++batch)
+      {
+        const unsigned int material = discretization.material_of_batch[batch];
+        const unsigned int n_lanes =
+          matrix_free.n_active_entries_per_cell_batch(batch);
+        for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+          {
+            const auto &volumes = nodal_volumes.of(
+              matrix_free.get_cell_iterator(batch, std::min(lane, n_lanes - 1)));
+            // numbered by component in lexicographic_numbering: its first
+            // n_nodes entries are those of the first component
+            for (unsigned int i = 0; i < n_nodes; ++i)
+              masses[i][lane] =
+                density[material] *
+                volumes[discretization.fe
+                          .system_to_component_index(lexicographic[i])
+                          .second];
+          }
+        const Lanes rates = kernels[material]->element_eigenvalues(
+          matrix_free, batch, masses);
+        for (unsigned int lane = 0; lane < n_lanes; ++lane)
+          {
+            const double step = 2. / std::sqrt(rates[lane]);
+            steps.push_back(step);
+            if (step < smallest)
+              {
+                smallest        = step;
+                const auto cell = matrix_free.get_cell_iterator(batch, lane);
+                place           = cell->center();
+                std::vector<std::string> names;
+                for (const std::string &name :
+                     discretization.grid.cell_set_names())
+                  if (discretization.grid.in_cell_set(cell, name))
+                    names.push_back(name);
+                sets = join(names, ", ");
+              }
+          }
+      }
+
+    // the first rank speaks for the rank that holds the governing cell
+    const MPI_Comm communicator = discretization.grid.communicator();
+    const auto     all          = Utilities::MPI::all_gather(
+      communicator,
+      std::make_tuple(smallest, place[0], place[1], place[2], sets));
+    const auto least =
+      *std::min_element(all.begin(), all.end(), [](const auto &a, const auto &b) {
+        return std::get<0>(a) < std::get<0>(b);
+      });
+    smallest = std::get<0>(least);
+    place =
+      Point<3>(std::get<1>(least), std::get<2>(least), std::get<3>(least));
+    sets = std::get<4>(least);
+
+    // bins of 25 % width each
+    histogram.resize(12);
+    for (const double step : steps)
+      ++histogram[std::min<std::size_t>(histogram.size() - 1,
+                                        std::log(step / smallest) /
+                                          std::log(1.25))];
+    histogram = Utilities::MPI::sum(histogram, communicator);
+  }
+
+
+
+  void
+  ElementSteps::print(std::ostream &out) const
+  {
+    unsigned long long largest = 1;
+    for (const auto count : histogram)
+      largest = std::max(largest, count);
+    out << "Largest stable step of each cell by itself, undamped:\n";
+    for (unsigned int bin = 0; bin < histogram.size(); ++bin)
+      if (histogram[bin] > 0)
+        out << "  " << (bin + 1 < histogram.size() ? "      " : "above ")
+            << std::setw(9) << std::setprecision(3) << std::scientific
+            << smallest * std::pow(1.25, bin) << " s  " << std::setw(9)
+            << histogram[bin] << "  "
+            << std::string((50 * histogram[bin] + largest - 1) / largest, '*')
+            << '\n';
+    out << std::defaultfloat << std::setprecision(4)
+        << "  governed by the cell at (" << place << ") m in " << sets << '\n';
+  }
+} // namespace Voussoir

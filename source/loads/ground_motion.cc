@@ -1,0 +1,385 @@
+#include <voussoir/base/error.h>
+#include <voussoir/loads/ground_motion.h>
+
+#include <deal.II/base/patterns.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iomanip>
+#include <sstream>
+
+namespace Voussoir
+{
+  namespace
+  {
+    const std::array<std::string, 3> axis_names{{"x", "y", "z"}};
+    const std::array<std::string, 3> axis_meanings{
+      {"across the valley", "along the river", "vertical"}};
+
+    Quantity
+    to_quantity(const std::string &name)
+    {
+      return name == "displacement" ? Quantity::displacement :
+             name == "velocity"     ? Quantity::velocity :
+                                      Quantity::acceleration;
+    }
+  } // namespace
+
+
+  void
+  GroundMotion::declare(dealii::ParameterHandler &prm)
+  {
+    using namespace dealii::Patterns;
+    prm.add_parameter("Type",
+                      type,
+                      "The earthquake: none, recorded accelerations from files "
+                      "(record), a Ricker wavelet, a sine, a single pulse, or "
+                      "an artificial motion that follows a design spectrum "
+                      "(spectrum). Its details are in the section of that "
+                      "name; the other ones are not used.",
+                      Selection("none|record|Ricker|sine|pulse|spectrum"));
+    prm.add_parameter(
+      "Given at",
+      given_at,
+      "Where the motion belongs. outcrop: on rock that lies "
+      "bare, twice the wave that rises in the rock below; as in "
+      "most codes. free surface: on top of the modelled ground "
+      "without dam and canyon, from where the wave is followed "
+      "down. incident wave: the rising wave itself at the "
+      "bottom of the model.",
+      Selection("outcrop|free surface|incident wave"));
+    for (unsigned int c = 0; c < 3; ++c)
+      prm.add_parameter("Peak acceleration " + axis_names[c],
+                        peak_acceleration[c],
+                        "Largest acceleration, " + axis_meanings[c] +
+                          ", before the overload factor [g = 9.81 m/s2]. 0 "
+                          "leaves a record as its file has it, and leaves out "
+                          "this component with all other types.",
+                        Double(0., 10.));
+    prm.add_parameter("Overload factor",
+                      overload_factor,
+                      "Multiplies all components, for studies beyond the "
+                      "design earthquake [-].",
+                      Double(0.));
+
+    const auto declare_section = [&prm](const std::string &name,
+                                        auto              &parameters) {
+      prm.enter_subsection(name);
+      parameters.declare(prm);
+      prm.leave_subsection();
+    };
+    declare_section("Record", record);
+    declare_section("Ricker", ricker);
+    declare_section("Sine", sine);
+    declare_section("Pulse", pulse);
+    declare_section("Spectrum", spectrum);
+  }
+
+
+  void
+  GroundMotion::Record::declare(dealii::ParameterHandler &prm)
+  {
+    using namespace dealii::Patterns;
+    for (unsigned int c = 0; c < 3; ++c)
+      prm.add_parameter("File " + axis_names[c],
+                        files[c],
+                        "Accelerations, " + axis_meanings[c] +
+                          ": an AT2 file, or a table with the time in the "
+                          "first column; relative to the folder of the "
+                          "parameter file. Empty: no motion in this "
+                          "direction.",
+                        Anything());
+    for (unsigned int c = 0; c < 3; ++c)
+      prm.add_parameter("Column " + axis_names[c],
+                        columns[c],
+                        "Which column of File " + axis_names[c] +
+                          " to take if it is a table, counted from 1 without "
+                          "the time column.",
+                        Integer(1));
+    prm.add_parameter("Unit",
+                      unit,
+                      "Of the accelerations in the files; g = 9.81 m/s2, "
+                      "cm/s2 = gal.",
+                      Selection("g|m/s2|cm/s2"));
+    prm.add_parameter("Time step",
+                      time_step,
+                      "Of tables that have a single column and no time [s]; 0 "
+                      "for all other files.",
+                      Double(0.));
+    prm.add_parameter("Start time",
+                      start_time,
+                      "The part of the records before this time is left out "
+                      "[s].",
+                      Double(0.));
+    prm.add_parameter("Duration",
+                      duration,
+                      "Length of the part used [s]; 0 for all that follows.",
+                      Double(0.));
+    baseline.declare(prm);
+  }
+
+
+  void
+  GroundMotion::Ricker::declare(dealii::ParameterHandler &prm)
+  {
+    using namespace dealii::Patterns;
+    prm.add_parameter("Quantity",
+                      quantity,
+                      "What has the shape of the Ricker wavelet.",
+                      Selection("displacement|velocity|acceleration"));
+    prm.add_parameter("Frequency",
+                      frequency,
+                      "Central frequency f [Hz]; there is hardly any motion "
+                      "above 3 f.",
+                      Double(0.01, 1000.));
+    prm.add_parameter("Middle",
+                      middle,
+                      "Time of the middle of the wavelet [s], at least 1.5/f; "
+                      "0 stands for that.",
+                      Double(0.));
+  }
+
+
+  void
+  GroundMotion::Sine::declare(dealii::ParameterHandler &prm)
+  {
+    using namespace dealii::Patterns;
+    prm.add_parameter("Frequency",
+                      frequency,
+                      "Frequency [Hz].",
+                      Double(0.01, 1000.));
+    prm.add_parameter("Cycles",
+                      cycles,
+                      "Number of cycles; 0 for shaking without end.",
+                      Integer(0));
+    prm.add_parameter(
+      "Ramp cycles",
+      ramp_cycles,
+      "Number of cycles in which the shaking swells and, in the end, "
+      "fades; it exceeds the peak acceleration meanwhile, by "
+      "15 % for 1 and by 2 % for 2. 0: the acceleration is a "
+      "full sine from the start, so that the ground drifts to "
+      "one side.",
+      Integer(0));
+  }
+
+
+  void
+  GroundMotion::Pulse::declare(dealii::ParameterHandler &prm)
+  {
+    using namespace dealii::Patterns;
+    prm.add_parameter("Quantity",
+                      quantity,
+                      "What has the shape of a single bump. displacement: the "
+                      "ground returns. velocity: it stays displaced.",
+                      Selection("displacement|velocity"));
+    prm.add_parameter("Duration",
+                      duration,
+                      "Length of the bump [s].",
+                      Double(1e-4, 1000.));
+  }
+
+
+  void
+  GroundMotion::check() const
+  {
+    if (type == "none")
+      return;
+
+    for (unsigned int c = 0; c < 3; ++c)
+      if (type == "record" && record.files[c].empty() &&
+          peak_acceleration[c] > 0)
+        throw UserError("Section Ground motion: Peak acceleration " +
+                        axis_names[c] + " is set, but Record/File " +
+                        axis_names[c] +
+                        " is empty; name a file or set the peak to 0.");
+
+    if (type == "record" &&
+        std::all_of(record.files.begin(),
+                    record.files.end(),
+                    [](const std::string &file) { return file.empty(); }))
+      throw UserError("Section Ground motion/Record: all of File x, File y and "
+                      "File z are empty; name a file or set Type = none.");
+
+    if (type != "record" && peak_acceleration == std::array<double, 3>{})
+      throw UserError(
+        "Section Ground motion: Peak acceleration x, y and z are all 0, so that "
+        "there is no motion; set one of them or set Type = none.");
+
+    if (type == "Ricker" && ricker.middle > 0 &&
+        ricker.middle * ricker.frequency < 1.5 - 1e-9)
+      throw UserError(
+        "Section Ground motion/Ricker: Middle must be 0 or at "
+        "least 1.5/Frequency, so that the ground starts at rest.");
+
+    if (type == "sine" && sine.cycles > 0 && sine.cycles < 2 * sine.ramp_cycles)
+      throw UserError(
+        "Section Ground motion/Sine: Cycles must be 0 or at least "
+        "twice Ramp cycles, for the rise and the fall.");
+
+    if (type == "spectrum")
+      spectrum.check();
+  }
+
+
+  namespace
+  {
+    std::unique_ptr<Signal>
+    scaled(TimeSeries acceleration, const double factor)
+    {
+      for (double &value : acceleration.values)
+        value *= factor;
+      return std::make_unique<Tabulated>(acceleration);
+    }
+
+    /** The corrected record of one component. */
+    TimeSeries
+    read_component(const GroundMotion::Record &record,
+                   const unsigned int          component,
+                   const std::string          &folder)
+    {
+      // An absolute path replaces the folder.
+      const std::string file =
+        (std::filesystem::path(folder) / record.files[component]).string();
+      const TimeSeries whole =
+        read_record(file,
+                    {record.unit, record.time_step, record.columns[component]});
+
+      const TimeSeries part =
+        time_window(whole, record.start_time, record.duration);
+      if (part.values.size() < 2)
+        throw UserError(
+          "Section Ground motion/Record: between Start time and the end of the "
+          "record '" +
+          file + "' or of Duration there is no motion; the record lasts " +
+          std::to_string(whole.time_step * (whole.values.size() - 1.)) + " s.");
+
+      return {part.time_step, record.baseline.apply(part).acceleration};
+    }
+  } // namespace
+
+
+  GroundMotionSignals
+  GroundMotion::build(const std::string &folder) const
+  {
+    std::array<TimeSeries, 3> artificial;
+    if (type == "spectrum")
+      artificial = spectrum.generate();
+
+    GroundMotionSignals signals;
+    for (unsigned int c = 0; c < 3; ++c)
+      {
+        if (type == "none" || (type == "record" ? record.files[c].empty() :
+                                                  peak_acceleration[c] == 0))
+          continue;
+
+        const double largest =
+          overload_factor * standard_gravity * peak_acceleration[c];
+        if (type == "record")
+          {
+            const TimeSeries motion    = read_component(record, c, folder);
+            const double     unchanged = peak(motion.values);
+            if (peak_acceleration[c] > 0 && unchanged == 0)
+              throw UserError("Section Ground motion: Peak acceleration " +
+                              axis_names[c] +
+                              " cannot be reached, because the part of the "
+                              "record that is used is zero throughout; choose "
+                              "another file or time window.");
+            signals[c] = scaled(motion,
+                                peak_acceleration[c] > 0 ? largest / unchanged :
+                                                           overload_factor);
+          }
+        else if (type == "Ricker")
+          signals[c] =
+            std::make_unique<Voussoir::Ricker>(to_quantity(ricker.quantity),
+                                               ricker.frequency,
+                                               ricker.middle > 0 ?
+                                                 ricker.middle :
+                                                 1.5 / ricker.frequency,
+                                               largest);
+        else if (type == "sine")
+          signals[c] = std::make_unique<Voussoir::Sine>(sine.frequency,
+                                                        largest,
+                                                        sine.cycles,
+                                                        sine.ramp_cycles);
+        else if (type == "pulse")
+          signals[c] =
+            std::make_unique<Voussoir::Pulse>(to_quantity(pulse.quantity),
+                                              pulse.duration,
+                                              largest);
+        else
+          signals[c] = scaled(artificial[c], largest);
+      }
+    return signals;
+  }
+
+
+  namespace
+  {
+    /** The motion at constant time step from 0 to @p end_time. */
+    Motion
+    sample(const Signal &signal, const double time_step, const double end_time)
+    {
+      Motion            motion{time_step, {}, {}, {}};
+      const std::size_t n_steps = std::round(end_time / time_step);
+      for (std::size_t i = 0; i <= n_steps; ++i)
+        {
+          motion.acceleration.push_back(signal.acceleration(i * time_step));
+          motion.velocity.push_back(signal.velocity(i * time_step));
+          motion.displacement.push_back(signal.displacement(i * time_step));
+        }
+      return motion;
+    }
+  } // namespace
+
+
+  std::string
+  GroundMotion::summary(const GroundMotionSignals &signals,
+                        const double               end_time) const
+  {
+    constexpr double resolution = 1e-3;
+
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(4);
+    for (unsigned int c = 0; c < 3; ++c)
+      if (signals[c])
+        {
+          const Motion motion = sample(*signals[c], resolution, end_time);
+          text << "Ground motion " << axis_names[c] << " (" << axis_meanings[c]
+               << "): peak acceleration "
+               << peak(motion.acceleration) / standard_gravity
+               << " g, velocity " << peak(motion.velocity)
+               << " m/s, displacement " << peak(motion.displacement)
+               << " m; at the end velocity " << rounded(motion.velocity.back())
+               << " m/s, displacement " << rounded(motion.displacement.back())
+               << " m\n";
+        }
+    if (type != "spectrum")
+      return text.str();
+
+    for (unsigned int c = 0; c < 3; ++c)
+      {
+        if (!signals[c])
+          continue;
+        const std::vector<double> a =
+          sample(*signals[c], spectrum.time_step, spectrum.duration)
+            .acceleration;
+        text << "Ground motion " << axis_names[c]
+             << ": mean deviation from the design spectrum "
+             << 100. * spectrum.mean_deviation({spectrum.time_step, a}, peak(a))
+             << " %\n";
+        for (unsigned int d = 0; d < c; ++d)
+          if (signals[d])
+            text << "Ground motion " << axis_names[d] << " and "
+                 << axis_names[c] << ": correlation "
+                 << correlation(a,
+                                sample(*signals[d],
+                                       spectrum.time_step,
+                                       spectrum.duration)
+                                  .acceleration)
+                 << "\n";
+      }
+    return text.str();
+  }
+} // namespace Voussoir

@@ -1,0 +1,3 @@
+#include <voussoir/fem/simd.h>
+#include <iostream>
+int main(){ std::cout << Voussoir::simd_description() << std::endl; }

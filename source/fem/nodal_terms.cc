@@ -36,6 +36,7 @@ namespace Voussoir
 
   void
   NodalTerms::prepare(const LumpedMass &mass,
+                      const double      mass_coefficient,
                       const double      step,
                       const bool        treat_centrally)
   {
@@ -48,6 +49,8 @@ namespace Voussoir
     for (unsigned int slot = 0; slot < nodes.size(); ++slot)
       {
         masses[slot] = read(mass.mass, nodes[slot]);
+        if (central)
+          masses[slot] *= 1. + 0.5 * time_step * mass_coefficient;
         // a held component keeps its zero velocity: unit row and column
         Tensor<2, 3> matrix;
         for (unsigned int d = 0; d < 3; ++d)

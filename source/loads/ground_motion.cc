@@ -331,6 +331,13 @@ namespace Voussoir
         }
       return motion;
     }
+
+    /** The value to four decimals, never a negative zero. */
+    double
+    rounded(const double value)
+    {
+      return std::round(value * 1e4) / 1e4 + 0.;
+    }
   } // namespace
 
 

@@ -49,6 +49,10 @@ namespace Voussoir
       std::string       text;
       for (unsigned int number = 1; std::getline(stream, text); ++number)
         {
+          const std::string byte_order_mark = "\xEF\xBB\xBF";
+          if (number == 1 && text.compare(0, 3, byte_order_mark) == 0)
+            text.erase(0, 3);
+
           const std::size_t first = text.find_first_not_of(" \t\r");
           if (first == std::string::npos)
             continue;

@@ -42,11 +42,11 @@ namespace Voussoir
               const double      start,
               const double      duration)
   {
-    const auto samples = [&](const double time) {
-      return static_cast<std::size_t>(std::round(time / series.time_step));
+    const std::size_t size    = series.values.size();
+    const auto        samples = [&](const double time) -> std::size_t {
+      return std::min(std::round(time / series.time_step), 1. * size);
     };
-    const std::size_t size  = series.values.size();
-    const std::size_t first = std::min(samples(start), size);
+    const std::size_t first = samples(start);
     const std::size_t last =
       duration > 0 ? std::min(first + samples(duration) + 1, size) : size;
 

@@ -118,8 +118,8 @@ namespace Voussoir
       }
 
 
-      // Numbers of nodes and elements start anew in each part. They stand in the
-      // part or in its instance, whichever was meshed.
+      // Numbers of nodes and elements start anew in each part. They stand in
+      // the part or in its instance, whichever was meshed.
       void
       read_part(const AbaqusKeyword &keyword)
       {
@@ -408,7 +408,7 @@ namespace Voussoir
 
       AbaqusSets            element_sets, node_sets, surfaces;
       std::set<std::string> parts;
-      bool                  is_in_assembly = false;
+      bool is_in_assembly = false; // but not within an instance
 
       // index by element number
       std::unordered_map<std::int64_t, unsigned int> hexahedra, quadrilaterals;

@@ -97,9 +97,12 @@ namespace Voussoir
     for (unsigned int i = 0; i < 3 && i < items.size(); ++i)
       range[i] = file.to_number<std::int64_t>(items[i], "an integer number");
     const auto first = range[0], last = range[1], step = range[2];
-    if (items.size() < 2 || step < 1 || last < first)
+    // More than 100 million members would be a slip, and fill the memory.
+    if (items.size() < 2 || step < 1 || last < first ||
+        (last - first) / step > 100000000)
       file.fail("GENERATE needs the first number, the last, not below the "
-                "first, and if wanted an increment of 1 or more.");
+                "first, and if wanted an increment of 1 or more, 100 million "
+                "numbers at most.");
     range.clear();
     for (auto number = first; number <= last; number += step)
       range.push_back(number);

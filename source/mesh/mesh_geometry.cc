@@ -1,10 +1,10 @@
 #include <voussoir/mesh/mesh_geometry.h>
 
 #include <deal.II/base/geometry_info.h>
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/tensor.h>
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 namespace Voussoir
@@ -69,21 +69,18 @@ namespace Voussoir
   double
   cell_volume(const CoarseMesh &mesh, const unsigned int cell)
   {
-    const double gauss  = 0.5 / std::sqrt(3.);
-    double       volume = 0;
-    for (unsigned int q = 0; q < 8; ++q)
-      {
-        const Point<3> corner = GeometryInfo<3>::unit_cell_vertex(q);
-        Point<3>       point;
-        for (unsigned int d = 0; d < 3; ++d)
-          point[d] = 0.5 + (2 * corner[d] - 1) * gauss;
+    static const QGauss<3> quadrature(2);
 
+    double volume = 0;
+    for (unsigned int q = 0; q < quadrature.size(); ++q)
+      {
         Tensor<2, 3> jacobian;
         for (unsigned int v = 0; v < 8; ++v)
-          jacobian += outer_product(
-            mesh.vertices[mesh.cells[cell][v]],
-            GeometryInfo<3>::d_linear_shape_function_gradient(point, v));
-        volume += determinant(jacobian) / 8.;
+          jacobian +=
+            outer_product(mesh.vertices[mesh.cells[cell][v]],
+                          GeometryInfo<3>::d_linear_shape_function_gradient(
+                            quadrature.point(q), v));
+        volume += quadrature.weight(q) * determinant(jacobian);
       }
     return volume;
   }
@@ -92,21 +89,21 @@ namespace Voussoir
   double
   face_area(const CoarseMesh &mesh, const CoarseMesh::Face &face)
   {
-    const double gauss = 0.5 / std::sqrt(3.);
-    const auto   v     = face_vertices(mesh, face);
-    const auto   x     = [&](const unsigned int i) -> const Point<3>       &{
-      return mesh.vertices[v[i]];
-    };
+    static const QGauss<2> quadrature(4);
+
+    const auto v = face_vertices(mesh, face);
+    // The bilinear face is x0 + a s + b t + c s t.
+    const Tensor<1, 3> a = mesh.vertices[v[1]] - mesh.vertices[v[0]];
+    const Tensor<1, 3> b = mesh.vertices[v[2]] - mesh.vertices[v[0]];
+    const Tensor<1, 3> c = mesh.vertices[v[3]] - mesh.vertices[v[2]] - a;
+
     double area = 0;
-    for (const double s : {0.5 - gauss, 0.5 + gauss})
-      for (const double t : {0.5 - gauss, 0.5 + gauss})
-        {
-          const Tensor<1, 3> along_s =
-            (1 - t) * (x(1) - x(0)) + t * (x(3) - x(2));
-          const Tensor<1, 3> along_t =
-            (1 - s) * (x(2) - x(0)) + s * (x(3) - x(1));
-          area += 0.25 * cross_product_3d(along_s, along_t).norm();
-        }
+    for (unsigned int q = 0; q < quadrature.size(); ++q)
+      {
+        const Point<2> p = quadrature.point(q);
+        area += quadrature.weight(q) *
+                cross_product_3d(a + p[1] * c, b + p[0] * c).norm();
+      }
     return area;
   }
 } // namespace Voussoir

@@ -341,10 +341,10 @@ namespace Voussoir
       std::string
       material_name(const double material) const
       {
-        if (material != std::floor(material))
+        if (material != std::floor(material) || std::abs(material) > 1e9)
           throw UserError(file.name + ": the array of materials holds " +
                           std::to_string(material) +
-                          "; only integers are allowed.");
+                          "; only integers up to 1e9 are allowed.");
         return std::to_string(static_cast<std::int64_t>(material));
       }
 

@@ -42,7 +42,7 @@ namespace Voussoir
         decay.push_back(std::exp(-time_step / tau));
         gain.push_back(damping.coefficients[i] * (1. - decay[i]) * tau);
       }
-    terms.prepare(mass, time_step, central);
+    terms.prepare(mass, mass_coefficient, time_step, central);
   }
 
 
@@ -170,25 +170,30 @@ namespace Voussoir
       central ? time_step / (1. + 0.5 * time_step * mass_coefficient) :
                 time_step;
 
-    if (!base_acceleration)
+    if (!base_acceleration && mass_coefficient == 0.)
       {
 #pragma GCC ivdep
         for (unsigned int i = begin; i < end; ++i)
           {
-            v[i] = keep * v[i] - push * inverse[i] * f[i];
+            v[i] -= time_step * inverse[i] * f[i];
             u[i] += time_step * v[i];
           }
       }
     else
       {
-        const double *driven = mass.driven.begin();
+        const double *diagonal = mass.mass.begin();
+        const double *driven   = mass.driven.begin();
         for (unsigned int i = begin; i < end; ++i)
           {
             const double inertia = driven[i] * base[i % 3];
             const double before  = v[i];
             v[i] = keep * v[i] - push * inverse[i] * (f[i] + inertia);
             u[i] += time_step * v[i];
-            work_of_base -= 0.5 * time_step * inertia * (before + v[i]);
+
+            const double mean = 0.5 * (before + v[i]);
+            work_of_base -= time_step * inertia * mean;
+            loss_by_mass += time_step * mass_coefficient * diagonal[i] *
+                            mean * (central ? mean : before);
           }
       }
   }

@@ -16,8 +16,8 @@
 
 #include <deal.II/matrix_free/matrix_free.h>
 
+#include <cstring>
 #include <map>
-#include <set>
 
 namespace Voussoir
 {
@@ -118,13 +118,15 @@ namespace Voussoir
     dof_cell(const dealii::Triangulation<3>::active_cell_iterator &cell) const;
 
     /**
-     * Sends records to the ranks that own their nodes and sums up those of one
-     * node. @p Record needs `operator+=` and to be trivially copyable.
+     * Sends records to the ranks that own their nodes; what arrives names the
+     * local node, in an order that does not depend on timing. @p Record must be
+     * trivially copyable.
      */
     template <typename Record>
-    std::map<unsigned int, Record>
-    sum_at_owners(
-      const std::map<dealii::types::global_dof_index, Record> &records) const;
+    std::vector<std::pair<unsigned int, Record>>
+    send_to_owners(
+      const std::vector<std::pair<dealii::types::global_dof_index, Record>>
+        &records) const;
 
     /** The rank that owns a global node. */
     unsigned int
@@ -143,12 +145,17 @@ namespace Voussoir
 
 
   template <typename Record>
-  std::map<unsigned int, Record>
-  Discretization::sum_at_owners(
-    const std::map<dealii::types::global_dof_index, Record> &records) const
+  std::vector<std::pair<unsigned int, Record>>
+  Discretization::send_to_owners(
+    const std::vector<std::pair<dealii::types::global_dof_index, Record>>
+      &records) const
   {
     static_assert(std::is_trivially_copyable_v<Record>);
-    using Item = std::pair<dealii::types::global_dof_index, Record>;
+    struct Item
+    {
+      dealii::types::global_dof_index node;
+      Record                          record;
+    };
     std::map<unsigned int, std::vector<char>> outgoing;
     for (const auto &[node, record] : records)
       {
@@ -157,22 +164,18 @@ namespace Voussoir
         const auto bytes  = reinterpret_cast<const char *>(&item);
         buffer.insert(buffer.end(), bytes, bytes + sizeof(Item));
       }
-    // some_to_some returns a map ordered by rank, so the sums do not depend on
-    // the order of arrival
+    // a map ordered by rank
     const auto incoming =
       dealii::Utilities::MPI::some_to_some(grid.communicator(), outgoing);
-    std::map<unsigned int, Record> sums;
+    std::vector<std::pair<unsigned int, Record>> arrived;
     for (const auto &buffer : incoming)
       for (std::size_t i = 0; i < buffer.second.size(); i += sizeof(Item))
         {
           Item item;
           std::memcpy(&item, buffer.second.data() + i, sizeof(Item));
-          const auto [place, is_new] =
-            sums.emplace(owned_node(item.first), item.second);
-          if (!is_new)
-            place->second += item.second;
+          arrived.emplace_back(owned_node(item.node), item.record);
         }
-    return sums;
+    return arrived;
   }
 } // namespace Voussoir
 

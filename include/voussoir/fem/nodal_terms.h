@@ -27,12 +27,15 @@ namespace Voussoir
     std::vector<dealii::Tensor<1, 3>> forces;   // of the present step [N]
 
     /**
-     * Makes the inverses of M + dt/2 C for the step. Without @p central the
+     * Makes the inverses of M + dt/2 (alpha M + C) for the step. Without @p central the
      * dashpots act on the velocity of the last half step instead (the paper's
      * scheme), and the inverse is that of M.
      */
     void
-    prepare(const LumpedMass &mass, const double time_step, const bool central);
+    prepare(const LumpedMass &mass,
+            const double      mass_coefficient,
+            const double      time_step,
+            const bool        central);
 
     /** Keeps what the correction needs of the state before the step. */
     void

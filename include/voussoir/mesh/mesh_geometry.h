@@ -38,7 +38,7 @@ namespace Voussoir
   double
   cell_volume(const CoarseMesh &mesh, const unsigned int cell);
 
-  /** Area [length^2]; exact for plane faces, by 2x2 Gauss points for others. */
+  /** Area [length^2]; exact for plane faces, by 4x4 Gauss points for others. */
   double
   face_area(const CoarseMesh &mesh, const CoarseMesh::Face &face);
 } // namespace Voussoir

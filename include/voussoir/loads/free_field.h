@@ -1,0 +1,56 @@
+#ifndef voussoir_loads_free_field_h
+#define voussoir_loads_free_field_h
+
+#include <voussoir/fem/damping.h>
+#include <voussoir/fem/discretization.h>
+#include <voussoir/loads/ground_motion.h>
+#include <voussoir/materials/material.h>
+
+#include <deal.II/base/tensor.h>
+
+namespace Voussoir
+{
+  /** What a free field must know of an absorbing boundary. */
+  struct BoundaryGeometry
+  {
+    /** Positions of the nodes [m]. */
+    std::vector<dealii::Point<3>> nodes;
+
+    /** One quadrature point's part of the traction integral at a node. */
+    struct Contribution
+    {
+      unsigned int         node;
+      dealii::Point<3>     point;
+      dealii::Tensor<1, 3> area; // outward normal times shape function times dA
+    };
+    std::vector<Contribution> contributions;
+  };
+
+  /** A vertical face of the boundary: where it reaches and of what it is. */
+  struct SideFace
+  {
+    double       lower, upper; // [m]
+    double       area;         // [m2]
+    unsigned int material;
+  };
+
+  /**
+   * The motion that the ground would make without canyon and dam, at the nodes
+   * of the absorbing boundary.
+   */
+  class FreeField
+  {
+  public:
+    virtual ~FreeField() = default;
+
+    /** Evaluates the field at this time; called for each step in turn. */
+    virtual void
+    advance(const double time) = 0;
+
+    /** Of each node: displacement [m], velocity [m/s], and the integral of the
+     *  traction over its part of the boundary [N]. */
+    std::vector<dealii::Tensor<1, 3>> displacement, velocity, force;
+  };
+} // namespace Voussoir
+
+#endif

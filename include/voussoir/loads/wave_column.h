@@ -1,0 +1,176 @@
+#ifndef voussoir_loads_wave_column_h
+#define voussoir_loads_wave_column_h
+
+#include <voussoir/loads/free_field.h>
+
+#include <deal.II/base/polynomial.h>
+
+namespace Voussoir
+{
+  /**
+   * Vertically travelling S waves (x, y) and P wave (z) in horizontal layers: a
+   * column of one-dimensional elements marched with the scheme, the degree, the
+   * quadrature, the damping and the time step of the model, on the levels of its
+   * side faces. A model whose sides are regular then follows it to round-off.
+   *
+   * At the base, rho c (2 v_incident - v) enters; the top is free.
+   */
+  class WaveColumn
+  {
+  public:
+    struct Layer
+    {
+      double           lower, upper; // [m]
+      ElasticConstants constants;    // at the reference frequency
+      double           damping_factor;
+    };
+
+    WaveColumn(const std::vector<Layer> &layers,
+               const unsigned int        degree,
+               const std::string &       quadrature,
+               const Damping &           damping,
+               const bool                paper_scheme,
+               const double              time_step);
+
+    /** Sets displacement, velocity and stress of this step and prepares the
+     *  next; @p incident_velocity is that of the upgoing wave at the base. */
+    void
+    advance(const dealii::Tensor<1, 3> &incident_velocity);
+
+    /** Where a level lies: interpolation weights of the nodes around it. */
+    struct Interpolation
+    {
+      unsigned int        first_node;
+      std::vector<double> weights;
+    };
+    Interpolation
+    interpolation(const double z) const;
+
+    dealii::Tensor<1, 3>
+    displacement(const Interpolation &at) const;
+
+    dealii::Tensor<1, 3>
+    velocity(const Interpolation &at) const;
+
+    /** A level inside an element, for the stress there. */
+    struct StressPoint
+    {
+      unsigned int        element;
+      std::vector<double> gradients;
+    };
+    StressPoint
+    stress_point(const double z) const;
+
+    /** sigma_xz, sigma_yz, sigma_zz [Pa]. */
+    dealii::Tensor<1, 3>
+    stress(const StressPoint &at) const;
+
+    /** nu/(1-nu): lateral over vertical stress of the P wave. */
+    double
+    lateral_ratio(const StressPoint &at) const;
+
+    /** Traction on the base (x, y, z) [Pa]. */
+    dealii::Tensor<1, 3>
+    base_traction() const;
+
+    dealii::Tensor<1, 3>
+    surface_velocity() const;
+
+    double
+    bottom() const;
+
+    double
+    top() const;
+
+    /** Time an S wave takes from base to surface [s]. */
+    double
+    travel_time() const;
+
+  private:
+    unsigned int
+    element_at(const double z) const;
+
+    struct Element
+    {
+      double               lower, height;
+      dealii::Tensor<1, 3> modulus; // G, G, lambda + 2 G, scaled [Pa]
+      double               damping_factor;
+      double               lateral_ratio;
+      double               s_wave_speed;
+    };
+
+    const unsigned int  degree;
+    const double        time_step;
+    const bool          central;
+    std::vector<double> nodes_1d; // Gauss-Lobatto points on [0, 1]
+    // derivatives of the shape functions at the quadrature points, weights
+    std::vector<std::vector<double>>               gradients;
+    std::vector<double>                            weights;
+    std::vector<dealii::Polynomials::Polynomial<double>> shapes;
+    std::vector<Element>                           elements;
+    std::vector<double>                            mass; // [kg/m2]
+    dealii::Tensor<1, 3>                           impedance;
+    double                                         mass_coefficient;
+    double                                         stiffness_coefficient;
+    std::vector<double>                            decay, gain;
+
+    // motion of the step (u_n and the velocity in the middle of its two half
+    // steps) and what the next one starts from
+    std::vector<dealii::Tensor<1, 3>> u, middle_velocity, next_u, v, effective;
+    std::vector<std::vector<dealii::Tensor<1, 3>>> memory;
+    dealii::Tensor<1, 3>                           base;
+  };
+
+  /**
+   * The layers of the side faces of a model, on its levels. Levels are left out
+   * where the elements between them would not be stable at the time step (they
+   * belong to no regular side mesh then).
+   */
+  std::vector<WaveColumn::Layer>
+  layers_of_sides(const std::vector<SideFace> &                faces,
+                  const std::vector<ElasticConstants> &        constants,
+                  const std::vector<double> &                  damping_factors,
+                  const unsigned int                           degree,
+                  const double                                 time_step,
+                  const Damping &                              damping);
+
+  /** The column as free field of a model. */
+  class ColumnField : public FreeField
+  {
+  public:
+    ColumnField(WaveColumn &&           column,
+                GroundMotionSignals &&  incident,
+                const BoundaryGeometry &geometry);
+
+    void
+    advance(const double time) override;
+
+  private:
+    WaveColumn          column;
+    GroundMotionSignals incident;
+
+    std::vector<unsigned int>              level_of_node;
+    std::vector<WaveColumn::Interpolation> levels;
+    std::vector<WaveColumn::StressPoint>   stress_points;
+    struct Share
+    {
+      unsigned int         node, stress_point; // stress_point: invalid at base
+      dealii::Tensor<1, 3> area;
+    };
+    std::vector<Share> shares;
+  };
+
+  /**
+   * The wave that must enter at the base for the surface of the column to move
+   * as @p surface does, by Fourier transform of the column's answer to a pulse.
+   * Frequencies above @p maximum_frequency [Hz] are removed.
+   */
+  GroundMotionSignals
+  incident_for_surface(const WaveColumn &         column,
+                       const GroundMotionSignals &surface,
+                       const double               time_step,
+                       const double               duration,
+                       const double               maximum_frequency);
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,526 @@
+#include <voussoir/base/error.h>
+#include <voussoir/loads/deconvolution.h>
+#include <voussoir/loads/wave_column.h>
+
+#include <deal.II/base/polynomial.h>
+#include <deal.II/base/quadrature_lib.h>
+
+#include <algorithm>
+#include <map>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    std::vector<double>
+    coordinates(const Quadrature<1> &quadrature)
+    {
+      std::vector<double> x;
+      for (const Point<1> &point : quadrature.get_points())
+        x.push_back(point[0]);
+      return x;
+    }
+
+    Quadrature<1>
+    stiffness_quadrature(const std::string &name, const unsigned int degree)
+    {
+      if (name == "Gauss")
+        return QGauss<1>(degree + 1);
+      return QGaussLobatto<1>(degree + 1);
+    }
+
+    // Largest stable c dt / h of one element by itself, from its eigenvalues by
+    // power iteration.
+    double
+    element_limit(const unsigned int degree)
+    {
+      const QGaussLobatto<1> lobatto(degree + 1);
+      const QGauss<1>        gauss(degree + 1);
+      std::vector<Point<1>>  points = lobatto.get_points();
+      const auto             shapes =
+        Polynomials::generate_complete_Lagrange_basis(points);
+      std::vector<double> mode(degree + 1), product(degree + 1);
+      for (unsigned int i = 0; i <= degree; ++i)
+        mode[i] = (i % 2 == 0 ? 1. : -1.) + 0.1 * i;
+      double eigenvalue = 0.;
+      for (unsigned int iteration = 0; iteration < 200; ++iteration)
+        {
+          std::fill(product.begin(), product.end(), 0.);
+          for (unsigned int q = 0; q < gauss.size(); ++q)
+            {
+              const double x        = gauss.point(q)[0];
+              double       gradient = 0.;
+              for (unsigned int i = 0; i <= degree; ++i)
+                gradient += shapes[i].derivative().value(x) * mode[i];
+              for (unsigned int i = 0; i <= degree; ++i)
+                product[i] += gauss.weight(q) * gradient *
+                              shapes[i].derivative().value(x);
+            }
+          double norm = 0.;
+          for (unsigned int i = 0; i <= degree; ++i)
+            {
+              product[i] /= lobatto.weight(i);
+              norm = std::max(norm, std::abs(product[i]));
+            }
+          eigenvalue = norm;
+          for (unsigned int i = 0; i <= degree; ++i)
+            mode[i] = product[i] / norm;
+        }
+      return 2. / std::sqrt(eigenvalue);
+    }
+  } // namespace
+
+
+
+  WaveColumn::WaveColumn(const std::vector<Layer> &layers,
+                         const unsigned int        degree,
+                         const std::string &       quadrature,
+                         const Damping &           damping,
+                         const bool                paper_scheme,
+                         const double              time_step)
+    : degree(degree)
+    , time_step(time_step)
+    , central(!paper_scheme)
+    , mass_coefficient(damping.mass_coefficient)
+    , stiffness_coefficient(damping.stiffness_coefficient)
+  {
+    const QGaussLobatto<1> lobatto(degree + 1);
+    nodes_1d = coordinates(lobatto);
+    shapes =
+      Polynomials::generate_complete_Lagrange_basis(lobatto.get_points());
+    const Quadrature<1> rule = stiffness_quadrature(quadrature, degree);
+    weights                  = rule.get_weights();
+    for (const double x : coordinates(rule))
+      {
+        gradients.emplace_back();
+        for (const auto &shape : shapes)
+          gradients.back().push_back(shape.derivative().value(x));
+      }
+
+    mass.assign(degree * layers.size() + 1, 0.);
+    for (const Layer &layer : layers)
+      {
+        const ElasticConstants &c      = layer.constants;
+        const double            height = layer.upper - layer.lower;
+        const double scale = damping.stiffness_scale(layer.damping_factor);
+        const double G     = scale * c.shear_modulus();
+        const double M =
+          scale * (c.lame_lambda() + 2. * c.shear_modulus());
+        for (unsigned int i = 0; i <= degree; ++i)
+          mass[degree * elements.size() + i] +=
+            c.density * height * lobatto.weight(i);
+        elements.push_back({layer.lower,
+                            height,
+                            Tensor<1, 3>({G, G, M}),
+                            layer.damping_factor,
+                            c.poisson_ratio / (1. - c.poisson_ratio),
+                            c.s_wave_speed()});
+      }
+    const ElasticConstants &rock = layers.front().constants;
+    const double            S = rock.density * rock.s_wave_speed();
+    impedance = Tensor<1, 3>({S, S, rock.density * rock.p_wave_speed()});
+
+    for (unsigned int i = 0; i < damping.n_branches(); ++i)
+      {
+        const double tau = damping.relaxation_times[i];
+        decay.push_back(std::exp(-time_step / tau));
+        gain.push_back(damping.coefficients[i] * (1. - decay[i]) * tau);
+      }
+    u.resize(mass.size());
+    middle_velocity = next_u = v = effective = u;
+    memory.assign(decay.size(), u);
+  }
+
+
+
+  void
+  WaveColumn::advance(const Tensor<1, 3> &incident_velocity)
+  {
+    // the same operations as CentralDifference::step
+    u = next_u;
+    for (unsigned int i = 0; i < u.size(); ++i)
+      {
+        effective[i] = stiffness_coefficient * v[i];
+        for (unsigned int k = 0; k < memory.size(); ++k)
+          {
+            memory[k][i] = decay[k] * memory[k][i] + gain[k] * v[i];
+            effective[i] += memory[k][i];
+          }
+      }
+
+    std::vector<Tensor<1, 3>> &force = next_u;
+    std::fill(force.begin(), force.end(), Tensor<1, 3>());
+    for (unsigned int e = 0; e < elements.size(); ++e)
+      {
+        const Element &element = elements[e];
+        for (unsigned int q = 0; q < weights.size(); ++q)
+          {
+            Tensor<1, 3> strain;
+            for (unsigned int i = 0; i <= degree; ++i)
+              strain += gradients[q][i] *
+                        (u[degree * e + i] +
+                         element.damping_factor * effective[degree * e + i]);
+            for (unsigned int d = 0; d < 3; ++d)
+              strain[d] *= weights[q] * element.modulus[d] / element.height;
+            for (unsigned int i = 0; i <= degree; ++i)
+              force[degree * e + i] += gradients[q][i] * strain;
+          }
+      }
+
+    for (unsigned int i = 0; i < u.size(); ++i)
+      for (unsigned int d = 0; d < 3; ++d)
+        {
+          const double dashpot =
+            mass_coefficient * mass[i] + (i == 0 ? impedance[d] : 0.);
+          const double push =
+            (i == 0 ? 2. * impedance[d] * incident_velocity[d] : 0.) -
+            force[i][d];
+          const double before = v[i][d];
+          if (central)
+            {
+              v[i][d] = ((mass[i] - 0.5 * time_step * dashpot) * before +
+                         time_step * push) /
+                        (mass[i] + 0.5 * time_step * dashpot);
+              middle_velocity[i][d] = 0.5 * (before + v[i][d]);
+            }
+          else
+            {
+              v[i][d] += time_step / mass[i] * (push - dashpot * before);
+              middle_velocity[i][d] = before;
+            }
+          next_u[i][d] = u[i][d] + time_step * v[i][d];
+        }
+    for (unsigned int d = 0; d < 3; ++d)
+      base[d] = impedance[d] * (2. * incident_velocity[d] -
+                                middle_velocity[0][d]);
+  }
+
+
+
+  unsigned int
+  WaveColumn::element_at(const double z) const
+  {
+    unsigned int e = 0;
+    while (e + 1 < elements.size() && z >= elements[e + 1].lower)
+      ++e;
+    return e;
+  }
+
+
+
+  WaveColumn::Interpolation
+  WaveColumn::interpolation(const double z) const
+  {
+    const unsigned int e = element_at(z);
+    const double       x = std::min(
+      1., std::max(0., (z - elements[e].lower) / elements[e].height));
+    Interpolation result{degree * e, {}};
+    for (const auto &shape : shapes)
+      result.weights.push_back(shape.value(x));
+    return result;
+  }
+
+
+
+  Tensor<1, 3>
+  WaveColumn::displacement(const Interpolation &at) const
+  {
+    Tensor<1, 3> value;
+    for (unsigned int i = 0; i <= degree; ++i)
+      value += at.weights[i] * u[at.first_node + i];
+    return value;
+  }
+
+
+
+  Tensor<1, 3>
+  WaveColumn::velocity(const Interpolation &at) const
+  {
+    Tensor<1, 3> value;
+    for (unsigned int i = 0; i <= degree; ++i)
+      value += at.weights[i] * middle_velocity[at.first_node + i];
+    return value;
+  }
+
+
+
+  WaveColumn::StressPoint
+  WaveColumn::stress_point(const double z) const
+  {
+    const unsigned int e = element_at(z);
+    StressPoint        point{e, {}};
+    for (const auto &shape : shapes)
+      point.gradients.push_back(
+        shape.derivative().value((z - elements[e].lower) /
+                                 elements[e].height) /
+        elements[e].height);
+    return point;
+  }
+
+
+
+  Tensor<1, 3>
+  WaveColumn::stress(const StressPoint &at) const
+  {
+    const Element &element = elements[at.element];
+    Tensor<1, 3>   strain;
+    for (unsigned int i = 0; i <= degree; ++i)
+      strain += at.gradients[i] *
+                (u[degree * at.element + i] +
+                 element.damping_factor * effective[degree * at.element + i]);
+    for (unsigned int d = 0; d < 3; ++d)
+      strain[d] *= element.modulus[d];
+    return strain;
+  }
+
+
+
+  double
+  WaveColumn::lateral_ratio(const StressPoint &at) const
+  {
+    return elements[at.element].lateral_ratio;
+  }
+
+
+
+  Tensor<1, 3>
+  WaveColumn::base_traction() const
+  {
+    return base;
+  }
+
+
+
+  Tensor<1, 3>
+  WaveColumn::surface_velocity() const
+  {
+    return middle_velocity.back();
+  }
+
+
+
+  double
+  WaveColumn::bottom() const
+  {
+    return elements.front().lower;
+  }
+
+
+
+  double
+  WaveColumn::top() const
+  {
+    return elements.back().lower + elements.back().height;
+  }
+
+
+
+  double
+  WaveColumn::travel_time() const
+  {
+    double sum = 0.;
+    for (const Element &element : elements)
+      sum += element.height / element.s_wave_speed;
+    return sum;
+  }
+
+
+
+  std::vector<WaveColumn::Layer>
+  layers_of_sides(const std::vector<SideFace> &        faces,
+                  const std::vector<ElasticConstants> &constants,
+                  const std::vector<double> &          damping_factors,
+                  const unsigned int                   degree,
+                  const double                         time_step,
+                  const Damping &                      damping)
+  {
+    if (faces.empty())
+      throw UserError("A vertical wave needs the levels of the model's sides, "
+                      "but the mesh has no vertical outer faces; let the model "
+                      "end at planes of constant x or y.");
+    std::vector<double> levels;
+    for (const SideFace &face : faces)
+      {
+        levels.push_back(face.lower);
+        levels.push_back(face.upper);
+      }
+    std::sort(levels.begin(), levels.end());
+    const double tolerance = 1e-9 * (levels.back() - levels.front());
+
+    // the material at a height is that of the largest area of side faces there
+    const auto material_at = [&](const double z) {
+      std::map<unsigned int, double> areas;
+      for (const SideFace &face : faces)
+        if (face.lower <= z && z <= face.upper)
+          areas[face.material] += face.area;
+      return std::max_element(areas.begin(),
+                              areas.end(),
+                              [](const auto &a, const auto &b) {
+                                return a.second < b.second;
+                              })
+        ->first;
+    };
+
+    const double limit = element_limit(degree);
+    std::vector<WaveColumn::Layer> layers;
+    double                         lower = levels.front();
+    for (const double level : levels)
+      {
+        if (level - lower <= tolerance)
+          continue;
+        const unsigned int material = material_at(0.5 * (lower + level));
+        const double       factor   = damping_factors[material];
+        const double       speed =
+          constants[material].p_wave_speed() *
+          std::sqrt(damping.stiffness_scale(factor) *
+                    (1. + factor * damping.stiffening(time_step)));
+        const bool last = levels.back() - level <= tolerance;
+        const bool thin = limit * (level - lower) < time_step * speed;
+        if (thin && !last)
+          continue;
+        if (thin && !layers.empty())
+          layers.back().upper = level;
+        else
+          layers.push_back({lower, level, constants[material], factor});
+        lower = level;
+      }
+    return layers;
+  }
+
+
+
+  ColumnField::ColumnField(WaveColumn &&           wave_column,
+                           GroundMotionSignals &&  incident_motion,
+                           const BoundaryGeometry &geometry)
+    : column(std::move(wave_column))
+    , incident(std::move(incident_motion))
+  {
+    displacement.resize(geometry.nodes.size());
+    velocity = force = displacement;
+
+    // many nodes and points share a level
+    const double tolerance = 1e-6 * (column.top() - column.bottom());
+    const auto   key       = [&](const double z) {
+      return static_cast<long>(std::lround((z - column.bottom()) / tolerance));
+    };
+    std::map<long, unsigned int> level_numbers, stress_numbers;
+    for (const Point<3> &node : geometry.nodes)
+      {
+        const auto [place, is_new] =
+          level_numbers.emplace(key(node[2]), levels.size());
+        if (is_new)
+          levels.push_back(column.interpolation(node[2]));
+        level_of_node.push_back(place->second);
+      }
+    std::map<std::pair<unsigned int, unsigned int>, Tensor<1, 3>> sums;
+    for (const auto &item : geometry.contributions)
+      {
+        unsigned int point = numbers::invalid_unsigned_int;
+        if (std::abs(item.area[2]) < 0.9 * item.area.norm())
+          {
+            const auto [place, is_new] =
+              stress_numbers.emplace(key(item.point[2]), stress_points.size());
+            if (is_new)
+              stress_points.push_back(column.stress_point(item.point[2]));
+            point = place->second;
+          }
+        sums[{item.node, point}] += item.area;
+      }
+    for (const auto &[where, area] : sums)
+      shares.push_back({where.first, where.second, area});
+  }
+
+
+
+  void
+  ColumnField::advance(const double time)
+  {
+    Tensor<1, 3> incident_velocity;
+    for (unsigned int d = 0; d < 3; ++d)
+      if (incident[d])
+        incident_velocity[d] = incident[d]->velocity(time);
+    column.advance(incident_velocity);
+
+    std::vector<Tensor<1, 3>> level_displacement, level_velocity;
+    for (const auto &level : levels)
+      {
+        level_displacement.push_back(column.displacement(level));
+        level_velocity.push_back(column.velocity(level));
+      }
+    for (unsigned int i = 0; i < displacement.size(); ++i)
+      {
+        displacement[i] = level_displacement[level_of_node[i]];
+        velocity[i]     = level_velocity[level_of_node[i]];
+        force[i]        = 0.;
+      }
+
+    std::vector<Tensor<1, 3>> stresses;
+    std::vector<double>       lateral;
+    for (const auto &point : stress_points)
+      {
+        stresses.push_back(column.stress(point));
+        lateral.push_back(column.lateral_ratio(point) * stresses.back()[2]);
+      }
+    const Tensor<1, 3> base = column.base_traction();
+    for (const Share &share : shares)
+      if (share.stress_point == numbers::invalid_unsigned_int)
+        force[share.node] += -share.area[2] * base;
+      else
+        {
+          // sigma n with sigma_xx = sigma_yy = nu/(1-nu) sigma_zz, sigma_xy = 0
+          const Tensor<1, 3> &s = stresses[share.stress_point];
+          const Tensor<1, 3> &n = share.area;
+          force[share.node] +=
+            Tensor<1, 3>({lateral[share.stress_point] * n[0] + s[0] * n[2],
+                          lateral[share.stress_point] * n[1] + s[1] * n[2],
+                          s[0] * n[0] + s[1] * n[1] + s[2] * n[2]});
+        }
+  }
+
+
+
+  GroundMotionSignals
+  incident_for_surface(const WaveColumn &         column,
+                       const GroundMotionSignals &surface,
+                       const double               time_step,
+                       const double               duration,
+                       const double               maximum_frequency)
+  {
+    // the column's answer to a short pulse, until it has died out
+    WaveColumn    trial  = column;
+    const double  width  = 2. / maximum_frequency;
+    const Pulse   pulse(Quantity::velocity, width, 1.);
+    const double  listen = width + 40. * column.travel_time();
+    TimeSeries    excitation{time_step, {}}, response[3];
+    const unsigned int n = static_cast<unsigned int>(listen / time_step);
+    for (auto &series : response)
+      series.time_step = time_step;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const double v = pulse.velocity(i * time_step);
+        trial.advance(Tensor<1, 3>({v, v, v}));
+        excitation.values.push_back(v);
+        for (unsigned int d = 0; d < 3; ++d)
+          response[d].values.push_back(trial.surface_velocity()[d]);
+      }
+
+    GroundMotionSignals incident;
+    for (unsigned int d = 0; d < 3; ++d)
+      if (surface[d])
+        {
+          // the incident wave comes before its answer at the surface
+          const unsigned int delay = static_cast<unsigned int>(
+            std::ceil(2. * column.travel_time() / time_step));
+          TimeSeries target{time_step, std::vector<double>(delay, 0.)};
+          for (unsigned int i = 0; i * time_step <= duration; ++i)
+            target.values.push_back(surface[d]->acceleration(i * time_step));
+          incident[d] = std::make_unique<Tabulated>(TimeSeries{
+            time_step,
+            deconvolve(
+              response[d], excitation, target, maximum_frequency)});
+        }
+    return incident;
+  }
+} // namespace Voussoir

@@ -84,6 +84,10 @@ namespace Voussoir
     double
     inertial_density() const;
 
+    /** Stress at a point by itself, for output [Pa]. */
+    virtual SymmetricTensor3<double>
+    stress(const SymmetricTensor3<double> &strain) const = 0;
+
     /** Cost of a cell relative to a linear elastic one, to balance the ranks. */
     virtual double
     relative_cost() const;
@@ -92,6 +96,10 @@ namespace Voussoir
     double      density        = 2400.;
     double      inertia_factor = 1.;
     double      damping        = 1.;
+
+    /** Factor on the stress under dynamic load, by which the moduli hold at
+     *  the reference frequency of the damping model. */
+    double stiffness_scale = 1.;
   };
 
 
@@ -121,6 +129,12 @@ namespace Voussoir
       return {inertial_density(), law.young_modulus, law.poisson_ratio};
     }
 
+    SymmetricTensor3<double>
+    stress(const SymmetricTensor3<double> &strain) const override
+    {
+      return law.stress(strain);
+    }
+
     void
     add_force(const MatrixFree & matrix_free,
               Vector &           force,
@@ -139,7 +153,7 @@ namespace Voussoir
           cell.evaluate(dealii::EvaluationFlags::gradients);
           for (const unsigned int q : cell.quadrature_point_indices())
             cell.submit_symmetric_gradient(
-              law.stress(cell.get_symmetric_gradient(q)), q);
+              stiffness_scale * law.stress(cell.get_symmetric_gradient(q)), q);
           cell.integrate(dealii::EvaluationFlags::gradients);
           cell.distribute_local_to_global(force);
         }
@@ -169,7 +183,8 @@ namespace Voussoir
             }
           Lanes batch_sum = 0.;
           for (const unsigned int q : cell_u.quadrature_point_indices())
-            batch_sum += law.stress(cell_u.get_symmetric_gradient(q)) *
+            batch_sum += stiffness_scale *
+                         law.stress(cell_u.get_symmetric_gradient(q)) *
                          other->get_symmetric_gradient(q) * cell_u.JxW(q);
           // lanes beyond the last cell of a material hold copies
           for (unsigned int lane = 0;
@@ -208,7 +223,7 @@ namespace Voussoir
           cell.evaluate(dealii::EvaluationFlags::gradients);
           for (const unsigned int q : cell.quadrature_point_indices())
             cell.submit_symmetric_gradient(
-              law.stress(cell.get_symmetric_gradient(q)), q);
+              stiffness_scale * law.stress(cell.get_symmetric_gradient(q)), q);
           cell.integrate(dealii::EvaluationFlags::gradients);
           eigenvalue = 0.;
           for (unsigned int i = 0; i < 3 * n; ++i)

@@ -1,0 +1,102 @@
+#ifndef voussoir_output_energy_h
+#define voussoir_output_energy_h
+
+#include <voussoir/time/central_difference.h>
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+namespace Voussoir
+{
+  /**
+   * Where the energy is and where it went, all in J and half a step before the
+   * time of the state. With kinetic energy v^T M v / 2 of the half step and
+   * strain energy u_n^T K u_(n-1) / 2 the balance of the undamped scheme is
+   * exact, not only to the order of the time step.
+   */
+  struct EnergyTerms
+  {
+    double kinetic = 0.;
+    double strain  = 0.; // cells and boundary springs
+    double memory  = 0.; // in the springs of the Maxwell branches
+    double damping = 0.; // lost in the material so far
+    double boundary = 0.; // gone through the boundary dashpots so far
+    double input   = 0.; // work of all forces and of a moving base so far
+    double constraints = 0.; // work of the projections so far
+
+    double
+    stored() const
+    {
+      return kinetic + strain + memory;
+    }
+
+    /** What is unaccounted for. */
+    double
+    error(const double initial) const
+    {
+      return input + constraints + initial - stored() - damping - boundary;
+    }
+  };
+
+  /**
+   * The energy balance: evaluated at intervals, written to energy.csv, and the
+   * alarm when something goes wrong.
+   */
+  class EnergyBalance
+  {
+  public:
+    EnergyBalance(const Discretization &   discretization,
+                  const InternalForce &    internal_force,
+                  const LumpedMass &       mass,
+                  const Damping &          damping,
+                  const NodalTerms &       terms,
+                  const CentralDifference &scheme,
+                  const std::string &      folder,
+                  const double             start_time,
+                  const bool               restarted);
+
+    /** Evaluates the balance at the state. */
+    const EnergyTerms &
+    evaluate(const State &state);
+
+    const EnergyTerms &
+    latest() const;
+
+    /** Unaccounted energy over the largest input (or initial) energy so far. */
+    double
+    relative_error() const;
+
+    /** Why the run must stop: not finite, or growing without input; else an
+     *  empty text. */
+    std::string
+    alarm() const;
+
+    nlohmann::json
+    summary() const;
+
+    /** Accumulated numbers for a checkpoint. */
+    nlohmann::json
+    save() const;
+
+    void
+    load(const nlohmann::json &saved);
+
+  private:
+    const Discretization &   discretization;
+    const InternalForce &    internal_force;
+    const LumpedMass &       mass;
+    const Damping &          damping;
+    const NodalTerms &       terms;
+    const CentralDifference &scheme;
+
+    EnergyTerms   terms_now;
+    double        initial = 0., largest_turnover = 0., largest_error = 0.;
+    double        last_time = 0., last_loss_rate = 0., mass_loss = 0.;
+    bool          first = true;
+    Vector        work_vector;
+    std::ofstream file;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,78 @@
+#ifndef voussoir_output_observer_h
+#define voussoir_output_observer_h
+
+#include <voussoir/base/registry.h>
+#include <voussoir/fem/internal_force.h>
+#include <voussoir/fem/state.h>
+#include <voussoir/materials/material.h>
+
+#include <nlohmann/json.hpp>
+
+namespace Voussoir
+{
+  /** What observers may see of a case besides its state. */
+  struct ObservedModel
+  {
+    const Discretization &               discretization;
+    const std::vector<const Material *> &materials;
+    std::function<unsigned int(const Grid::Cell &)> material_of_cell;
+    std::string                          folder;
+    double                               time_step; // [s]
+    double                               end_time;  // [s]
+
+    /** Motion of a rigid base (displacement, velocity, acceleration), to which
+     *  the state is relative; zero otherwise. */
+    std::function<std::array<dealii::Tensor<1, 3>, 3>(const double)> base_motion;
+  };
+
+  /**
+   * Something that watches the run: a section of the parameter file under
+   * "Output", called after each step and at the end.
+   */
+  class Observer
+  {
+  public:
+    virtual ~Observer() = default;
+
+    virtual void
+    declare_parameters(dealii::ParameterHandler &prm) = 0;
+
+    /** @p restarted: continue the files of a run that was interrupted at
+     *  @p start_time. */
+    virtual void
+    prepare(const ObservedModel &model,
+            const double         start_time,
+            const bool           restarted) = 0;
+
+    /** Called for the initial state and after each step. */
+    virtual void
+    observe(const State &state) = 0;
+
+    /** Writes what is left and adds to the summary. */
+    virtual void
+    finish(const State &state, nlohmann::json &summary) = 0;
+
+    /** Own vectors that a checkpoint must hold, by name. */
+    virtual std::map<std::string, Vector *>
+    checkpoint_vectors()
+    {
+      return {};
+    }
+  };
+
+  /** Steps at which something with this interval [s] is due. */
+  class Schedule
+  {
+  public:
+    Schedule() = default;
+    Schedule(const double interval, const double time_step);
+
+    bool
+    due(const unsigned long long step) const;
+
+  private:
+    double interval = 0., time_step = 1.;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,160 @@
+#include <voussoir/base/error.h>
+#include <voussoir/loads/absorbing_boundary.h>
+#include <voussoir/loads/oblique_wave.h>
+#include <voussoir/loads/wave_column.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** A signal times a constant. */
+    class Scaled : public Signal
+    {
+    public:
+      Scaled(std::unique_ptr<Signal> &&signal, const double factor)
+        : signal(std::move(signal))
+        , factor(factor)
+      {}
+
+      double
+      displacement(const double time) const override
+      {
+        return factor * signal->displacement(time);
+      }
+
+      double
+      velocity(const double time) const override
+      {
+        return factor * signal->velocity(time);
+      }
+
+      double
+      acceleration(const double time) const override
+      {
+        return factor * signal->acceleration(time);
+      }
+
+      double
+      end() const override
+      {
+        return signal->end();
+      }
+
+    private:
+      std::unique_ptr<Signal> signal;
+      const double            factor;
+    };
+
+
+
+    std::unique_ptr<FreeField>
+    make_oblique_field(const AbsorbingBoundary &boundary,
+                       const Discretization &   discretization,
+                       const ElasticConstants & rock,
+                       const WaveParameters &   wave,
+                       GroundMotionSignals &&   motion)
+    {
+      const auto type = wave.type == "oblique P"  ? ObliqueWave::Type::P :
+                        wave.type == "oblique SV" ? ObliqueWave::Type::SV :
+                                                    ObliqueWave::Type::SH;
+      const double critical =
+        std::asin(rock.s_wave_speed() / rock.p_wave_speed());
+      const double angle = wave.angle * numbers::PI / 180.;
+      if (type == ObliqueWave::Type::SV && angle >= critical)
+        throw UserError(
+          "\"Angle\" in section \"Wave field\" must be below the critical "
+          "angle of this rock, " +
+          std::to_string(critical * 180. / numbers::PI) +
+          " degrees, for an oblique SV wave.");
+
+      // the incident front touches the model's boundary at t = 0
+      const auto &box = boundary.extent();
+      Point<3>    origin(0.5 * (box.first[0] + box.second[0]),
+                      0.5 * (box.first[1] + box.second[1]),
+                      box.second[2]);
+      const double      azimuth = wave.azimuth * numbers::PI / 180.;
+      const ObliqueWave undelayed(type, angle, azimuth, rock, origin, 0.);
+      double            earliest = 0.;
+      for (const Point<3> &node : boundary.geometry().nodes)
+        earliest = std::min(earliest, undelayed.arrival(node));
+      earliest =
+        Utilities::MPI::min(earliest, discretization.grid.communicator());
+
+      for (auto &component : motion)
+        if (component)
+          return std::make_unique<ObliqueField>(
+            ObliqueWave(type, angle, azimuth, rock, origin, -earliest),
+            std::move(component),
+            boundary.geometry());
+      return nullptr;
+    }
+  } // namespace
+
+
+
+  std::unique_ptr<FreeField>
+  make_free_field(const AbsorbingBoundary &            boundary,
+                  const Discretization &               discretization,
+                  const std::vector<const Material *> &materials,
+                  const std::string &                  quadrature,
+                  const Damping &                      damping,
+                  const WaveParameters &               wave,
+                  const std::string &                  given_at,
+                  GroundMotionSignals &&               motion,
+                  const bool                           paper_scheme,
+                  const double                         time_step,
+                  const double                         duration)
+  {
+    const bool vertical = wave.type == "vertical";
+
+    if (!vertical && boundary.materials_at_boundary().size() != 1)
+      throw UserError("\"Type\" in section \"Wave field\" is an oblique wave, "
+                      "which needs one material along the whole absorbing "
+                      "boundary; use \"vertical\" for layered rock.");
+    if (!vertical && given_at == "free surface")
+      throw UserError("\"Given at\" in section \"Ground motion\" cannot be "
+                      "\"free surface\" with an oblique wave; give the "
+                      "incident wave or the motion of an outcrop.");
+
+    // the incident wave at an outcrop is half the motion there
+    if (given_at == "outcrop")
+      for (auto &component : motion)
+        if (component)
+          component = std::make_unique<Scaled>(std::move(component), 0.5);
+
+    if (!vertical)
+      return make_oblique_field(
+        boundary,
+        discretization,
+        materials[boundary.materials_at_boundary()[0]]->elastic_constants(),
+        wave,
+        std::move(motion));
+
+    std::vector<ElasticConstants> constants;
+    std::vector<double>           factors;
+    for (const Material *material : materials)
+      {
+        constants.push_back(material->elastic_constants());
+        factors.push_back(material->damping_factor());
+      }
+    WaveColumn column(layers_of_sides(boundary.side_faces(),
+                                      constants,
+                                      factors,
+                                      discretization.degree,
+                                      time_step,
+                                      damping),
+                      discretization.degree,
+                      quadrature,
+                      damping,
+                      paper_scheme,
+                      time_step);
+    if (given_at == "free surface")
+      motion = incident_for_surface(
+        column, motion, time_step, duration, wave.maximum_frequency);
+    return std::make_unique<ColumnField>(std::move(column),
+                                         std::move(motion),
+                                         boundary.geometry());
+  }
+} // namespace Voussoir

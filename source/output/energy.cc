@@ -1,0 +1,205 @@
+#include <voussoir/output/energy.h>
+
+#include <iomanip>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  EnergyBalance::EnergyBalance(const Discretization &   discretization,
+                               const InternalForce &    internal_force,
+                               const LumpedMass &       mass,
+                               const Damping &          damping,
+                               const NodalTerms &       terms,
+                               const CentralDifference &scheme,
+                               const std::string &      folder,
+                               const double             start_time,
+                               const bool               restarted)
+    : discretization(discretization)
+    , internal_force(internal_force)
+    , mass(mass)
+    , damping(damping)
+    , terms(terms)
+    , scheme(scheme)
+    , work_vector(discretization.create_vector())
+  {
+    if (folder.empty() ||
+        Utilities::MPI::this_mpi_process(discretization.grid.communicator()) !=
+          0)
+      return;
+    const std::string        name = folder + "/energy.csv";
+    std::vector<std::string> kept;
+    if (restarted)
+      {
+        std::ifstream old(name);
+        for (std::string line; std::getline(old, line);)
+          if (kept.empty() ||
+              std::strtod(line.c_str(), nullptr) <= start_time)
+            kept.push_back(line);
+      }
+    file.open(name);
+    file << std::setprecision(9);
+    if (kept.empty())
+      kept.push_back("time [s],kinetic [J],strain [J],memory [J],damping [J],"
+                     "boundary [J],input [J],constraints [J],unaccounted [J]");
+    for (const std::string &line : kept)
+      file << line << '\n';
+  }
+
+
+
+  const EnergyTerms &
+  EnergyBalance::evaluate(const State &state)
+  {
+    const double dt = scheme.time_step;
+
+    // local sums first, then one reduction
+    double kinetic = 0.;
+    for (unsigned int i = 0; i < state.velocity.locally_owned_size(); ++i)
+      {
+        const double v = state.velocity.local_element(i);
+        kinetic += 0.5 * mass.mass.local_element(i) * v * v;
+        work_vector.local_element(i) =
+          state.displacement.local_element(i) - dt * v;
+      }
+    std::vector<double> sums{
+      kinetic,
+      terms.spring_energy(state.displacement, state.velocity),
+      terms.loss_in_dashpots,
+      terms.work_of_forces + scheme.work_of_base,
+      scheme.work_of_projections,
+      scheme.loss_by_mass};
+    sums = Utilities::MPI::sum(sums, discretization.grid.communicator());
+
+    terms_now.kinetic = sums[0];
+    terms_now.strain =
+      0.5 * internal_force.work(state.displacement, work_vector) + sums[1];
+    terms_now.boundary    = sums[2];
+    terms_now.input       = sums[3];
+    terms_now.constraints = sums[4];
+
+    // branch i is a spring D_i s K with a dashpot: stored w^T K w / (2 D_i / s),
+    // lost w^T K w / (D_i tau_i) per time
+    double loss_rate = 0.;
+    terms_now.memory = 0.;
+    for (unsigned int i = 0; i < state.memory.size(); ++i)
+      if (damping.coefficients[i] > 0.)
+        {
+          const double work =
+            internal_force.work(state.memory[i], state.memory[i], true);
+          terms_now.memory += 0.5 * work / damping.coefficients[i];
+          loss_rate +=
+            work / (damping.coefficients[i] * damping.relaxation_times[i]);
+        }
+    if (damping.stiffness_coefficient > 0.)
+      loss_rate += damping.stiffness_coefficient *
+                   internal_force.work(state.velocity, state.velocity, true);
+    const double mass_loss_before = mass_loss;
+    mass_loss                     = sums[5];
+    if (first)
+      {
+        initial = terms_now.stored();
+        first   = false;
+      }
+    else
+      terms_now.damping += 0.5 * (loss_rate + last_loss_rate) *
+                             (state.time - last_time) +
+                           mass_loss - mass_loss_before;
+    last_loss_rate = loss_rate;
+    last_time      = state.time;
+
+    largest_turnover =
+      std::max({largest_turnover,
+                std::abs(terms_now.input + terms_now.constraints),
+                terms_now.boundary,
+                initial});
+    if (largest_turnover > 0.)
+      largest_error = std::max(largest_error,
+                               std::abs(terms_now.error(initial)) /
+                                 largest_turnover);
+    if (file.is_open())
+      file << state.time << ',' << terms_now.kinetic << ',' << terms_now.strain
+           << ',' << terms_now.memory << ',' << terms_now.damping << ','
+           << terms_now.boundary << ',' << terms_now.input << ','
+           << terms_now.constraints << ',' << terms_now.error(initial)
+           << std::endl;
+    return terms_now;
+  }
+
+
+
+  const EnergyTerms &
+  EnergyBalance::latest() const
+  {
+    return terms_now;
+  }
+
+
+
+  double
+  EnergyBalance::relative_error() const
+  {
+    return largest_turnover > 0. ?
+             std::abs(terms_now.error(initial)) / largest_turnover :
+             0.;
+  }
+
+
+
+  std::string
+  EnergyBalance::alarm() const
+  {
+    if (!std::isfinite(terms_now.stored()))
+      return "the motion is no longer finite (NaN or infinite)";
+    if (terms_now.stored() > 100. * (largest_turnover + 1e-9))
+      return "the stored energy has grown to a hundred times all energy that "
+             "came in";
+    return "";
+  }
+
+
+
+  nlohmann::json
+  EnergyBalance::summary() const
+  {
+    return {{"kinetic [J]", terms_now.kinetic},
+            {"strain [J]", terms_now.strain},
+            {"damping memory [J]", terms_now.memory},
+            {"lost in damping [J]", terms_now.damping},
+            {"gone through the boundary [J]", terms_now.boundary},
+            {"input [J]", terms_now.input},
+            {"work of constraints [J]", terms_now.constraints},
+            {"initial [J]", initial},
+            {"unaccounted, share of the input", relative_error()},
+            {"largest unaccounted share", largest_error}};
+  }
+
+
+
+  nlohmann::json
+  EnergyBalance::save() const
+  {
+    return {{"damping", terms_now.damping},
+            {"initial", initial},
+            {"largest_turnover", largest_turnover},
+            {"largest_error", largest_error},
+            {"last_time", last_time},
+            {"last_loss_rate", last_loss_rate},
+            {"mass_loss", mass_loss}};
+  }
+
+
+
+  void
+  EnergyBalance::load(const nlohmann::json &saved)
+  {
+    terms_now.damping = saved.at("damping");
+    initial           = saved.at("initial");
+    largest_turnover  = saved.at("largest_turnover");
+    largest_error     = saved.at("largest_error");
+    last_time         = saved.at("last_time");
+    last_loss_rate    = saved.at("last_loss_rate");
+    mass_loss         = saved.at("mass_loss");
+    first             = false;
+  }
+} // namespace Voussoir

@@ -6,10 +6,10 @@
 namespace Voussoir
 {
   Log::Log(const MPI_Comm communicator, const bool quiet)
-    : speaks(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+    : mpi_communicator(communicator)
+    , speaks(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
     , quiet(quiet)
   {}
-
 
 
   void
@@ -20,7 +20,6 @@ namespace Voussoir
     file.open(filename, append ? std::ios::app : std::ios::trunc);
     file << said_before_open << std::flush;
   }
-
 
 
   void
@@ -36,6 +35,12 @@ namespace Voussoir
       said_before_open += text;
   }
 
+
+  MPI_Comm
+  Log::communicator() const
+  {
+    return mpi_communicator;
+  }
 
 
   std::string

@@ -46,8 +46,8 @@ namespace Voussoir
 
     struct Declared
     {
-      std::string                                          section;
-      std::unique_ptr<dealii::Patterns::PatternBase>       pattern;
+      std::string                                    section;
+      std::unique_ptr<dealii::Patterns::PatternBase> pattern;
     };
 
     // All entries that prm knows, by path. ParameterHandler has no way to ask
@@ -79,7 +79,6 @@ namespace Voussoir
   } // namespace
 
 
-
   std::vector<std::string>
   split_list(const std::string &list, const char separator)
   {
@@ -92,8 +91,7 @@ namespace Voussoir
   }
 
 
-
-  ParameterFile::ParameterFile(const std::string &             filename,
+  ParameterFile::ParameterFile(const std::string              &filename,
                                const std::vector<std::string> &changes)
     : filename(filename)
   {
@@ -113,7 +111,6 @@ namespace Voussoir
   }
 
 
-
   void
   ParameterFile::read(const std::string &filename)
   {
@@ -126,8 +123,7 @@ namespace Voussoir
     std::string              line;
     for (unsigned int number = 1; std::getline(in, line); ++number)
       {
-        const std::string place =
-          filename + ", line " + std::to_string(number);
+        const std::string place = filename + ", line " + std::to_string(number);
         // a backslash at the end continues the line
         while (!line.empty() && trim(line).size() > 0 &&
                trim(line).back() == '\\')
@@ -184,7 +180,6 @@ namespace Voussoir
   }
 
 
-
   std::string
   ParameterFile::given(const std::string &path,
                        const std::string &otherwise) const
@@ -192,7 +187,6 @@ namespace Voussoir
     const auto value = values.find(path);
     return value == values.end() ? otherwise : value->second.text;
   }
-
 
 
   void
@@ -236,13 +230,12 @@ namespace Voussoir
                             known_names(entry_of(path), siblings) + ".");
           }
         if (!entry->second.pattern->match(value.text))
-          throw UserError(
-            value.place + ": \"" + entry_of(path) + "\" " +
-            in_section(section) + " cannot be \"" + value.text +
-            "\"; allowed is: " +
-            entry->second.pattern->description(
-              dealii::Patterns::PatternBase::Text) +
-            ".");
+          throw UserError(value.place + ": \"" + entry_of(path) + "\" " +
+                          in_section(section) + " cannot be \"" + value.text +
+                          "\"; allowed is: " +
+                          entry->second.pattern->description(
+                            dealii::Patterns::PatternBase::Text) +
+                          ".");
 
         const auto names = split_list(section, '/');
         for (const std::string &name : names)
@@ -254,6 +247,12 @@ namespace Voussoir
   }
 
 
+  std::string
+  ParameterFile::name() const
+  {
+    return std::filesystem::path(filename).stem().string();
+  }
+
 
   std::string
   ParameterFile::folder() const
@@ -261,7 +260,6 @@ namespace Voussoir
     const auto parent = std::filesystem::path(filename).parent_path().string();
     return parent.empty() ? "." : parent;
   }
-
 
 
   std::string

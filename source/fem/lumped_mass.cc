@@ -1,7 +1,7 @@
+#include <voussoir/base/mpi.h>
 #include <voussoir/fem/lumped_mass.h>
 
 #include <deal.II/base/quadrature_lib.h>
-
 #include <deal.II/fe/fe_q.h>
 
 namespace Voussoir
@@ -22,7 +22,6 @@ namespace Voussoir
   }
 
 
-
   const std::vector<double> &
   NodalVolumes::of(const Triangulation<3>::active_cell_iterator &cell)
   {
@@ -33,11 +32,10 @@ namespace Voussoir
   }
 
 
-
   LumpedMass::LumpedMass(
-    const Discretization &     discretization,
-    const std::vector<double> &density,
-    const std::vector<double> &driven_density,
+    const Discretization                                  &discretization,
+    const std::vector<double>                             &density,
+    const std::vector<double>                             &driven_density,
     const std::function<unsigned int(const Grid::Cell &)> &material_of_cell)
     : mass(discretization.create_vector())
     , inverse(mass)
@@ -50,16 +48,16 @@ namespace Voussoir
                 communicator);
     Vector         full_driven(full);
 
-    const auto &        scalar = discretization.fe.base_element(0);
-    NodalVolumes        nodal_volumes(discretization);
-    dealii::Vector<double>      cell_mass(discretization.fe.n_dofs_per_cell());
-    dealii::Vector<double>      cell_driven(cell_mass);
+    const auto            &scalar = discretization.fe.base_element(0);
+    NodalVolumes           nodal_volumes(discretization);
+    dealii::Vector<double> cell_mass(discretization.fe.n_dofs_per_cell());
+    dealii::Vector<double> cell_driven(cell_mass);
     std::vector<types::global_dof_index> dofs(cell_mass.size());
     for (const auto &cell : discretization.dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         {
           const unsigned int material = material_of_cell(cell);
-          const auto &       volumes  = nodal_volumes.of(cell);
+          const auto        &volumes  = nodal_volumes.of(cell);
           for (unsigned int j = 0; j < scalar.n_dofs_per_cell(); ++j)
             {
               total[material] += density[material] * volumes[j];
@@ -82,7 +80,7 @@ namespace Voussoir
         }
     full.compress(VectorOperation::add);
     full_driven.compress(VectorOperation::add);
-    total = Utilities::MPI::sum(total, communicator);
+    total = sum_over_ranks(total, communicator);
 
     for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
       if (!discretization.constraints.is_constrained(

@@ -8,6 +8,7 @@
 #  define FE_EVAL_FACTORY_DEGREE_MAX 4
 
 #  include <deal.II/matrix_free/dof_info.templates.h>
+#  include <deal.II/matrix_free/evaluation_template_face_factory.templates.h>
 #  include <deal.II/matrix_free/evaluation_template_factory_hanging_nodes.templates.h>
 #  include <deal.II/matrix_free/mapping_info.templates.h>
 #  include <deal.II/matrix_free/matrix_free.templates.h>
@@ -25,6 +26,9 @@ MatrixFree<3, double, VectorizedArray<double>>::internal_reinit<double, 3>(
   const std::vector<IndexSet> &,
   const std::vector<hp::QCollection<3>> &,
   const AdditionalData &);
+
+// used where the geometry of faces is prepared
+template struct internal::FEFaceEvaluationFactory<3, VectorizedArray<double>>;
 
 template struct internal::
   FEEvaluationHangingNodesFactory<3, double, VectorizedArray<double>>;

@@ -1,3 +1,4 @@
+#include <voussoir/base/mpi.h>
 #include <voussoir/base/text.h>
 #include <voussoir/fem/stable_step.h>
 
@@ -26,14 +27,13 @@ namespace Voussoir
     }
 
 
-
     // Largest eigenvalue of M^-1/2 A M^-1/2 by Lanczos, which approaches it
     // from below and fast, as it lies at the end of the spectrum.
     double
     largest_eigenvalue(
-      const Discretization &                                 discretization,
-      const LumpedMass &                                     mass,
-      const std::function<void(Vector &, const Vector &)> &  apply)
+      const Discretization                                &discretization,
+      const LumpedMass                                    &mass,
+      const std::function<void(Vector &, const Vector &)> &apply)
     {
       constexpr unsigned int max_iterations = 400;
       Vector                 root(mass.inverse); // M^-1/2
@@ -86,26 +86,24 @@ namespace Voussoir
   } // namespace
 
 
-
   double
   stable_step(const Discretization &discretization,
-              const InternalForce & force,
-              const LumpedMass &    mass,
-              const StepLimits &    limits)
+              const InternalForce  &force,
+              const LumpedMass     &mass,
+              const StepLimits     &limits)
   {
     Vector     memory = discretization.create_vector();
     const auto limit  = [&](const double dt) {
       const double gamma = limits.stiffening(dt);
       const auto   apply = [&](Vector &dst, const Vector &src) {
         memory.equ(gamma, src);
-        force.sweep(
-          dst,
-          src,
-          &memory,
-          [&](const unsigned int begin, const unsigned int end) {
-            std::fill(dst.begin() + begin, dst.begin() + end, 0.);
-          },
-          {});
+        force.sweep(dst,
+                    src,
+                    &memory,
+                    [&](const unsigned int begin, const unsigned int end) {
+                      std::fill(dst.begin() + begin, dst.begin() + end, 0.);
+                    },
+                    {});
         limits.add_diagonal(dst, src, dt);
       };
       return 2. / std::sqrt(largest_eigenvalue(discretization, mass, apply));
@@ -116,34 +114,33 @@ namespace Voussoir
     double log_dt = std::log(limit(1e30));
     for (unsigned int iteration = 0; iteration < 20; ++iteration)
       {
-        const double first  = std::log(limit(std::exp(log_dt)));
+        const double first = std::log(limit(std::exp(log_dt)));
         if (std::abs(first - log_dt) < 1e-5)
           return std::exp(first);
         const double second = std::log(limit(std::exp(first)));
         if (std::abs(second - first) < 1e-5)
           return std::exp(second);
-        log_dt -= (first - log_dt) * (first - log_dt) /
-                  (second - 2. * first + log_dt);
+        log_dt -=
+          (first - log_dt) * (first - log_dt) / (second - 2. * first + log_dt);
       }
     return std::exp(log_dt);
   }
 
 
-
   ElementSteps::ElementSteps(const Discretization &discretization,
                              const std::vector<const CellKernel *> &kernels,
-                             const std::vector<double> &            density)
+                             const std::vector<double>             &density)
     : smallest(std::numeric_limits<double>::max())
   {
-    const auto &        matrix_free = discretization.matrix_free;
+    const auto         &matrix_free = discretization.matrix_free;
     const unsigned int  n_batches   = matrix_free.n_cell_batches();
     NodalVolumes        nodal_volumes(discretization);
     std::vector<double> steps;
     const unsigned int  n_nodes =
       discretization.fe.base_element(0).n_dofs_per_cell();
     AlignedVector<Lanes> masses(n_nodes);
-    const auto &lexicographic = matrix_free.get_shape_info()
-                                  .lexicographic_numbering;
+    const auto          &lexicographic =
+      matrix_free.get_shape_info().lexicographic_numbering;
     for (unsigned int batch = 0; batch < n_batches; ++batch)
       {
         const unsigned int material = discretization.material_of_batch[batch];
@@ -152,7 +149,8 @@ namespace Voussoir
         for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
           {
             const auto &volumes = nodal_volumes.of(
-              matrix_free.get_cell_iterator(batch, std::min(lane, n_lanes - 1)));
+              matrix_free.get_cell_iterator(batch,
+                                            std::min(lane, n_lanes - 1)));
             // numbered by component in lexicographic_numbering: its first
             // n_nodes entries are those of the first component
             for (unsigned int i = 0; i < n_nodes; ++i)
@@ -162,8 +160,8 @@ namespace Voussoir
                           .system_to_component_index(lexicographic[i])
                           .second];
           }
-        const Lanes rates = kernels[material]->element_eigenvalues(
-          matrix_free, batch, masses);
+        const Lanes rates =
+          kernels[material]->element_eigenvalues(matrix_free, batch, masses);
         for (unsigned int lane = 0; lane < n_lanes; ++lane)
           {
             const double step = 2. / std::sqrt(rates[lane]);
@@ -189,9 +187,11 @@ namespace Voussoir
       communicator,
       std::make_tuple(smallest, place[0], place[1], place[2], sets));
     const auto least =
-      *std::min_element(all.begin(), all.end(), [](const auto &a, const auto &b) {
-        return std::get<0>(a) < std::get<0>(b);
-      });
+      *std::min_element(all.begin(),
+                        all.end(),
+                        [](const auto &a, const auto &b) {
+                          return std::get<0>(a) < std::get<0>(b);
+                        });
     smallest = std::get<0>(least);
     place =
       Point<3>(std::get<1>(least), std::get<2>(least), std::get<3>(least));
@@ -200,12 +200,10 @@ namespace Voussoir
     // bins of 25 % width each
     histogram.resize(12);
     for (const double step : steps)
-      ++histogram[std::min<std::size_t>(histogram.size() - 1,
-                                        std::log(step / smallest) /
-                                          std::log(1.25))];
-    histogram = Utilities::MPI::sum(histogram, communicator);
+      ++histogram[std::min<std::size_t>(
+        histogram.size() - 1, std::log(step / smallest) / std::log(1.25))];
+    histogram = sum_over_ranks(histogram, communicator);
   }
-
 
 
   void

@@ -3,7 +3,6 @@
 #include <voussoir/loads/absorbing_boundary.h>
 
 #include <deal.II/base/quadrature_lib.h>
-
 #include <deal.II/fe/fe_values.h>
 
 #include <set>
@@ -52,15 +51,12 @@ namespace Voussoir
   }
 
 
-
   void
   BoundaryParameters::check(const Grid &grid) const
   {
     std::map<std::string, std::string> kind_of_set;
-    for (const auto &[kind, list] :
-         std::map<std::string, std::string>{{"Fixed", fixed},
-                                            {"Roller", roller},
-                                            {"Absorbing", absorbing}})
+    for (const auto &[kind, list] : std::map<std::string, std::string>{
+           {"Fixed", fixed}, {"Roller", roller}, {"Absorbing", absorbing}})
       for (const std::string &set : split_list(list))
         {
           grid.check_face_set(set,
@@ -74,7 +70,6 @@ namespace Voussoir
   }
 
 
-
   std::vector<Support>
   BoundaryParameters::supports() const
   {
@@ -85,7 +80,6 @@ namespace Voussoir
       result.push_back({set, true});
     return result;
   }
-
 
 
   void
@@ -124,10 +118,9 @@ namespace Voussoir
   }
 
 
-
   BoundaryCoefficients
-  BoundaryCoefficients::of(const std::string &     absorbing_type,
-                           const std::string &     set,
+  BoundaryCoefficients::of(const std::string      &absorbing_type,
+                           const std::string      &set,
                            const ElasticConstants &rock)
   {
     const double G = rock.shear_modulus();
@@ -140,7 +133,7 @@ namespace Voussoir
       {"Liu 2D", {{G, G / 2., 1.}}},
       {"Deeks-Randolph", {{G, G / 2., 1.}}},
       {"Du-Zhao", {{M / 1.8, G / 1.8, 1.1}}}};
-    const auto & [normal, tangential, dashpot] = sets.at(set);
+    const auto &[normal, tangential, dashpot] = sets.at(set);
     const double springs = absorbing_type == "viscous" ? 0. : 1.;
     const double factor  = absorbing_type == "viscous" ? 1. : dashpot;
     return {springs * normal,
@@ -150,14 +143,13 @@ namespace Voussoir
   }
 
 
-
   AbsorbingBoundary::AbsorbingBoundary(
-    const Discretization &               discretization,
-    const BoundaryParameters &           parameters,
-    const std::vector<const Material *> &materials,
+    const Discretization                                  &discretization,
+    const BoundaryParameters                              &parameters,
+    const std::vector<const Material *>                   &materials,
     const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
-    const std::string &                                    quadrature,
-    NodalTerms &                                           terms)
+    const std::string                                     &quadrature,
+    NodalTerms                                            &terms)
   {
     const Grid &grid   = discretization.grid;
     const auto &scalar = discretization.fe.base_element(0);
@@ -168,7 +160,7 @@ namespace Voussoir
       quadrature == "Gauss" ?
         static_cast<Quadrature<2>>(QGauss<2>(discretization.degree + 1)) :
         static_cast<Quadrature<2>>(QGaussLobatto<2>(discretization.degree + 1));
-    const auto    flags = update_values | update_quadrature_points |
+    const auto flags = update_values | update_quadrature_points |
                        update_normal_vectors | update_JxW_values;
     FEFaceValues<3> at_nodes(discretization.mapping,
                              scalar,
@@ -193,10 +185,12 @@ namespace Voussoir
     Point<3> lower(1e300, 1e300, 1e300), upper(-1e300, -1e300, -1e300);
 
     const auto visit = [&](const auto &cell, const unsigned int face) {
-      const unsigned int      material = material_of_cell(cell);
-      const ElasticConstants  rock  = materials[material]->elastic_constants();
-      const auto coefficients = BoundaryCoefficients::of(
-        parameters.absorbing_type, parameters.coefficients, rock);
+      const unsigned int     material = material_of_cell(cell);
+      const ElasticConstants rock = materials[material]->elastic_constants();
+      const auto             coefficients =
+        BoundaryCoefficients::of(parameters.absorbing_type,
+                                 parameters.coefficients,
+                                 rock);
       const auto nodes =
         discretization.cell_nodes(discretization.dof_cell(cell));
       touching.insert(material);
@@ -210,12 +204,12 @@ namespace Voussoir
               for (const unsigned int q : at_nodes.quadrature_point_indices())
                 if (at_nodes.shape_value(j, q) > 0.5)
                   {
-                    const Tensor<1, 3> n = at_nodes.normal_vector(q);
-                    const double area    = at_nodes.JxW(q) * share.weight;
-                    const Point<3> &x    = at_nodes.quadrature_point(q);
-                    const double    r    = parameters.radius > 0. ?
-                                             parameters.radius :
-                                             x.distance(parameters.source);
+                    const Tensor<1, 3> n    = at_nodes.normal_vector(q);
+                    const double       area = at_nodes.JxW(q) * share.weight;
+                    const Point<3>    &x    = at_nodes.quadrature_point(q);
+                    const double       r    = parameters.radius > 0. ?
+                                                parameters.radius :
+                                                x.distance(parameters.source);
                     // t I + (n - t) n n^T
                     NodalTerms::Matrix spring, dashpot;
                     for (unsigned int d = 0; d < 3; ++d)
@@ -223,10 +217,9 @@ namespace Voussoir
                         {
                           const double nn = n[d] * n[e];
                           const double tt = (d == e ? 1. : 0.) - nn;
-                          spring[d][e] =
-                            area / r *
-                            (coefficients.normal_spring * nn +
-                             coefficients.tangential_spring * tt);
+                          spring[d][e]    = area / r *
+                                         (coefficients.normal_spring * nn +
+                                          coefficients.tangential_spring * tt);
                           dashpot[d][e] =
                             area * (coefficients.normal_dashpot * nn +
                                     coefficients.tangential_dashpot * tt);
@@ -250,10 +243,9 @@ namespace Voussoir
                   for (unsigned int d = 0; d < 3; ++d)
                     {
                       record.point[d] = at_points.quadrature_point(q)[d];
-                      record.area[d]  = share.weight *
-                                       at_points.shape_value(j, q) *
-                                       at_points.normal_vector(q)[d] *
-                                       at_points.JxW(q);
+                      record.area[d] =
+                        share.weight * at_points.shape_value(j, q) *
+                        at_points.normal_vector(q)[d] * at_points.JxW(q);
                     }
                   tractions.emplace_back(share.node, record);
                 }
@@ -263,7 +255,8 @@ namespace Voussoir
       grid.for_each_face(set, visit);
 
     std::map<unsigned int, unsigned int> boundary_number;
-    for (const auto &[node, record] : discretization.send_to_owners(stiffnesses))
+    for (const auto &[node, record] :
+         discretization.send_to_owners(stiffnesses))
       {
         const auto [place, is_new] =
           boundary_number.emplace(node, boundary.nodes.size());
@@ -298,8 +291,8 @@ namespace Voussoir
       }
     for (const auto &others :
          Utilities::MPI::all_gather(grid.communicator(),
-                                    std::vector<unsigned int>(
-                                      touching.begin(), touching.end())))
+                                    std::vector<unsigned int>(touching.begin(),
+                                                              touching.end())))
       touching.insert(others.begin(), others.end());
     touching_materials.assign(touching.begin(), touching.end());
 
@@ -330,9 +323,8 @@ namespace Voussoir
               collect(cell, face);
     std::vector<double> packed;
     for (const SideFace &side : sides)
-      packed.insert(
-        packed.end(),
-        {side.lower, side.upper, side.area, double(side.material)});
+      packed.insert(packed.end(),
+                    {side.lower, side.upper, side.area, double(side.material)});
     sides.clear();
     for (const auto &part :
          Utilities::MPI::all_gather(grid.communicator(), packed))
@@ -344,13 +336,11 @@ namespace Voussoir
   }
 
 
-
   void
   AbsorbingBoundary::set_free_field(std::unique_ptr<FreeField> &&free_field)
   {
     field = std::move(free_field);
   }
-
 
 
   const BoundaryGeometry &
@@ -360,13 +350,11 @@ namespace Voussoir
   }
 
 
-
   const std::vector<SideFace> &
   AbsorbingBoundary::side_faces() const
   {
     return sides;
   }
-
 
 
   const std::pair<Point<3>, Point<3>> &
@@ -376,13 +364,11 @@ namespace Voussoir
   }
 
 
-
   const std::vector<unsigned int> &
   AbsorbingBoundary::materials_at_boundary() const
   {
     return touching_materials;
   }
-
 
 
   void
@@ -395,5 +381,13 @@ namespace Voussoir
       terms.forces[slots[i]] += springs[i] * field->displacement[i] +
                                 dashpots[i] * field->velocity[i] +
                                 field->force[i];
+  }
+
+
+  void
+  AbsorbingBoundary::replay(const double time)
+  {
+    if (field)
+      field->replay(time);
   }
 } // namespace Voussoir

@@ -39,8 +39,7 @@ namespace Voussoir
       const QGaussLobatto<1> lobatto(degree + 1);
       const QGauss<1>        gauss(degree + 1);
       std::vector<Point<1>>  points = lobatto.get_points();
-      const auto             shapes =
-        Polynomials::generate_complete_Lagrange_basis(points);
+      const auto shapes = Polynomials::generate_complete_Lagrange_basis(points);
       std::vector<double> mode(degree + 1), product(degree + 1);
       for (unsigned int i = 0; i <= degree; ++i)
         mode[i] = (i % 2 == 0 ? 1. : -1.) + 0.1 * i;
@@ -55,8 +54,8 @@ namespace Voussoir
               for (unsigned int i = 0; i <= degree; ++i)
                 gradient += shapes[i].derivative().value(x) * mode[i];
               for (unsigned int i = 0; i <= degree; ++i)
-                product[i] += gauss.weight(q) * gradient *
-                              shapes[i].derivative().value(x);
+                product[i] +=
+                  gauss.weight(q) * gradient * shapes[i].derivative().value(x);
             }
           double norm = 0.;
           for (unsigned int i = 0; i <= degree; ++i)
@@ -73,11 +72,10 @@ namespace Voussoir
   } // namespace
 
 
-
   WaveColumn::WaveColumn(const std::vector<Layer> &layers,
                          const unsigned int        degree,
-                         const std::string &       quadrature,
-                         const Damping &           damping,
+                         const std::string        &quadrature,
+                         const Damping            &damping,
                          const bool                paper_scheme,
                          const double              time_step)
     : degree(degree)
@@ -106,8 +104,7 @@ namespace Voussoir
         const double            height = layer.upper - layer.lower;
         const double scale = damping.stiffness_scale(layer.damping_factor);
         const double G     = scale * c.shear_modulus();
-        const double M =
-          scale * (c.lame_lambda() + 2. * c.shear_modulus());
+        const double M     = scale * (c.lame_lambda() + 2. * c.shear_modulus());
         for (unsigned int i = 0; i <= degree; ++i)
           mass[degree * elements.size() + i] +=
             c.density * height * lobatto.weight(i);
@@ -119,7 +116,7 @@ namespace Voussoir
                             c.s_wave_speed()});
       }
     const ElasticConstants &rock = layers.front().constants;
-    const double            S = rock.density * rock.s_wave_speed();
+    const double            S    = rock.density * rock.s_wave_speed();
     impedance = Tensor<1, 3>({S, S, rock.density * rock.p_wave_speed()});
 
     for (unsigned int i = 0; i < damping.n_branches(); ++i)
@@ -132,7 +129,6 @@ namespace Voussoir
     middle_velocity = next_u = v = effective = u;
     memory.assign(decay.size(), u);
   }
-
 
 
   void
@@ -193,10 +189,9 @@ namespace Voussoir
           next_u[i][d] = u[i][d] + time_step * v[i][d];
         }
     for (unsigned int d = 0; d < 3; ++d)
-      base[d] = impedance[d] * (2. * incident_velocity[d] -
-                                middle_velocity[0][d]);
+      base[d] =
+        impedance[d] * (2. * incident_velocity[d] - middle_velocity[0][d]);
   }
-
 
 
   unsigned int
@@ -209,19 +204,17 @@ namespace Voussoir
   }
 
 
-
   WaveColumn::Interpolation
   WaveColumn::interpolation(const double z) const
   {
     const unsigned int e = element_at(z);
-    const double       x = std::min(
-      1., std::max(0., (z - elements[e].lower) / elements[e].height));
+    const double       x =
+      std::min(1., std::max(0., (z - elements[e].lower) / elements[e].height));
     Interpolation result{degree * e, {}};
     for (const auto &shape : shapes)
       result.weights.push_back(shape.value(x));
     return result;
   }
-
 
 
   Tensor<1, 3>
@@ -234,7 +227,6 @@ namespace Voussoir
   }
 
 
-
   Tensor<1, 3>
   WaveColumn::velocity(const Interpolation &at) const
   {
@@ -245,7 +237,6 @@ namespace Voussoir
   }
 
 
-
   WaveColumn::StressPoint
   WaveColumn::stress_point(const double z) const
   {
@@ -253,12 +244,10 @@ namespace Voussoir
     StressPoint        point{e, {}};
     for (const auto &shape : shapes)
       point.gradients.push_back(
-        shape.derivative().value((z - elements[e].lower) /
-                                 elements[e].height) /
+        shape.derivative().value((z - elements[e].lower) / elements[e].height) /
         elements[e].height);
     return point;
   }
-
 
 
   Tensor<1, 3>
@@ -276,13 +265,11 @@ namespace Voussoir
   }
 
 
-
   double
   WaveColumn::lateral_ratio(const StressPoint &at) const
   {
     return elements[at.element].lateral_ratio;
   }
-
 
 
   Tensor<1, 3>
@@ -292,13 +279,11 @@ namespace Voussoir
   }
 
 
-
   Tensor<1, 3>
   WaveColumn::surface_velocity() const
   {
     return middle_velocity.back();
   }
-
 
 
   double
@@ -308,13 +293,11 @@ namespace Voussoir
   }
 
 
-
   double
   WaveColumn::top() const
   {
     return elements.back().lower + elements.back().height;
   }
-
 
 
   double
@@ -327,14 +310,13 @@ namespace Voussoir
   }
 
 
-
   std::vector<WaveColumn::Layer>
-  layers_of_sides(const std::vector<SideFace> &        faces,
+  layers_of_sides(const std::vector<SideFace>         &faces,
                   const std::vector<ElasticConstants> &constants,
-                  const std::vector<double> &          damping_factors,
+                  const std::vector<double>           &damping_factors,
                   const unsigned int                   degree,
                   const double                         time_step,
-                  const Damping &                      damping)
+                  const Damping                       &damping)
   {
     if (faces.empty())
       throw UserError("A vertical wave needs the levels of the model's sides, "
@@ -363,7 +345,7 @@ namespace Voussoir
         ->first;
     };
 
-    const double limit = element_limit(degree);
+    const double                   limit = element_limit(degree);
     std::vector<WaveColumn::Layer> layers;
     double                         lower = levels.front();
     for (const double level : levels)
@@ -390,9 +372,8 @@ namespace Voussoir
   }
 
 
-
-  ColumnField::ColumnField(WaveColumn &&           wave_column,
-                           GroundMotionSignals &&  incident_motion,
+  ColumnField::ColumnField(WaveColumn            &&wave_column,
+                           GroundMotionSignals   &&incident_motion,
                            const BoundaryGeometry &geometry)
     : column(std::move(wave_column))
     , incident(std::move(incident_motion))
@@ -433,15 +414,21 @@ namespace Voussoir
   }
 
 
-
   void
-  ColumnField::advance(const double time)
+  ColumnField::replay(const double time)
   {
     Tensor<1, 3> incident_velocity;
     for (unsigned int d = 0; d < 3; ++d)
       if (incident[d])
         incident_velocity[d] = incident[d]->velocity(time);
     column.advance(incident_velocity);
+  }
+
+
+  void
+  ColumnField::advance(const double time)
+  {
+    replay(time);
 
     std::vector<Tensor<1, 3>> level_displacement, level_velocity;
     for (const auto &level : levels)
@@ -480,20 +467,19 @@ namespace Voussoir
   }
 
 
-
   GroundMotionSignals
-  incident_for_surface(const WaveColumn &         column,
+  incident_for_surface(const WaveColumn          &column,
                        const GroundMotionSignals &surface,
                        const double               time_step,
                        const double               duration,
                        const double               maximum_frequency)
   {
     // the column's answer to a short pulse, until it has died out
-    WaveColumn    trial  = column;
-    const double  width  = 2. / maximum_frequency;
-    const Pulse   pulse(Quantity::velocity, width, 1.);
-    const double  listen = width + 40. * column.travel_time();
-    TimeSeries    excitation{time_step, {}}, response[3];
+    WaveColumn         trial = column;
+    const double       width = 2. / maximum_frequency;
+    const Pulse        pulse(Quantity::velocity, width, 1.);
+    const double       listen = width + 40. * column.travel_time();
+    TimeSeries         excitation{time_step, {}}, response[3];
     const unsigned int n = static_cast<unsigned int>(listen / time_step);
     for (auto &series : response)
       series.time_step = time_step;
@@ -518,8 +504,7 @@ namespace Voussoir
             target.values.push_back(surface[d]->acceleration(i * time_step));
           incident[d] = std::make_unique<Tabulated>(TimeSeries{
             time_step,
-            deconvolve(
-              response[d], excitation, target, maximum_frequency)});
+            deconvolve(response[d], excitation, target, maximum_frequency)});
         }
     return incident;
   }

@@ -272,9 +272,8 @@ namespace Voussoir
         for (std::size_t i = 0; i < n; ++i)
           {
             std::array<char, sizeof(Number)> bytes;
-            std::reverse_copy(block.begin() + i * sizeof(Number),
-                              block.begin() + (i + 1) * sizeof(Number),
-                              bytes.begin());
+            for (std::size_t k = 0; k < sizeof(Number); ++k)
+              bytes[k] = block[(i + 1) * sizeof(Number) - 1 - k];
             Number value;
             std::memcpy(&value, bytes.data(), sizeof(Number));
             values.push_back(value);

@@ -1,3 +1,4 @@
+#include <voussoir/base/mpi.h>
 #include <voussoir/output/energy.h>
 
 #include <iomanip>
@@ -6,13 +7,13 @@ namespace Voussoir
 {
   using namespace dealii;
 
-  EnergyBalance::EnergyBalance(const Discretization &   discretization,
-                               const InternalForce &    internal_force,
-                               const LumpedMass &       mass,
-                               const Damping &          damping,
-                               const NodalTerms &       terms,
+  EnergyBalance::EnergyBalance(const Discretization    &discretization,
+                               const InternalForce     &internal_force,
+                               const LumpedMass        &mass,
+                               const Damping           &damping,
+                               const NodalTerms        &terms,
                                const CentralDifference &scheme,
-                               const std::string &      folder,
+                               const std::string       &folder,
                                const double             start_time,
                                const bool               restarted)
     : discretization(discretization)
@@ -23,9 +24,8 @@ namespace Voussoir
     , scheme(scheme)
     , work_vector(discretization.create_vector())
   {
-    if (folder.empty() ||
-        Utilities::MPI::this_mpi_process(discretization.grid.communicator()) !=
-          0)
+    if (folder.empty() || Utilities::MPI::this_mpi_process(
+                            discretization.grid.communicator()) != 0)
       return;
     const std::string        name = folder + "/energy.csv";
     std::vector<std::string> kept;
@@ -33,8 +33,7 @@ namespace Voussoir
       {
         std::ifstream old(name);
         for (std::string line; std::getline(old, line);)
-          if (kept.empty() ||
-              std::strtod(line.c_str(), nullptr) <= start_time)
+          if (kept.empty() || std::strtod(line.c_str(), nullptr) <= start_time)
             kept.push_back(line);
       }
     file.open(name);
@@ -45,7 +44,6 @@ namespace Voussoir
     for (const std::string &line : kept)
       file << line << '\n';
   }
-
 
 
   const EnergyTerms &
@@ -62,14 +60,14 @@ namespace Voussoir
         work_vector.local_element(i) =
           state.displacement.local_element(i) - dt * v;
       }
-    std::vector<double> sums{
-      kinetic,
-      terms.spring_energy(state.displacement, state.velocity),
-      terms.loss_in_dashpots,
-      terms.work_of_forces + scheme.work_of_base,
-      scheme.work_of_projections,
-      scheme.loss_by_mass};
-    sums = Utilities::MPI::sum(sums, discretization.grid.communicator());
+    std::vector<double> sums{kinetic,
+                             terms.spring_energy(state.displacement,
+                                                 state.velocity),
+                             terms.loss_in_dashpots,
+                             terms.work_of_forces + scheme.work_of_base,
+                             scheme.work_of_projections,
+                             scheme.loss_by_mass};
+    sums = sum_over_ranks(sums, discretization.grid.communicator());
 
     terms_now.kinetic = sums[0];
     terms_now.strain =
@@ -78,8 +76,8 @@ namespace Voussoir
     terms_now.input       = sums[3];
     terms_now.constraints = sums[4];
 
-    // branch i is a spring D_i s K with a dashpot: stored w^T K w / (2 D_i / s),
-    // lost w^T K w / (D_i tau_i) per time
+    // branch i is a spring D_i s K with a dashpot: stored w^T K w / (2 D_i /
+    // s), lost w^T K w / (D_i tau_i) per time
     double loss_rate = 0.;
     terms_now.memory = 0.;
     for (unsigned int i = 0; i < state.memory.size(); ++i)
@@ -102,9 +100,9 @@ namespace Voussoir
         first   = false;
       }
     else
-      terms_now.damping += 0.5 * (loss_rate + last_loss_rate) *
-                             (state.time - last_time) +
-                           mass_loss - mass_loss_before;
+      terms_now.damping +=
+        0.5 * (loss_rate + last_loss_rate) * (state.time - last_time) +
+        mass_loss - mass_loss_before;
     last_loss_rate = loss_rate;
     last_time      = state.time;
 
@@ -114,9 +112,9 @@ namespace Voussoir
                 terms_now.boundary,
                 initial});
     if (largest_turnover > 0.)
-      largest_error = std::max(largest_error,
-                               std::abs(terms_now.error(initial)) /
-                                 largest_turnover);
+      largest_error =
+        std::max(largest_error,
+                 std::abs(terms_now.error(initial)) / largest_turnover);
     if (file.is_open())
       file << state.time << ',' << terms_now.kinetic << ',' << terms_now.strain
            << ',' << terms_now.memory << ',' << terms_now.damping << ','
@@ -127,13 +125,11 @@ namespace Voussoir
   }
 
 
-
   const EnergyTerms &
   EnergyBalance::latest() const
   {
     return terms_now;
   }
-
 
 
   double
@@ -143,7 +139,6 @@ namespace Voussoir
              std::abs(terms_now.error(initial)) / largest_turnover :
              0.;
   }
-
 
 
   std::string
@@ -156,7 +151,6 @@ namespace Voussoir
              "came in";
     return "";
   }
-
 
 
   nlohmann::json
@@ -175,7 +169,6 @@ namespace Voussoir
   }
 
 
-
   nlohmann::json
   EnergyBalance::save() const
   {
@@ -187,7 +180,6 @@ namespace Voussoir
             {"last_loss_rate", last_loss_rate},
             {"mass_loss", mass_loss}};
   }
-
 
 
   void

@@ -20,6 +20,10 @@ namespace Voussoir
       }
 
       void
+      check(const ObservedModel &) const override
+      {}
+
+      void
       prepare(const ObservedModel &observed, const double, const bool) override
       {
         model    = std::make_unique<ObservedModel>(observed);
@@ -45,9 +49,9 @@ namespace Voussoir
             const double *v = state.velocity.begin() + i;
             const double *p = previous.begin() + i;
             const double  a[3]{(v[0] - p[0]) / model->time_step,
-                              (v[1] - p[1]) / model->time_step,
-                              (v[2] - p[2]) / model->time_step};
-            double *      m = largest.begin() + i;
+                               (v[1] - p[1]) / model->time_step,
+                               (v[2] - p[2]) / model->time_step};
+            double       *m = largest.begin() + i;
             m[0] = std::max(m[0], norm(state.displacement.begin() + i));
             m[1] = std::max(m[1], norm(v));
             m[2] = std::max(m[2], norm(a));

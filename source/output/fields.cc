@@ -39,10 +39,22 @@ namespace Voussoir
       }
 
       void
+      check(const ObservedModel &model_to_check) const override
+      {
+        for (const double time : times)
+          if (time > model_to_check.end_time)
+            throw UserError("\"Times\" in section \"Output/fields\" names " +
+                            std::to_string(time) +
+                            " s, which lies after the \"End time\" of section "
+                            "\"Time\"; leave it out or compute longer.");
+      }
+
+      void
       prepare(const ObservedModel &observed,
               const double         start_time,
               const bool           restarted) override
       {
+        check(observed);
         model = std::make_unique<ObservedModel>(observed);
         if (restarted)
           {
@@ -59,8 +71,8 @@ namespace Voussoir
       void
       observe(const State &state) override
       {
-        bool due = interval > 0. &&
-                   Schedule(interval, model->time_step).due(state.step);
+        bool due =
+          interval > 0. && Schedule(interval, model->time_step).due(state.step);
         for (const double time : times)
           due = due || std::abs(state.time - time) <= 0.5 * model->time_step;
         if (!due)
@@ -78,20 +90,19 @@ namespace Voussoir
           nodal.push_back({&state.displacement, {"displacement"}});
         if (wants("velocity"))
           nodal.push_back({&state.velocity, {"velocity"}});
-        const bool first =
-          Utilities::MPI::this_mpi_process(
-            model->discretization.grid.communicator()) == 0;
+        const bool first = Utilities::MPI::this_mpi_process(
+                             model->discretization.grid.communicator()) == 0;
         if (first)
           std::filesystem::create_directories(model->folder + "/fields");
         MPI_Barrier(model->discretization.grid.communicator());
-        pictures.emplace_back(
-          state.time,
-          write_fields(*model,
-                       nodal,
-                       wants("principal stress") ? &state.displacement :
-                                                   nullptr,
-                       name.str(),
-                       state.time));
+        pictures.emplace_back(state.time,
+                              write_fields(*model,
+                                           nodal,
+                                           wants("principal stress") ?
+                                             &state.displacement :
+                                             nullptr,
+                                           name.str(),
+                                           state.time));
         if (first)
           {
             std::ofstream pvd(model->folder + "/fields.pvd");
@@ -118,8 +129,8 @@ namespace Voussoir
       std::vector<std::pair<double, std::string>> pictures;
     };
 
-    const Registry<Observer>::Add<Fields>
-      registered("fields",
-                 "The whole model at chosen times, in fields.pvd for ParaView.");
+    const Registry<Observer>::Add<Fields> registered(
+      "fields",
+      "The whole model at chosen times, in fields.pvd for ParaView.");
   } // namespace
 } // namespace Voussoir

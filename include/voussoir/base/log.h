@@ -34,7 +34,11 @@ namespace Voussoir
       (*this)(text.str());
     }
 
+    MPI_Comm
+    communicator() const;
+
   private:
+    MPI_Comm      mpi_communicator;
     const bool    speaks, quiet;
     std::ofstream file;
     std::string   said_before_open;

@@ -28,7 +28,7 @@ namespace Voussoir
      * @param filename the parameter file
      * @param changes  each "Section/Subsection/Entry=value"
      */
-    explicit ParameterFile(const std::string &             filename,
+    explicit ParameterFile(const std::string              &filename,
                            const std::vector<std::string> &changes = {});
 
     /** The value given for an entry ("Section/Entry"), or @p otherwise. */
@@ -42,6 +42,10 @@ namespace Voussoir
      */
     void
     parse(dealii::ParameterHandler &prm) const;
+
+    /** Name of the file without folder and ending. */
+    std::string
+    name() const;
 
     /** Folder of the file: relative names in it start there. */
     std::string
@@ -61,8 +65,8 @@ namespace Voussoir
     void
     read(const std::string &filename);
 
-    std::string                  filename;
-    std::map<std::string, Value> values; // by "Section/Subsection/Entry"
+    std::string                        filename;
+    std::map<std::string, Value>       values; // by "Section/Subsection/Entry"
     std::map<std::string, std::string> sections; // path and place
   };
 

@@ -47,6 +47,10 @@ namespace Voussoir
     virtual void
     advance(const double time) = 0;
 
+    /** Brings the field past a step that nobody looks at. */
+    virtual void
+    replay(const double time) = 0;
+
     /** Of each node: displacement [m], velocity [m/s], and the integral of the
      *  traction over its part of the boundary [N]. */
     std::vector<dealii::Tensor<1, 3>> displacement, velocity, force;

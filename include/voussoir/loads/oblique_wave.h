@@ -37,17 +37,17 @@ namespace Voussoir
     arrival(const dealii::Point<3> &point) const;
 
     dealii::Tensor<1, 3>
-    displacement(const Signal &          motion,
+    displacement(const Signal           &motion,
                  const dealii::Point<3> &point,
                  const double            time) const;
 
     dealii::Tensor<1, 3>
-    velocity(const Signal &          motion,
+    velocity(const Signal           &motion,
              const dealii::Point<3> &point,
              const double            time) const;
 
     dealii::SymmetricTensor<2, 3>
-    stress(const Signal &          motion,
+    stress(const Signal           &motion,
            const dealii::Point<3> &point,
            const double            time) const;
 
@@ -71,12 +71,16 @@ namespace Voussoir
   class ObliqueField : public FreeField
   {
   public:
-    ObliqueField(const ObliqueWave &             wave,
-                 std::unique_ptr<Signal> &&      motion,
-                 const BoundaryGeometry &        geometry);
+    ObliqueField(const ObliqueWave        &wave,
+                 std::unique_ptr<Signal> &&motion,
+                 const BoundaryGeometry   &geometry);
 
     void
     advance(const double time) override;
+
+    void
+    replay(const double) override
+    {}
 
   private:
     ObliqueWave             wave;

@@ -10,8 +10,9 @@ namespace Voussoir
   /**
    * Vertically travelling S waves (x, y) and P wave (z) in horizontal layers: a
    * column of one-dimensional elements marched with the scheme, the degree, the
-   * quadrature, the damping and the time step of the model, on the levels of its
-   * side faces. A model whose sides are regular then follows it to round-off.
+   * quadrature, the damping and the time step of the model, on the levels of
+   * its side faces. A model whose sides are regular then follows it to
+   * round-off.
    *
    * At the base, rho c (2 v_incident - v) enters; the top is free.
    */
@@ -27,8 +28,8 @@ namespace Voussoir
 
     WaveColumn(const std::vector<Layer> &layers,
                const unsigned int        degree,
-               const std::string &       quadrature,
-               const Damping &           damping,
+               const std::string        &quadrature,
+               const Damping            &damping,
                const bool                paper_scheme,
                const double              time_step);
 
@@ -104,15 +105,15 @@ namespace Voussoir
     const bool          central;
     std::vector<double> nodes_1d; // Gauss-Lobatto points on [0, 1]
     // derivatives of the shape functions at the quadrature points, weights
-    std::vector<std::vector<double>>               gradients;
-    std::vector<double>                            weights;
+    std::vector<std::vector<double>>                     gradients;
+    std::vector<double>                                  weights;
     std::vector<dealii::Polynomials::Polynomial<double>> shapes;
-    std::vector<Element>                           elements;
-    std::vector<double>                            mass; // [kg/m2]
-    dealii::Tensor<1, 3>                           impedance;
-    double                                         mass_coefficient;
-    double                                         stiffness_coefficient;
-    std::vector<double>                            decay, gain;
+    std::vector<Element>                                 elements;
+    std::vector<double>                                  mass; // [kg/m2]
+    dealii::Tensor<1, 3>                                 impedance;
+    double                                               mass_coefficient;
+    double                                               stiffness_coefficient;
+    std::vector<double>                                  decay, gain;
 
     // motion of the step (u_n and the velocity in the middle of its two half
     // steps) and what the next one starts from
@@ -127,23 +128,26 @@ namespace Voussoir
    * belong to no regular side mesh then).
    */
   std::vector<WaveColumn::Layer>
-  layers_of_sides(const std::vector<SideFace> &                faces,
-                  const std::vector<ElasticConstants> &        constants,
-                  const std::vector<double> &                  damping_factors,
-                  const unsigned int                           degree,
-                  const double                                 time_step,
-                  const Damping &                              damping);
+  layers_of_sides(const std::vector<SideFace>         &faces,
+                  const std::vector<ElasticConstants> &constants,
+                  const std::vector<double>           &damping_factors,
+                  const unsigned int                   degree,
+                  const double                         time_step,
+                  const Damping                       &damping);
 
   /** The column as free field of a model. */
   class ColumnField : public FreeField
   {
   public:
-    ColumnField(WaveColumn &&           column,
-                GroundMotionSignals &&  incident,
+    ColumnField(WaveColumn            &&column,
+                GroundMotionSignals   &&incident,
                 const BoundaryGeometry &geometry);
 
     void
     advance(const double time) override;
+
+    void
+    replay(const double time) override;
 
   private:
     WaveColumn          column;
@@ -166,7 +170,7 @@ namespace Voussoir
    * Frequencies above @p maximum_frequency [Hz] are removed.
    */
   GroundMotionSignals
-  incident_for_surface(const WaveColumn &         column,
+  incident_for_surface(const WaveColumn          &column,
                        const GroundMotionSignals &surface,
                        const double               time_step,
                        const double               duration,

@@ -13,16 +13,17 @@ namespace Voussoir
   /** What observers may see of a case besides its state. */
   struct ObservedModel
   {
-    const Discretization &               discretization;
-    const std::vector<const Material *> &materials;
+    const Discretization                           &discretization;
+    const std::vector<const Material *>            &materials;
     std::function<unsigned int(const Grid::Cell &)> material_of_cell;
-    std::string                          folder;
-    double                               time_step; // [s]
-    double                               end_time;  // [s]
+    std::string                                     folder;
+    double                                          time_step; // [s]
+    double                                          end_time;  // [s]
 
     /** Motion of a rigid base (displacement, velocity, acceleration), to which
      *  the state is relative; zero otherwise. */
-    std::function<std::array<dealii::Tensor<1, 3>, 3>(const double)> base_motion;
+    std::function<std::array<dealii::Tensor<1, 3>, 3>(const double)>
+      base_motion;
   };
 
   /**
@@ -36,6 +37,10 @@ namespace Voussoir
 
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
+
+    /** Refuses entries that do not fit the model. */
+    virtual void
+    check(const ObservedModel &model) const = 0;
 
     /** @p restarted: continue the files of a run that was interrupted at
      *  @p start_time. */

@@ -1,6 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
-#include <voussoir/output/point_values.h>
+#include <voussoir/fem/point_weights.h>
 
 #include <sstream>
 
@@ -32,16 +32,15 @@ namespace Voussoir
   }
 
 
-
-  PointValues::PointValues(const Discretization &         discretization,
-                           const std::vector<NamedPoint> &points,
-                           const std::string &            place)
+  PointWeights::PointWeights(const Discretization          &discretization,
+                             const std::vector<NamedPoint> &points,
+                             const std::string             &place)
     : n_points(points.size())
   {
-    const auto &           scalar = discretization.fe.base_element(0);
+    const auto            &scalar       = discretization.fe.base_element(0);
     const MPI_Comm         communicator = discretization.grid.communicator();
     constexpr unsigned int nowhere      = numbers::invalid_unsigned_int;
-    const unsigned int     rank = Utilities::MPI::this_mpi_process(communicator);
+    const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
 
     struct Send
     {
@@ -99,16 +98,15 @@ namespace Voussoir
       }
     for (const auto &[node, send] : discretization.send_to_owners(records))
       if (std::abs(send.weight) > 1e-12)
-        weights.push_back({send.point, node, send.weight});
+        items.push_back({send.point, node, send.weight});
   }
 
 
-
   std::vector<Tensor<1, 3>>
-  PointValues::share(const Vector &vector) const
+  PointWeights::share(const Vector &vector) const
   {
     std::vector<Tensor<1, 3>> values(n_points);
-    for (const Weight &item : weights)
+    for (const Weight &item : items)
       for (unsigned int d = 0; d < 3; ++d)
         values[item.point][d] +=
           item.weight * vector.local_element(3 * item.node + d);

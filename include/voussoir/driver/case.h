@@ -1,0 +1,120 @@
+#ifndef voussoir_driver_case_h
+#define voussoir_driver_case_h
+
+#include <voussoir/base/parameter_file.h>
+#include <voussoir/constraints/projection.h>
+#include <voussoir/fem/damping.h>
+#include <voussoir/fem/discretization.h>
+#include <voussoir/loads/absorbing_boundary.h>
+#include <voussoir/loads/ground_motion.h>
+#include <voussoir/loads/load.h>
+#include <voussoir/materials/material.h>
+#include <voussoir/mesh/generator.h>
+#include <voussoir/mesh/reader.h>
+#include <voussoir/output/observer.h>
+
+namespace Voussoir
+{
+  /**
+   * The objects of one kind that a case lists by name, each a section of its
+   * own: `set Names = concrete, rock` and, in the section of that name, the
+   * class it is of and the entries of that class.
+   */
+  template <typename Base>
+  struct NamedObjects
+  {
+    std::vector<std::pair<std::string, std::unique_ptr<Base>>> objects;
+
+    /**
+     * @param section    where the list stands
+     * @param list_entry name of the entry with the list
+     * @param what       what one of them is, for the description
+     * @param otherwise  the names if the case lists none
+     */
+    void
+    declare(dealii::ParameterHandler &prm,
+            const ParameterFile      &file,
+            const std::string        &section,
+            const std::string        &what,
+            const std::string        &default_class);
+  };
+
+  /** The entries of the section "Time". */
+  struct TimeParameters
+  {
+    double      end_time      = 10.;
+    double      time_step     = 0.;
+    double      safety_factor = 0.95;
+    std::string scheme        = "central difference";
+
+    void
+    declare(dealii::ParameterHandler &prm);
+  };
+
+  /** The entries of the section "Output" itself. */
+  struct OutputParameters
+  {
+    std::string folder;
+    std::string observers           = "histories, envelopes, fields";
+    double      energy_interval     = 0.02;
+    double      checkpoint_interval = 10.;
+
+    void
+    declare(dealii::ParameterHandler &prm);
+  };
+
+  /** Everything that a parameter file says, checked as far as that is possible
+   *  without the mesh. */
+  class Case
+  {
+  public:
+    /** All entries at their defaults, for the manual. */
+    Case();
+
+    /** Declares, parses and checks. */
+    explicit Case(const ParameterFile &file);
+
+    ParameterFile            file;
+    dealii::ParameterHandler prm;
+
+    std::string                    title;
+    std::string                    mesh_type = "box";
+    GridParameters                 grid;
+    std::unique_ptr<MeshGenerator> generator; // null for an imported mesh
+    MeshReader                     reader;
+    DiscretizationParameters       discretization;
+    NamedObjects<Material>         materials;
+    NamedObjects<Load>             loads;
+    NamedObjects<Projection>       projections;
+    BoundaryParameters             boundaries;
+    GroundMotion                   ground_motion;
+    WaveParameters                 wave;
+    DampingParameters              damping;
+    TimeParameters                 time;
+    OutputParameters               output;
+    std::vector<std::pair<std::string, std::unique_ptr<Observer>>> observers;
+
+    /** The mesh that the case asks for, checked; a report goes to @p log. */
+    CoarseMesh
+    make_mesh(std::ostream &log) const;
+
+    /**
+     * Material index of each coarse cell; refuses unknown sets, cells without
+     * material and cells with two.
+     */
+    std::vector<unsigned int>
+    material_of_coarse_cells(const CoarseMesh &mesh) const;
+
+    std::vector<const Material *>
+    material_list() const;
+
+  private:
+    void
+    declare();
+
+    void
+    check() const;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,47 @@
+#ifndef voussoir_fem_point_weights_h
+#define voussoir_fem_point_weights_h
+
+#include <voussoir/fem/discretization.h>
+
+namespace Voussoir
+{
+  /** A place with a name. */
+  struct NamedPoint
+  {
+    std::string      name;
+    dealii::Point<3> position; // [m]
+  };
+
+  /** Reads "crest: 0 0 289; base: 0 0 0"; @p place names the entry. */
+  std::vector<NamedPoint>
+  parse_points(const std::string &text, const std::string &place);
+
+  /**
+   * Interpolation weights at points of the mesh. Every rank holds those of its
+   * own nodes; the sum over the ranks is the value at the point.
+   */
+  class PointWeights
+  {
+  public:
+    /** Refuses a point outside the mesh; @p place names the entry. */
+    PointWeights(const Discretization          &discretization,
+                 const std::vector<NamedPoint> &points,
+                 const std::string             &place);
+
+    struct Weight
+    {
+      unsigned int point, node;
+      double       weight;
+    };
+    std::vector<Weight> items;
+
+    /** This rank's share of the value of a nodal vector at each point. */
+    std::vector<dealii::Tensor<1, 3>>
+    share(const Vector &vector) const;
+
+  private:
+    const unsigned int n_points;
+  };
+} // namespace Voussoir
+
+#endif

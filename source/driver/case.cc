@@ -1,0 +1,305 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/text.h>
+#include <voussoir/driver/case.h>
+#include <voussoir/mesh/mesh_check.h>
+
+#include <filesystem>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    std::string
+    choices(const std::vector<std::string> &names)
+    {
+      return join(names, "|");
+    }
+
+    std::vector<std::string>
+    mesh_types()
+    {
+      std::vector<std::string> names{"file"};
+      for (const std::string &name : Registry<MeshGenerator>::names())
+        names.push_back(name);
+      return names;
+    }
+
+    template <typename Value>
+    void
+    in_section(ParameterHandler &prm, const std::string &name, Value &&declare)
+    {
+      prm.enter_subsection(name);
+      declare();
+      prm.leave_subsection();
+    }
+  } // namespace
+
+
+  template <typename Base>
+  void
+  NamedObjects<Base>::declare(ParameterHandler    &prm,
+                              const ParameterFile &file,
+                              const std::string   &section,
+                              const std::string   &what,
+                              const std::string   &default_class)
+  {
+    in_section(prm, section, [&] {
+      prm.declare_entry("Names",
+                        "",
+                        Patterns::Anything(),
+                        "Names of the " + what +
+                          ", separated by commas; each has a section of that "
+                          "name here.");
+      for (const std::string &name : split_list(file.given(section + "/Names")))
+        in_section(prm, name, [&] {
+          const std::string path = section + "/" + name;
+          prm.declare_entry("Class",
+                            default_class,
+                            Patterns::Selection(
+                              choices(Registry<Base>::names())),
+                            "Its class; the other entries depend on it.");
+          objects.emplace_back(
+            name,
+            Registry<Base>::create(file.given(path + "/Class", default_class),
+                                   "\"Class\" in section \"" + path + "\""));
+          objects.back().second->declare_parameters(prm);
+        });
+    });
+  }
+
+
+  void
+  TimeParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("End time",
+                      end_time,
+                      "How long to compute [s].",
+                      Patterns::Double(0.));
+    prm.add_parameter("Time step",
+                      time_step,
+                      "Time step [s]; 0 for the largest stable one times the "
+                      "safety factor.",
+                      Patterns::Double(0.));
+    prm.add_parameter("Safety factor",
+                      safety_factor,
+                      "Time step over the largest stable one.",
+                      Patterns::Double(0.01, 1.1));
+    prm.add_parameter(
+      "Scheme",
+      scheme,
+      "Central difference: dashpots and mass damping act on the velocity at "
+      "the step, at no cost in the time step. Paper: on that of the half step "
+      "before, as in PSDAP.",
+      Patterns::Selection("central difference|paper"));
+  }
+
+
+  void
+  OutputParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Folder",
+                      folder,
+                      "Where the results go; empty for output/ and the name of "
+                      "the parameter file. A number is added if the folder "
+                      "exists.");
+    prm.add_parameter("Observers",
+                      observers,
+                      "What to record, in this order; each has a section here.",
+                      Patterns::MultipleSelection(
+                        choices(Registry<Observer>::names())));
+    prm.add_parameter("Energy interval",
+                      energy_interval,
+                      "Time between two lines of the energy balance, at which "
+                      "the run is also checked for growth and NaN [s].",
+                      Patterns::Double(1e-9));
+    prm.add_parameter(
+      "Checkpoint interval",
+      checkpoint_interval,
+      "Minutes on the clock between two checkpoints, from which "
+      "--restart goes on; 0 for none.",
+      Patterns::Double(0.));
+  }
+
+
+  Case::Case()
+  {
+    declare();
+  }
+
+
+  Case::Case(const ParameterFile &file)
+    : file(file)
+  {
+    declare();
+    file.parse(prm);
+    check();
+  }
+
+
+  void
+  Case::declare()
+  {
+    prm.add_parameter("Title", title, "A line about the case, for the log.");
+
+    in_section(prm, "Mesh", [&] {
+      prm.add_parameter("Type",
+                        mesh_type,
+                        "A built-in generator, or a file of Gmsh, Abaqus, UCD "
+                        "or VTK; its entries stand in a section of that name.",
+                        Patterns::Selection(choices(mesh_types())));
+      grid.declare(prm);
+      const std::string type = file.given("Mesh/Type", mesh_type);
+      if (type == "file")
+        in_section(prm, type, [&] { reader.declare(prm); });
+      else if (Registry<MeshGenerator>::entries().count(type) > 0)
+        {
+          generator = Registry<MeshGenerator>::entries()[type].create();
+          in_section(prm, type, [&] { generator->declare_parameters(prm); });
+        }
+    });
+    in_section(prm, "Discretization", [&] { discretization.declare(prm); });
+    materials.declare(prm, file, "Materials", "materials", "linear elastic");
+    in_section(prm, "Boundaries", [&] { boundaries.declare(prm); });
+    in_section(prm, "Ground motion", [&] { ground_motion.declare(prm); });
+    in_section(prm, "Wave field", [&] { wave.declare(prm); });
+    loads.declare(prm, file, "Loads", "loads", "surface load");
+    projections.declare(
+      prm, file, "Constraints", "constraints", "prescribed motion");
+    in_section(prm, "Damping", [&] { damping.declare(prm); });
+    in_section(prm, "Time", [&] { time.declare(prm); });
+    in_section(prm, "Output", [&] {
+      output.declare(prm);
+      for (const std::string &name :
+           split_list(file.given("Output/Observers", output.observers)))
+        if (Registry<Observer>::entries().count(name) > 0)
+          {
+            observers.emplace_back(
+              name,
+              Registry<Observer>::create(name,
+                                         "\"Observers\" in section "
+                                         "\"Output\""));
+            in_section(prm, name, [&] {
+              observers.back().second->declare_parameters(prm);
+            });
+          }
+    });
+  }
+
+
+  void
+  Case::check() const
+  {
+    if (generator)
+      generator->check();
+    else
+      reader.check();
+    if (materials.objects.empty())
+      throw UserError("\"Names\" in section \"Materials\" is empty; name at "
+                      "least one material and give it cell sets.");
+    for (const auto &[name, material] : materials.objects)
+      material->check("Section \"Materials/" + name + "\"");
+    ground_motion.check();
+    damping.check();
+    const bool rigid_base = wave.enters_through == "rigid base";
+    if (ground_motion.type != "none" && !rigid_base &&
+        split_list(boundaries.absorbing).empty())
+      throw UserError("The earthquake of section \"Ground motion\" enters "
+                      "through an absorbing boundary, but \"Absorbing\" in "
+                      "section \"Boundaries\" names no face sets; name some, "
+                      "or set \"Enters through = rigid base\" in section "
+                      "\"Wave field\".");
+    if (ground_motion.type != "none" && rigid_base &&
+        split_list(boundaries.fixed).empty())
+      throw UserError("The earthquake of section \"Ground motion\" enters "
+                      "through a rigid base, but \"Fixed\" in section "
+                      "\"Boundaries\" names no face sets; name the base.");
+  }
+
+
+  CoarseMesh
+  Case::make_mesh(std::ostream &log) const
+  {
+    CoarseMesh mesh;
+    if (generator)
+      {
+        mesh = generator->generate();
+        check_mesh(mesh, "The generated mesh");
+      }
+    else
+      {
+        MeshReader from_folder = reader;
+        from_folder.file       = file.resolve(reader.file);
+        mesh                   = from_folder.read(&log);
+      }
+    log << describe_mesh(mesh);
+    return mesh;
+  }
+
+
+  std::vector<unsigned int>
+  Case::material_of_coarse_cells(const CoarseMesh &mesh) const
+  {
+    constexpr unsigned int    none = numbers::invalid_unsigned_int;
+    std::vector<unsigned int> result(mesh.cells.size(), none);
+    std::vector<std::string>  known;
+    for (const auto &set : mesh.cell_sets)
+      known.push_back(set.first);
+
+    for (unsigned int m = 0; m < materials.objects.size(); ++m)
+      {
+        const auto &[name, material] = materials.objects[m];
+        for (const std::string &set : split_list(material->cell_sets))
+          {
+            const auto cells = mesh.cell_sets.find(set);
+            if (cells == mesh.cell_sets.end())
+              throw UserError("\"Cell sets\" in section \"Materials/" + name +
+                              "\" names \"" + set +
+                              "\", which the mesh does not have" +
+                              known_names(set, known) + ".");
+            for (const unsigned int cell : cells->second)
+              {
+                if (result[cell] != none && result[cell] != m)
+                  throw UserError(
+                    "Cells of the set \"" + set + "\" have two materials, \"" +
+                    materials.objects[result[cell]].first + "\" and \"" + name +
+                    "\"; make the \"Cell sets\" of the two disjoint.");
+                result[cell] = m;
+              }
+          }
+      }
+
+    std::size_t without = 0, example = 0;
+    for (std::size_t cell = 0; cell < result.size(); ++cell)
+      if (result[cell] == none)
+        {
+          ++without;
+          example = cell;
+        }
+    if (without > 0)
+      {
+        std::vector<std::string> sets;
+        for (const auto &[name, cells] : mesh.cell_sets)
+          if (std::find(cells.begin(), cells.end(), example) != cells.end())
+            sets.push_back(name);
+        throw UserError(counted(without, "cell has", "cells have") +
+                        " no material, for example one of " +
+                        (sets.empty() ?
+                           "no set at all" :
+                           "the set \"" + join(sets, "\", \"") + "\"") +
+                        "; add the set to the \"Cell sets\" of a material.");
+      }
+    return result;
+  }
+
+
+  std::vector<const Material *>
+  Case::material_list() const
+  {
+    std::vector<const Material *> list;
+    for (const auto &item : materials.objects)
+      list.push_back(item.second.get());
+    return list;
+  }
+} // namespace Voussoir

@@ -1,0 +1,205 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/version.h>
+#include <voussoir/driver/command_line.h>
+#include <voussoir/driver/simulation.h>
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    const std::map<std::string, ParameterHandler::OutputStyle> &
+    default_formats()
+    {
+      static const std::map<std::string, ParameterHandler::OutputStyle> formats{
+        {"prm", ParameterHandler::Text},
+        {"short", ParameterHandler::ShortText},
+        {"description", ParameterHandler::Description},
+        {"json", ParameterHandler::JSON},
+        {"xml", ParameterHandler::XML},
+        {"latex", ParameterHandler::LaTeX}};
+      return formats;
+    }
+
+    template <typename Base>
+    void
+    list(std::ostream &out)
+    {
+      for (const auto &[name, entry] : Registry<Base>::entries())
+        out << name << ": " << entry.description << '\n';
+    }
+
+    const std::map<std::string, void (*)(std::ostream &)> &
+    lists()
+    {
+      static const std::map<std::string, void (*)(std::ostream &)> all{
+        {"materials", list<Material>},
+        {"loads", list<Load>},
+        {"constraints", list<Projection>},
+        {"observers", list<Observer>},
+        {"meshes", list<MeshGenerator>}};
+      return all;
+    }
+
+    template <typename Map>
+    std::vector<std::string>
+    keys(const Map &map)
+    {
+      std::vector<std::string> names;
+      for (const auto &item : map)
+        names.push_back(item.first);
+      return names;
+    }
+
+    // Everything that can be said of a case without stepping.
+    void
+    validate(Case &parameters, const MPI_Comm communicator)
+    {
+      RunOptions options;
+      options.quiet     = true;
+      options.no_output = true;
+      Simulation simulation(parameters, options, communicator);
+      for (const auto &observer : parameters.observers)
+        observer.second->check(simulation.model);
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        std::cout << "Valid: " << simulation.discretization.dof_handler.n_dofs()
+                  << " unknowns, time step " << simulation.time_step << " s, "
+                  << simulation.n_steps() << " steps." << std::endl;
+    }
+  } // namespace
+
+
+  int
+  guarded(const std::function<void()> &action, const MPI_Comm communicator)
+  {
+    std::string message;
+    try
+      {
+        action();
+        return 0;
+      }
+    catch (const UserError &error)
+      {
+        message = error.what();
+      }
+    catch (const std::bad_alloc &)
+      {
+        message = "There is not enough memory for this case; use fewer cells, "
+                  "or more machines.";
+      }
+    catch (const std::exception &error)
+      {
+        message =
+          std::string("Unexpected error, please report it: ") + error.what();
+      }
+    // An error that all ranks see is said by the first; one rank's own error
+    // cannot be agreed upon with the others, who wait, so it ends the run.
+    const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
+    if (first)
+      std::cerr << "Error: " << message << std::endl;
+    else
+      {
+        // leave the first rank a moment to say it
+        std::this_thread::sleep_for(std::chrono::seconds(2));
+        std::cerr << "Error: " << message << std::endl;
+      }
+    if (Utilities::MPI::n_mpi_processes(communicator) > 1)
+      MPI_Abort(communicator, 1);
+    return 1;
+  }
+
+
+  int
+  run_command_line(const int argc, char **argv, const MPI_Comm communicator)
+  {
+    CLI::App    app{"Voussoir: seismic response of arch dams, from a parameter "
+                    "file. Run it under mpirun for several ranks.",
+                 "voussoir"};
+    std::string case_file, defaults, what;
+    std::vector<std::string> changes;
+    bool                     only_validate = false;
+    RunOptions               options;
+    app.set_version_flag("--version", version());
+    app.add_option("case", case_file, "Parameter file of the case");
+    app
+      .add_option("--set",
+                  changes,
+                  "Change an entry: \"Section/Entry=value\"; may be given "
+                  "several times")
+      ->allow_extra_args(false);
+    app.add_flag("--validate",
+                 only_validate,
+                 "Check everything about the case without running it");
+    app
+      .add_option("--defaults",
+                  defaults,
+                  "Print all entries of the case (or of an empty one) with "
+                  "their values and descriptions")
+      ->check(CLI::IsMember(keys(default_formats())));
+    app.add_option("--list", what, "Print the classes of one kind")
+      ->check(CLI::IsMember(keys(lists())));
+    app.add_flag("--restart",
+                 options.restart,
+                 "Go on from the last checkpoint of the newest output folder");
+    app.add_flag("--overwrite",
+                 options.overwrite,
+                 "Replace an earlier output folder instead of numbering");
+
+    const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
+    try
+      {
+        app.parse(argc, argv);
+      }
+    catch (const CLI::ParseError &error)
+      {
+        std::ostringstream out, err;
+        const int          code = app.exit(error, out, err);
+        if (first)
+          std::cout << out.str() << std::flush;
+        if (first)
+          std::cerr << err.str() << std::flush;
+        return code == 0 ? 0 : 1;
+      }
+
+    return guarded(
+      [&] {
+        if (!what.empty())
+          {
+            if (first)
+              lists().at(what)(std::cout);
+            return;
+          }
+        if (case_file.empty() && defaults.empty())
+          throw UserError("No parameter file is given; write \"voussoir "
+                          "case.prm\", or \"voussoir --help\".");
+        if (case_file.empty())
+          {
+            const Case empty;
+            if (first)
+              empty.prm.print_parameters(std::cout,
+                                         default_formats().at(defaults));
+            return;
+          }
+        Case parameters(ParameterFile(case_file, changes));
+        if (!defaults.empty())
+          {
+            if (first)
+              parameters.prm.print_parameters(std::cout,
+                                              default_formats().at(defaults));
+          }
+        else if (only_validate)
+          validate(parameters, communicator);
+        else
+          {
+            Simulation simulation(parameters, options, communicator);
+            simulation.run();
+          }
+      },
+      communicator);
+  }
+} // namespace Voussoir

@@ -1,0 +1,55 @@
+#include <voussoir/base/time_factor.h>
+#include <voussoir/fem/point_weights.h>
+#include <voussoir/loads/load.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    class PointLoad : public Load
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Point", point, "Where it acts, x, y, z [m].");
+        prm.add_parameter("Force", force, "Its components x, y, z [N].");
+        factor.declare(prm, "Time function", "Factor on the force.");
+      }
+
+      void
+      prepare(const Discretization &discretization,
+              NodalTerms           &terms,
+              const ParameterFile &,
+              const std::string &place) override
+      {
+        factor.prepare("\"Time function\" in section \"" + place + "\"");
+        const PointWeights weights(discretization,
+                                   {{"load", point}},
+                                   "\"Point\" in section \"" + place + "\"");
+        for (const auto &item : weights.items)
+          shares.emplace_back(terms.add_node(item.node), item.weight);
+      }
+
+      void
+      add_forces(const double time, NodalTerms &terms) const override
+      {
+        const double now = factor(time);
+        for (const auto &[slot, weight] : shares)
+          terms.forces[slot] += now * weight * force;
+      }
+
+    private:
+      Point<3>     point;
+      Tensor<1, 3> force;
+      TimeFactor   factor;
+
+      std::vector<std::pair<unsigned int, double>> shares;
+    };
+
+    const Registry<Load>::Add<PointLoad>
+      registered("point load", "A force at a point, over time.");
+  } // namespace
+} // namespace Voussoir

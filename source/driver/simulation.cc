@@ -116,7 +116,7 @@ namespace Voussoir
     : parameters(parameters)
     , options(options)
     , log(communicator, options.quiet)
-    , timer(communicator,
+    , timer(
             std::cout,
             TimerOutput::never,
             TimerOutput::wall_times)
@@ -243,7 +243,7 @@ namespace Voussoir
   unsigned int
   Simulation::material_of(const Grid::Cell &cell) const
   {
-    return coarse_materials[cell->id().get_coarse_cell_id()];
+    return coarse_materials[Grid::coarse_cell(cell)];
   }
 
 

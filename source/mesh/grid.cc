@@ -48,14 +48,6 @@ namespace Voussoir
       return path;
     }
 
-    unsigned int
-    coarse_cell(const Grid::Cell &cell)
-    {
-      return static_cast<unsigned int>(cell->id().get_coarse_cell_id());
-    }
-
-
-
     // One item of the entry "Local refinement".
     struct LocalRefinement
     {
@@ -169,7 +161,7 @@ namespace Voussoir
     triangulation->signals.weight.connect(
       [&](const auto &cell, const auto) -> unsigned int {
         return static_cast<unsigned int>(
-          1000. * (cost(coarse_cell(cell)) - 1.));
+          1000. * (cost(Grid::coarse_cell(cell)) - 1.));
       });
     const auto [cells, faces] = cell_data(coarse);
     triangulation->create_triangulation(coarse.vertices, cells, faces);
@@ -195,7 +187,7 @@ namespace Voussoir
     std::vector<unsigned int> weights;
     for (const auto &cell : serial.active_cell_iterators())
       weights.push_back(
-        static_cast<unsigned int>(100. * cost(coarse_cell(cell))));
+        static_cast<unsigned int>(100. * cost(Grid::coarse_cell(cell))));
     GridTools::partition_triangulation(
       Utilities::MPI::n_mpi_processes(mpi_communicator),
       weights,
@@ -268,7 +260,7 @@ namespace Voussoir
     const auto set = std::find(cell_sets.begin(), cell_sets.end(), name);
     if (set == cell_sets.end())
       return false;
-    const auto &sets = sets_of_cell[coarse_cell(cell)];
+    const auto &sets = sets_of_cell[Grid::coarse_cell(cell)];
     return std::find(sets.begin(), sets.end(), set - cell_sets.begin()) !=
            sets.end();
   }
@@ -280,7 +272,7 @@ namespace Voussoir
                     const unsigned int face,
                     const std::string &name) const
   {
-    for (const FaceInSet &item : sets_of_faces[coarse_cell(cell)])
+    for (const FaceInSet &item : sets_of_faces[Grid::coarse_cell(cell)])
       if (item.face == face && face_sets[item.set] == name)
         {
           // face 2d+s of a child lies on that face of its parent if the child
@@ -304,7 +296,7 @@ namespace Voussoir
   {
     for (const auto &cell : mesh->active_cell_iterators())
       if (cell->is_locally_owned() &&
-          !sets_of_faces[coarse_cell(cell)].empty())
+          !sets_of_faces[Grid::coarse_cell(cell)].empty())
         for (const unsigned int face : cell->face_indices())
           if (in_face_set(cell, face, name))
             visit(cell, face);
@@ -366,11 +358,27 @@ namespace Voussoir
 
 
 
+  unsigned int
+  Grid::coarse_cell(const Cell &cell)
+  {
+    // p4est numbers the coarse cells in a way of its own, and a fully
+    // distributed mesh holds some of them only
+    if (dynamic_cast<const parallel::fullydistributed::Triangulation<3> *>(
+          &cell->get_triangulation()) != nullptr)
+      return cell->id().get_coarse_cell_id();
+    Cell coarse = cell;
+    while (coarse->level() > 0)
+      coarse = coarse->parent();
+    return coarse->index();
+  }
+
+
+
   std::uint64_t
   Grid::global_key(const Cell &cell)
   {
     const auto    path = children_upwards(cell);
-    std::uint64_t key  = coarse_cell(cell);
+    std::uint64_t key  = Grid::coarse_cell(cell);
     for (auto child = path.rbegin(); child != path.rend(); ++child)
       key = 8 * key + *child;
     // the level keeps apart a cell and its own first child

@@ -87,6 +87,10 @@ namespace Voussoir
     std::string
     describe_balance() const;
 
+    /** Index in the coarse mesh of the coarse cell that a cell lies in. */
+    static unsigned int
+    coarse_cell(const Cell &cell);
+
     /**
      * A number for a cell that does not depend on the partition: its coarse cell
      * and the path of children below it.

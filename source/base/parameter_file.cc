@@ -96,19 +96,36 @@ namespace Voussoir
     : filename(filename)
   {
     read(filename);
-    for (const std::string &change : changes)
+    change(changes);
+  }
+
+
+
+  ParameterFile
+  ParameterFile::with(const std::vector<std::string> &changes) const
+  {
+    ParameterFile copy = *this;
+    copy.change(changes);
+    return copy;
+  }
+
+
+
+  void
+  ParameterFile::change(const std::vector<std::string> &changes)
+  {
+    for (const std::string &item : changes)
       {
-        const auto equals = change.find('=');
+        const auto equals = item.find('=');
         if (equals == std::string::npos)
-          throw UserError("--set \"" + change +
+          throw UserError("--set \"" + item +
                           "\" has no \"=\"; write it as "
                           "--set \"Section/Entry=value\".");
-        std::vector<std::string> path =
-          split_list(change.substr(0, equals), '/');
-        values[join_path(path)] = {trim(change.substr(equals + 1)),
-                                   "--set \"" + change + "\""};
+        values[join_path(split_list(item.substr(0, equals), '/'))] = {
+          trim(item.substr(equals + 1)), "--set \"" + item + "\""};
       }
   }
+
 
 
   void

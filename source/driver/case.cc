@@ -129,10 +129,13 @@ namespace Voussoir
   }
 
 
-  Case::Case(const ParameterFile &file)
+  Case::Case(const ParameterFile &file,
+             const std::function<void(ParameterHandler &)> &declare_more)
     : file(file)
   {
     declare();
+    if (declare_more)
+      declare_more(prm);
     file.parse(prm);
     check();
   }

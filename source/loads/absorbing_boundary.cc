@@ -210,6 +210,12 @@ namespace Voussoir
                     const double       r    = parameters.radius > 0. ?
                                                 parameters.radius :
                                                 x.distance(parameters.source);
+                    if (coefficients.normal_spring > 0. && r < 1e-6)
+                      throw UserError(
+                        "\"Source point\" in section \"Boundaries\" lies on "
+                        "the absorbing boundary, where its springs would be "
+                        "infinite; move it to the dam, or give a \"Radius\".");
+                    const double spring_area = r > 0. ? area / r : 0.;
                     // t I + (n - t) n n^T
                     NodalTerms::Matrix spring, dashpot;
                     for (unsigned int d = 0; d < 3; ++d)
@@ -217,7 +223,7 @@ namespace Voussoir
                         {
                           const double nn = n[d] * n[e];
                           const double tt = (d == e ? 1. : 0.) - nn;
-                          spring[d][e]    = area / r *
+                          spring[d][e]    = spring_area *
                                          (coefficients.normal_spring * nn +
                                           coefficients.tangential_spring * tt);
                           dashpot[d][e] =

@@ -32,7 +32,7 @@ namespace Voussoir
       shapai.radius_exponent    = 1.;
       shapai.crest_width        = {115.5, 115.5};
       shapai.base_width         = {38.7, 38.7};
-      shapai.canyon_exponent    = 0.7;
+      shapai.canyon_exponent    = 0.85;
       shapai.face               = {0., 0., 0.};
       shapai.thickness          = {9.5, 18.5, 0., 0.};
       shapai.abutment_thickness = 1.;
@@ -121,9 +121,8 @@ namespace Voussoir
           throw UserError("In section \"" + section +
                           "\" the \"Crest half width\" must be larger than the "
                           "\"Base half width\" on both banks.");
-        if (arch == "circle" &&
-            (crest_width[bank] > 0.9 * crest_radius ||
-             base_width[bank] > 0.9 * base_radius))
+        if (arch == "circle" && (crest_width[bank] > 0.9 * crest_radius ||
+                                 base_width[bank] > 0.9 * base_radius))
           throw UserError("In section \"" + section +
                           "\" a circle cannot span the canyon: let the half "
                           "widths be at most 0.9 times the radius, at the "
@@ -158,8 +157,8 @@ namespace Voussoir
   double
   ArchDamShape::radius(const double z) const
   {
-    return base_radius + (crest_radius - base_radius) *
-                           std::pow(z / height, radius_exponent);
+    return base_radius +
+           (crest_radius - base_radius) * std::pow(z / height, radius_exponent);
   }
 
 
@@ -193,8 +192,7 @@ namespace Voussoir
     const double R = radius(z);
     if (arch == "parabola")
       return std::atan(x / R);
-    return std::asin(
-      std::max(-circle_limit, std::min(circle_limit, x / R)));
+    return std::asin(std::max(-circle_limit, std::min(circle_limit, x / R)));
   }
 
 
@@ -209,7 +207,6 @@ namespace Voussoir
       }
     return R * angle(x, z);
   }
-
 
 
   ArchDamSections::ArchDamSections(const ArchDamShape &shape)
@@ -254,8 +251,8 @@ namespace Voussoir
 
     // Integrate the tangent over the turn.
     static const QGauss<1> quadrature(16);
-    line               = crest(end);
-    const double start = line.angle;
+    line                = crest(end);
+    const double start  = line.angle;
     const double beyond = s - end;
     const double sign   = beyond < 0 ? -1. : 1.;
     const double turned = std::min(std::abs(beyond), turning_length);
@@ -311,7 +308,7 @@ namespace Voussoir
     double below = 0., above = shape.height;
     while (above - below > 1e-10 * shape.height)
       {
-        const double middle                    = 0.5 * (below + above);
+        const double middle                  = 0.5 * (below + above);
         (is_in_rock(middle) ? below : above) = middle;
       }
     return above;
@@ -329,13 +326,13 @@ namespace Voussoir
         return line;
       }
 
-    const double level  = std::max(z, contour(s));
-    const double x      = cut(line, level);
-    const double ratio  = shape.arc_length(x, level) /
+    const double level = std::max(z, contour(s));
+    const double x     = cut(line, level);
+    const double ratio = shape.arc_length(x, level) /
                          shape.arc_length(shape.half_width(x, level), level);
-    const double normal = shape.crown_thickness(level) *
-                          (1. + (shape.abutment_thickness - 1.) *
-                                  std::min(1., ratio * ratio));
+    const double normal =
+      shape.crown_thickness(level) *
+      (1. + (shape.abutment_thickness - 1.) * std::min(1., ratio * ratio));
     line.centre    = {x, shape.centre_line(x, level)};
     line.thickness = normal / std::cos(shape.angle(x, level) - line.angle);
     return line;

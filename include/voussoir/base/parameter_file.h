@@ -31,6 +31,10 @@ namespace Voussoir
     explicit ParameterFile(const std::string              &filename,
                            const std::vector<std::string> &changes = {});
 
+    /** A copy with further entries set ("Section/Entry=value"). */
+    ParameterFile
+    with(const std::vector<std::string> &changes) const;
+
     /** The value given for an entry ("Section/Entry"), or @p otherwise. */
     std::string
     given(const std::string &path, const std::string &otherwise = "") const;
@@ -64,6 +68,9 @@ namespace Voussoir
 
     void
     read(const std::string &filename);
+
+    void
+    change(const std::vector<std::string> &changes);
 
     std::string                        filename;
     std::map<std::string, Value>       values; // by "Section/Subsection/Entry"

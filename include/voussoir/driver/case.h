@@ -71,8 +71,11 @@ namespace Voussoir
     /** All entries at their defaults, for the manual. */
     Case();
 
-    /** Declares, parses and checks. */
-    explicit Case(const ParameterFile &file);
+    /** Declares, parses and checks; @p declare_more adds sections that the
+     *  caller reads himself. */
+    explicit Case(
+      const ParameterFile &file,
+      const std::function<void(dealii::ParameterHandler &)> &declare_more = {});
 
     ParameterFile            file;
     dealii::ParameterHandler prm;

@@ -3,6 +3,8 @@
 
 #include <voussoir/fem/discretization.h>
 
+#include <deal.II/fe/fe_values.h>
+
 namespace Voussoir
 {
   /**

@@ -1,0 +1,99 @@
+#ifndef voussoir_mesh_arch_dam_section_h
+#define voussoir_mesh_arch_dam_section_h
+
+#include <voussoir/mesh/arch_dam_shape.h>
+
+#include <array>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace Voussoir
+{
+  /**
+   * Quadrilaterals on the developed section across the canyon: arc length s
+   * along the crest and elevation z [m], inside and outside of the canyon.
+   *
+   * They come from a grid of columns and rows in which the contour of the
+   * canyon runs along the rows or diagonally through cells, so that these fall
+   * into triangles; all are then halved in both directions.
+   */
+  class ArchDamCrossSection
+  {
+  public:
+    /**
+     * @param n_blocks          between the abutments at the crest
+     * @param columns_per_block columns of the grid
+     * @param rock_extent       rock beside and below over the height
+     * @param growth            size ratio of successive columns and rows
+     */
+    ArchDamCrossSection(const ArchDamSections &sections,
+                        const double           height,
+                        const unsigned int     n_blocks,
+                        const unsigned int     columns_per_block,
+                        const double           rock_extent,
+                        const double           growth);
+
+    struct Vertex
+    {
+      double s, z;
+      int    column; // -1 between two columns
+    };
+
+    struct Quad
+    {
+      std::array<unsigned int, 4> vertices;      // counterclockwise for s, z
+      unsigned int                column;        // on its right-bank side
+      bool                        inside;        // of the canyon
+      double                      width, height; // before the grid was fitted
+    };
+
+    std::vector<Vertex> vertices;
+    std::vector<Quad>   quads;
+
+    /** Columns of the crest's two ends, and the last one; the first is 0. */
+    int first_dam_column, last_dam_column, last_column;
+
+  private:
+    void
+    place_columns(const unsigned int n_dam_columns,
+                  const double       rock_extent,
+                  const double       growth);
+
+    void
+    place_rows(const double rock_extent, const double growth);
+
+    void
+    follow_contour();
+
+    void
+    make_quads();
+
+    void
+    subdivide(const std::vector<unsigned int> &corners,
+              const unsigned int               column,
+              const unsigned int               row,
+              const bool                       inside);
+
+    unsigned int
+    middle(const unsigned int a, const unsigned int b);
+
+    void
+    smooth(const unsigned int columns_per_block);
+
+    const ArchDamSections &sections;
+    const double           height;
+
+    // The grid: s and contour elevation of the columns, elevation of the rows.
+    std::vector<double> columns, contour, rows;
+    int                 base_row;
+
+    // The row of each column that lies on the contour.
+    std::vector<int> contour_rows;
+
+    std::map<std::pair<unsigned int, unsigned int>, unsigned int> middles;
+    std::vector<bool>                                             on_contour;
+  };
+} // namespace Voussoir
+
+#endif

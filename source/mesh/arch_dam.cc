@@ -1,0 +1,361 @@
+#include <voussoir/base/text.h>
+#include <voussoir/mesh/arch_dam_section.h>
+#include <voussoir/mesh/arch_dam_shape.h>
+#include <voussoir/mesh/generator.h>
+#include <voussoir/mesh/grading.h>
+
+#include <deal.II/base/numbers.h>
+#include <deal.II/base/quadrature_lib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // Length over the dam's height in which the lines of the mesh turn from the
+    // dam's normal into the river's direction.
+    constexpr double relative_turning_length = 0.35;
+
+
+    /** An arch dam in its canyon. */
+    class ArchDam : public MeshGenerator
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Shape",
+                          shape_name,
+                          "A built-in dam, or \"custom\" for the one that the "
+                          "section \"Custom shape\" describes.",
+                          Patterns::Selection(
+                            join(ArchDamShape::preset_names(), "|") +
+                            "|custom"));
+        prm.add_parameter("Joints",
+                          n_joints,
+                          "Number of contraction joints, at equal distances "
+                          "along the crest.",
+                          Patterns::Integer(0));
+        prm.add_parameter("Cell size",
+                          cell_size,
+                          "Length of the dam's cells along the crest [m]; "
+                          "rounded so that cells fill the blocks.",
+                          Patterns::Double(1e-3));
+        prm.add_parameter("Cells through thickness",
+                          n_thickness,
+                          "Number of cells from the downstream to the upstream "
+                          "face.",
+                          Patterns::Integer(1));
+        prm.add_parameter("Rock extent",
+                          rock_extent,
+                          "Rock below and on all sides of the dam over its "
+                          "height [-].",
+                          Patterns::Double(1., 20.));
+        prm.add_parameter("Growth",
+                          growth,
+                          "Size ratio of successive layers of rock away from "
+                          "the dam [-].",
+                          Patterns::Double(1., 2.));
+        prm.enter_subsection("Custom shape");
+        custom_shape.declare(prm);
+        prm.leave_subsection();
+      }
+
+      void
+      check() const override
+      {
+        custom_shape.check("Mesh/arch dam/Custom shape");
+      }
+
+      CoarseMesh
+      generate() const override;
+
+    private:
+      std::string  shape_name  = "Baihetan-like";
+      unsigned int n_joints    = 13;
+      double       cell_size   = 13.;
+      unsigned int n_thickness = 2;
+      double       rock_extent = 2.;
+      double       growth      = 1.4;
+      ArchDamShape custom_shape;
+    };
+
+
+    // The lines that the vertices of the cross-section are swept along: through
+    // the dam, and on both sides into the river's direction.
+    class Sweep
+    {
+    public:
+      Sweep(const ArchDamCrossSection &section,
+            const ArchDamSections     &sections,
+            const double               height,
+            const double               rock_extent,
+            const unsigned int         n_thickness,
+            const double               cell_size,
+            const double               growth)
+        : n_thickness(n_thickness)
+        , turning_length(relative_turning_length * height)
+      {
+        for (const auto &vertex : section.vertices)
+          {
+            lines.push_back(sections.line(vertex.s, vertex.z));
+            upstream_end = std::max(upstream_end, face(lines.back(), 1.)[1]);
+            downstream_end =
+              std::min(downstream_end, face(lines.back(), -1.)[1]);
+          }
+        upstream_end += rock_extent * height;
+        downstream_end -= rock_extent * height;
+
+        const unsigned int n =
+          n_graded_cells(rock_extent * height + turning_length,
+                         cell_size,
+                         growth);
+        points       = graded_points(n, growth);
+        first_in_dam = n;
+        n_layers     = 2 * n + n_thickness;
+      }
+
+      // x, y of all vertices on a line, from downstream to upstream.
+      std::vector<Point<2>>
+      operator()(const unsigned int vertex) const
+      {
+        const auto           &line = lines[vertex];
+        std::vector<Point<2>> result(n_layers + 1);
+        for (unsigned int j = 0; j <= n_thickness; ++j)
+          result[first_in_dam + j] = face(line, 2. * j / n_thickness - 1.);
+        for (const int side : {-1, 1})
+          {
+            const Point<2> start  = face(line, side);
+            const double   end    = side < 0 ? downstream_end : upstream_end;
+            const double   length = std::abs(end - start[1]) + turning_length -
+                                  path(line.angle, turning_length)[1];
+            for (unsigned int j = 1; j < points.size(); ++j)
+              {
+                Point<2> &x = result[side < 0 ? first_in_dam - j :
+                                                n_layers - first_in_dam + j];
+                x = start + side * path(line.angle, points[j] * length);
+                if (j + 1 == points.size())
+                  x[1] = end;
+              }
+          }
+        return result;
+      }
+
+      unsigned int first_in_dam, n_layers;
+
+    private:
+      static Point<2>
+      face(const ArchDamSections::Line &line, const double side)
+      {
+        return line.centre +
+               0.5 * side * line.thickness *
+                 Tensor<1, 2>({std::sin(line.angle), std::cos(line.angle)});
+      }
+
+      // Where a line that leaves the dam at an angle has come after a length.
+      Tensor<1, 2>
+      path(const double angle, const double length) const
+      {
+        static const QGauss<1> quadrature(8);
+        const double           turned = std::min(length, turning_length);
+        Tensor<1, 2>           result({0., length - turned});
+        for (unsigned int q = 0; q < quadrature.size(); ++q)
+          {
+            const double phi =
+              angle * 0.5 *
+              (1. + std::cos(numbers::PI * quadrature.point(q)[0] * turned /
+                             turning_length));
+            result += quadrature.weight(q) * turned *
+                      Tensor<1, 2>({std::sin(phi), std::cos(phi)});
+          }
+        return result;
+      }
+
+      const unsigned int                 n_thickness;
+      const double                       turning_length;
+      std::vector<ArchDamSections::Line> lines;
+      std::vector<double>                points;
+      double upstream_end   = std::numeric_limits<double>::lowest();
+      double downstream_end = std::numeric_limits<double>::max();
+    };
+
+
+    CoarseMesh
+    ArchDam::generate() const
+    {
+      const ArchDamShape    shape = shape_name == "custom" ?
+                                      custom_shape :
+                                      ArchDamShape::preset(shape_name);
+      const ArchDamSections sections(shape);
+      const double          crest = sections.left_end - sections.right_end;
+      // Columns are halved by the subdivision.
+      const unsigned int columns_per_block =
+        std::max(1., std::round(crest / (n_joints + 1) / (2. * cell_size)));
+      const ArchDamCrossSection section(sections,
+                                        shape.height,
+                                        n_joints + 1,
+                                        columns_per_block,
+                                        rock_extent,
+                                        growth);
+      const Sweep               sweep(section,
+                        sections,
+                        shape.height,
+                        rock_extent,
+                        n_thickness,
+                        cell_size,
+                        growth);
+      const unsigned int        n_lines   = section.vertices.size();
+      const unsigned int        n_layers  = sweep.n_layers;
+      const unsigned int        dam_begin = sweep.first_in_dam,
+                         dam_end          = dam_begin + n_thickness;
+
+      // The cells, and which of them stands at a quadrilateral and layer.
+      CoarseMesh                mesh;
+      constexpr unsigned int    none = numbers::invalid_unsigned_int;
+      std::vector<unsigned int> vertex_number(n_lines * (n_layers + 1), none);
+      std::vector<unsigned int> cell_number(section.quads.size() * n_layers,
+                                            none);
+      for (unsigned int q = 0; q < section.quads.size(); ++q)
+        for (unsigned int j = 0; j < n_layers; ++j)
+          {
+            const auto &quad   = section.quads[q];
+            const bool  is_dam = j >= dam_begin && j < dam_end && quad.inside;
+            if (quad.inside && !is_dam)
+              continue;
+            const unsigned int cell       = mesh.cells.size();
+            cell_number[q * n_layers + j] = cell;
+            mesh.cell_sets[is_dam ? "dam" : "rock"].push_back(cell);
+            if (is_dam)
+              mesh
+                .cell_sets["block " +
+                           std::to_string(
+                             (quad.column - section.first_dam_column) /
+                               columns_per_block +
+                             1)]
+                .push_back(cell);
+
+            std::array<unsigned int, 8>           corners;
+            constexpr std::array<unsigned int, 4> corner{{0, 1, 3, 2}};
+            for (unsigned int v = 0; v < 8; ++v)
+              {
+                const unsigned int line =
+                  quad.vertices[corner[(v & 1) + 2 * (v >> 2)]];
+                corners[v] = line * (n_layers + 1) + j + ((v >> 1) & 1);
+                vertex_number[corners[v]] = 0;
+              }
+            mesh.cells.push_back(corners);
+          }
+
+      for (unsigned int line = 0; line < n_lines; ++line)
+        {
+          const std::vector<Point<2>> points = sweep(line);
+          for (unsigned int j = 0; j <= n_layers; ++j)
+            {
+              auto &number = vertex_number[line * (n_layers + 1) + j];
+              if (number == none)
+                continue;
+              number = mesh.vertices.size();
+              mesh.vertices.emplace_back(points[j][0],
+                                         points[j][1],
+                                         section.vertices[line].z);
+            }
+        }
+      for (auto &cell : mesh.cells)
+        for (unsigned int &vertex : cell)
+          vertex = vertex_number[vertex];
+
+      // Faces at the ends of the sweep.
+      const auto name_face = [&](const std::string &name,
+                                 const unsigned int quad,
+                                 const unsigned int layer,
+                                 const unsigned int face) {
+        mesh.face_sets[name].push_back(
+          {cell_number[quad * n_layers + layer], face});
+      };
+      for (unsigned int q = 0; q < section.quads.size(); ++q)
+        if (section.quads[q].inside)
+          {
+            name_face("downstream face", q, dam_begin, 2);
+            name_face("upstream face", q, dam_end - 1, 3);
+          }
+        else
+          {
+            name_face("downstream end", q, 0, 2);
+            name_face("upstream end", q, n_layers - 1, 3);
+          }
+
+      // Faces along the sweep, from the edges of the cross-section: edge e of
+      // a quadrilateral runs from its vertex e to the next.
+      struct Side
+      {
+        unsigned int quad, edge;
+      };
+      std::map<std::pair<unsigned int, unsigned int>, std::vector<Side>> edges;
+      for (unsigned int q = 0; q < section.quads.size(); ++q)
+        for (unsigned int e = 0; e < 4; ++e)
+          {
+            const auto &vertices = section.quads[q].vertices;
+            edges[std::minmax(vertices[e], vertices[(e + 1) % 4])].push_back(
+              {q, e});
+          }
+      constexpr std::array<unsigned int, 4> face_of_edge{{4, 1, 5, 0}};
+      const auto name_faces = [&](const std::string &name,
+                                  const Side        &side,
+                                  const unsigned int begin,
+                                  const unsigned int end) {
+        for (unsigned int j = begin; j < end; ++j)
+          name_face(name, side.quad, j, face_of_edge[side.edge]);
+      };
+      for (const auto &[ends, sides] : edges)
+        {
+          const auto &a         = section.vertices[ends.first],
+                     &b         = section.vertices[ends.second];
+          const auto &quad      = section.quads[sides[0].quad];
+          const bool  on_column = a.column >= 0 && a.column == b.column;
+          if (sides.size() == 1)
+            {
+              if (quad.inside)
+                name_faces("crest", sides[0], dam_begin, dam_end);
+              else if (on_column && a.column == 0)
+                name_faces("right", sides[0], 0, n_layers);
+              else if (on_column && a.column == section.last_column)
+                name_faces("left", sides[0], 0, n_layers);
+              else
+                name_faces(a.z > 0. ? "ground" : "bottom",
+                           sides[0],
+                           0,
+                           n_layers);
+              continue;
+            }
+
+          const auto &other = section.quads[sides[1].quad];
+          if (quad.inside != other.inside)
+            {
+              const Side &dam  = sides[quad.inside ? 0 : 1],
+                         &rock = sides[quad.inside ? 1 : 0];
+              name_faces("dam-rock interface", dam, dam_begin, dam_end);
+              name_faces("canyon", rock, 0, dam_begin);
+              name_faces("canyon", rock, dam_end, n_layers);
+            }
+          else if (quad.inside && on_column &&
+                   (a.column - section.first_dam_column) % columns_per_block ==
+                     0)
+            name_faces("joint " +
+                         std::to_string((a.column - section.first_dam_column) /
+                                        columns_per_block),
+                       sides[quad.column < other.column ? 0 : 1],
+                       dam_begin,
+                       dam_end);
+        }
+      return mesh;
+    }
+
+    const Registry<MeshGenerator>::Add<ArchDam>
+      registered("arch dam", "An arch dam in its canyon.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,283 @@
+#include <voussoir/mesh/arch_dam_section.h>
+#include <voussoir/mesh/grading.h>
+
+#include <deal.II/base/tensor.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // Steps of the smoothing over the size of the cells: the first, how they
+    // shrink, and how many.
+    constexpr double       first_step = 0.1, step_ratio = 0.95;
+    constexpr unsigned int n_steps = 60;
+  } // namespace
+
+
+  ArchDamCrossSection::ArchDamCrossSection(const ArchDamSections &sections,
+                                           const double           height,
+                                           const unsigned int     n_blocks,
+                                           const unsigned int columns_per_block,
+                                           const double       rock_extent,
+                                           const double       growth)
+    : sections(sections)
+    , height(height)
+  {
+    place_columns(n_blocks * columns_per_block, rock_extent, growth);
+    place_rows(rock_extent, growth);
+    follow_contour();
+    make_quads();
+    smooth(columns_per_block);
+  }
+
+
+  void
+  ArchDamCrossSection::place_columns(const unsigned int n_dam_columns,
+                                     const double       rock_extent,
+                                     const double       growth)
+  {
+    const double right = sections.right_end, left = sections.left_end;
+    const double width = (left - right) / n_dam_columns;
+
+    // Distances from the end of the crest into the rock.
+    const auto rock = [&](const double end) {
+      const double x      = sections.line(end, height).centre[0];
+      const double extent = (end < 0 ? -1. : 1.) * rock_extent * height;
+      const double length = std::abs(sections.arc_length_at(x + extent) - end);
+      auto         distances =
+        graded_points(n_graded_cells(length, growth * width, growth), growth);
+      for (double &distance : distances)
+        distance *= length;
+      return distances;
+    };
+    const std::vector<double> right_rock = rock(right), left_rock = rock(left);
+
+    for (unsigned int i = right_rock.size() - 1; i > 0; --i)
+      columns.push_back(right - right_rock[i]);
+    first_dam_column = columns.size();
+    for (unsigned int i = 0; i < n_dam_columns; ++i)
+      columns.push_back(right + i * width);
+    last_dam_column = columns.size();
+    for (const double distance : left_rock)
+      columns.push_back(left + distance);
+    last_column = columns.size() - 1;
+
+    for (const double s : columns)
+      contour.push_back(sections.contour(s));
+  }
+
+
+  // Rows so high that the contour crosses at most one of them per column.
+  void
+  ArchDamCrossSection::place_rows(const double rock_extent, const double growth)
+  {
+    double row_height =
+      columns[first_dam_column + 1] - columns[first_dam_column];
+    for (unsigned int i = 1; i < columns.size(); ++i)
+      row_height = std::max(row_height, std::abs(contour[i] - contour[i - 1]));
+    const unsigned int n_dam_rows =
+      std::max(1., std::floor(height / row_height * (1. + 1e-9)));
+    row_height = height / n_dam_rows;
+
+    const double depth = rock_extent * height;
+    const auto   below =
+      graded_points(n_graded_cells(depth, growth * row_height, growth), growth);
+    base_row = below.size() - 1;
+    for (unsigned int i = base_row; i > 0; --i)
+      rows.push_back(-depth * below[i]);
+    for (unsigned int i = 0; i < n_dam_rows; ++i)
+      rows.push_back(i * row_height);
+    rows.push_back(height);
+  }
+
+
+  // The grid's vertices, those next to the contour moved onto it.
+  void
+  ArchDamCrossSection::follow_contour()
+  {
+    const double row_height = height / (rows.size() - 1 - base_row);
+    for (int i = 0; i <= last_column; ++i)
+      {
+        contour_rows.push_back(base_row + std::lround(contour[i] / row_height));
+        for (int k = 0; k < int(rows.size()); ++k)
+          {
+            on_contour.push_back(k == contour_rows[i]);
+            vertices.push_back(
+              {columns[i], on_contour.back() ? contour[i] : rows[k], i});
+          }
+      }
+  }
+
+
+  void
+  ArchDamCrossSection::make_quads()
+  {
+    const unsigned int n_rows = rows.size();
+    for (int i = 0; i < last_column; ++i)
+      {
+        const bool at_dam = i >= first_dam_column && i < last_dam_column;
+        const int  left = contour_rows[i], right = contour_rows[i + 1];
+        for (int k = 0; k + 1 < int(n_rows); ++k)
+          {
+            const unsigned int a = i * n_rows + k, b = a + n_rows, c = b + 1,
+                               d = a + 1;
+            if (k >= std::max(left, right))
+              subdivide({a, b, c, d}, i, k, at_dam);
+            else if (k < std::min(left, right))
+              subdivide({a, b, c, d}, i, k, false);
+            else if (left < right)
+              {
+                subdivide({a, b, c}, i, k, false);
+                subdivide({a, c, d}, i, k, at_dam);
+              }
+            else
+              {
+                subdivide({a, b, d}, i, k, false);
+                subdivide({b, c, d}, i, k, at_dam);
+              }
+          }
+      }
+  }
+
+
+  // Divide a triangle or quadrilateral into quadrilaterals around its centre.
+  void
+  ArchDamCrossSection::subdivide(const std::vector<unsigned int> &corners,
+                                 const unsigned int               column,
+                                 const unsigned int               row,
+                                 const bool                       inside)
+  {
+    const unsigned int        n = corners.size();
+    std::vector<unsigned int> around;
+    Vertex                    centre{0., 0., -1};
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        around.push_back(middle(corners[i], corners[(i + 1) % n]));
+        centre.s += vertices[around[i]].s / n;
+        centre.z += vertices[around[i]].z / n;
+      }
+    for (unsigned int i = 0; i < n; ++i)
+      quads.push_back({{{corners[i],
+                         around[i],
+                         static_cast<unsigned int>(vertices.size()),
+                         around[(i + n - 1) % n]}},
+                       column,
+                       inside,
+                       0.5 * (columns[column + 1] - columns[column]),
+                       0.5 * (rows[row + 1] - rows[row])});
+    vertices.push_back(centre);
+    on_contour.push_back(false);
+  }
+
+
+  unsigned int
+  ArchDamCrossSection::middle(const unsigned int a, const unsigned int b)
+  {
+    const auto [entry, is_new] =
+      middles.insert({std::minmax(a, b), vertices.size()});
+    if (is_new)
+      {
+        const Vertex &u = vertices[a], &v = vertices[b];
+        const bool    along_column = u.column == v.column;
+        Vertex        vertex{0.5 * (u.s + v.s),
+                      0.5 * (u.z + v.z),
+                      along_column ? u.column : -1};
+        on_contour.push_back(!along_column && on_contour[a] && on_contour[b]);
+        if (on_contour.back())
+          vertex.z = sections.contour(vertex.s);
+        vertices.push_back(vertex);
+      }
+    return entry->second;
+  }
+
+
+  // Move the vertices towards the minimum of the sum over all corners of
+  // |J^-1|^4, J holding the two edges over the cell's size in the grid. This
+  // grows without bound as a cell becomes small, flat or slanted. All vertices
+  // move at the same time, so that a symmetric mesh stays symmetric.
+  void
+  ArchDamCrossSection::smooth(const unsigned int columns_per_block)
+  {
+    std::vector<std::vector<unsigned int>> quads_at(vertices.size());
+    for (unsigned int q = 0; q < quads.size(); ++q)
+      for (const unsigned int v : quads[q].vertices)
+        quads_at[v].push_back(q);
+
+    const auto badness = [&](const unsigned int moved, const Vertex &place) {
+      double sum = 0;
+      for (const unsigned int q : quads_at[moved])
+        {
+          const Quad                 &quad = quads[q];
+          std::array<Tensor<1, 2>, 4> x;
+          for (unsigned int i = 0; i < 4; ++i)
+            {
+              const Vertex &vertex =
+                quad.vertices[i] == moved ? place : vertices[quad.vertices[i]];
+              x[i] =
+                Tensor<1, 2>({vertex.s / quad.width, vertex.z / quad.height});
+            }
+          for (unsigned int i = 0; i < 4; ++i)
+            {
+              const Tensor<1, 2> a = x[(i + 1) % 4] - x[i],
+                                 b = x[(i + 3) % 4] - x[i];
+              const double det     = a[0] * b[1] - a[1] * b[0];
+              if (det <= 0.)
+                return std::numeric_limits<double>::max();
+              const double inverse =
+                (a.norm_square() + b.norm_square()) / (det * det);
+              sum += inverse * inverse;
+            }
+        }
+      return sum;
+    };
+
+    double step = first_step;
+    for (unsigned int i = 0; i < n_steps; ++i, step *= step_ratio)
+      {
+        std::vector<Vertex> moved = vertices;
+        for (unsigned int v = 0; v < vertices.size(); ++v)
+          {
+            const Vertex &vertex = vertices[v];
+            // Joints, the ends of the crest and of the rock stay where they
+            // are.
+            const bool may_move_along =
+              vertex.column < 0 ||
+              (vertex.column > 0 && vertex.column < last_column &&
+               (vertex.column < first_dam_column ||
+                vertex.column > last_dam_column ||
+                (vertex.column - first_dam_column) % columns_per_block != 0));
+            const bool may_move_up =
+              !on_contour[v] && vertex.z < height && vertex.z > rows.front();
+            const Quad &quad = quads[quads_at[v].front()];
+
+            double     least   = badness(v, vertex);
+            const auto attempt = [&](const double ds, const double dz) {
+              Vertex place = vertex;
+              place.s += ds;
+              place.z =
+                on_contour[v] ? sections.contour(place.s) : place.z + dz;
+              const double value = badness(v, place);
+              if (value < least * (1. - 1e-9))
+                {
+                  least    = value;
+                  moved[v] = place;
+                }
+            };
+            for (const double sign : {-1., 1.})
+              {
+                if (may_move_along)
+                  attempt(sign * step * quad.width, 0.);
+                if (may_move_up)
+                  attempt(0., sign * step * quad.height);
+              }
+          }
+        vertices = moved;
+      }
+  }
+} // namespace Voussoir

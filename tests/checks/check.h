@@ -1,0 +1,77 @@
+#ifndef voussoir_tests_check_h
+#define voussoir_tests_check_h
+
+#include <voussoir/driver/simulation.h>
+
+#include <iosfwd>
+
+namespace Voussoir
+{
+  /**
+   * The lines a test prints: one quantity each, with what it is compared with
+   * and a verdict. Values are rounded to four digits, so that the reference
+   * output holds on other processors.
+   */
+  class Verdicts
+  {
+  public:
+    explicit Verdicts(const MPI_Comm communicator);
+
+    /** |value/reference - 1| <= tolerance. */
+    void
+    near(const std::string &name,
+         const double       value,
+         const double       reference,
+         const double       tolerance,
+         const std::string &unit = "");
+
+    /** |value| <= limit; prints the limit only, for values near round-off. */
+    void
+    below(const std::string &name, const double value, const double limit);
+
+    /** value >= limit; prints both. */
+    void
+    above(const std::string &name, const double value, const double limit);
+
+    /** A yes-or-no question. */
+    void
+    is_true(const std::string &name, const bool value);
+
+  private:
+    void
+    say(const std::string &text, const bool good);
+
+    const bool speaks;
+  };
+
+  /**
+   * A test: a parameter file in tests/ names it in its section "Check" and the
+   * rest of that file is the case it looks at.
+   */
+  class Check
+  {
+  public:
+    virtual ~Check() = default;
+
+    /** Entries of the section "Check". */
+    virtual void
+    declare_parameters(dealii::ParameterHandler &)
+    {}
+
+    /** @p file makes as many cases as the check needs (see `make_case`). */
+    virtual void
+    run(const ParameterFile &file,
+        Verdicts            &verdicts,
+        const MPI_Comm       communicator) = 0;
+  };
+
+  /** The case of a test's parameter file, with some entries changed. */
+  std::unique_ptr<Case>
+  make_case(const ParameterFile &file);
+
+  /** A silent simulation without output folder. */
+  std::unique_ptr<Simulation>
+  make_simulation(Case &parameters, const MPI_Comm communicator);
+} // namespace Voussoir
+
+#endif

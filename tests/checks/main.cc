@@ -1,0 +1,136 @@
+// Runs the test that a parameter file names in its section "Check":
+//   voussoir_check test.prm
+
+#include <voussoir/driver/command_line.h>
+
+#include <iomanip>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  Verdicts::Verdicts(const MPI_Comm communicator)
+    : speaks(Utilities::MPI::this_mpi_process(communicator) == 0)
+  {}
+
+
+  void
+  Verdicts::near(const std::string &name,
+                 const double       value,
+                 const double       reference,
+                 const double       tolerance,
+                 const std::string &unit)
+  {
+    std::ostringstream text;
+    text << name << " = " << std::setprecision(4) << value
+         << (unit.empty() ? "" : " " + unit) << "  (reference " << reference
+         << ", allowed " << 100. * tolerance << " %)";
+    say(text.str(),
+        std::abs(value - reference) <= tolerance * std::abs(reference));
+  }
+
+
+  void
+  Verdicts::below(const std::string &name,
+                  const double       value,
+                  const double       limit)
+  {
+    std::ostringstream text;
+    text << name << " below " << limit;
+    const bool good = std::abs(value) <= limit;
+    if (!good)
+      text << ": it is " << value;
+    say(text.str(), good);
+  }
+
+
+  void
+  Verdicts::above(const std::string &name,
+                  const double       value,
+                  const double       limit)
+  {
+    std::ostringstream text;
+    text << name << " = " << std::setprecision(3) << value << "  (at least "
+         << limit << ")";
+    say(text.str(), value >= limit);
+  }
+
+
+  void
+  Verdicts::is_true(const std::string &name, const bool value)
+  {
+    say(name, value);
+  }
+
+
+  void
+  Verdicts::say(const std::string &text, const bool good)
+  {
+    if (speaks)
+      std::cout << text << "  " << (good ? "ok" : "WRONG") << std::endl;
+  }
+
+
+  namespace
+  {
+    std::unique_ptr<Check>
+    make_check(const ParameterFile &file)
+    {
+      return Registry<Check>::create(file.given("Check/Name"),
+                                     "\"Name\" in section \"Check\"");
+    }
+
+    void
+    declare_check(const ParameterFile &file,
+                  Check               &check,
+                  ParameterHandler    &prm)
+    {
+      prm.enter_subsection("Check");
+      prm.declare_entry("Name", file.given("Check/Name"));
+      check.declare_parameters(prm);
+      prm.leave_subsection();
+    }
+  } // namespace
+
+
+  std::unique_ptr<Case>
+  make_case(const ParameterFile &file)
+  {
+    const auto ignored = make_check(file);
+    return std::make_unique<Case>(file, [&](ParameterHandler &prm) {
+      declare_check(file, *ignored, prm);
+    });
+  }
+
+
+  std::unique_ptr<Simulation>
+  make_simulation(Case &parameters, const MPI_Comm communicator)
+  {
+    RunOptions options;
+    options.quiet     = true;
+    options.no_output = true;
+    return std::make_unique<Simulation>(parameters, options, communicator);
+  }
+} // namespace Voussoir
+
+
+int
+main(int argc, char **argv)
+{
+  using namespace Voussoir;
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  return guarded(
+    [&] {
+      const ParameterFile file(argv[1]);
+      const auto          check = make_check(file);
+      // the check reads its own entries when the case is parsed
+      const Case parsed(file, [&](dealii::ParameterHandler &prm) {
+        declare_check(file, *check, prm);
+      });
+      Verdicts   verdicts(MPI_COMM_WORLD);
+      check->run(file, verdicts, MPI_COMM_WORLD);
+    },
+    MPI_COMM_WORLD);
+}

@@ -1,0 +1,24 @@
+# deal_ii_pickup_tests() with three cures: tests called long_* run only with
+# VOUSSOIR_ALL_TESTS; labels that ctest knows (deal.II 9.4 sets LABEL, which
+# ctest ignores); and an edited parameter file runs its test again.
+macro(voussoir_pickup_tests)
+  deal_ii_pickup_tests()
+  get_filename_component(_subject ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  get_directory_property(_tests TESTS)
+  string(TOLOWER "${CMAKE_BUILD_TYPE}" _build)
+  foreach(_test IN LISTS _tests)
+    string(REGEX REPLACE "^[^/]*/([^.]*).*" "\\1" _name "${_test}")
+    set_tests_properties(${_test} PROPERTIES LABELS "${_subject}")
+    if(_name MATCHES "^long_" AND NOT VOUSSOIR_ALL_TESTS)
+      set_tests_properties(${_test} PROPERTIES DISABLED ON)
+    endif()
+    set(_folder "${CMAKE_CURRENT_BINARY_DIR}/${_name}.${_build}")
+    if(_test MATCHES "mpirun=([0-9]+)")
+      string(APPEND _folder "/mpirun=${CMAKE_MATCH_1}")
+    endif()
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm)
+      add_custom_command(OUTPUT ${_folder}/output APPEND
+        DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm)
+    endif()
+  endforeach()
+endmacro()

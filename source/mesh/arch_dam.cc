@@ -19,7 +19,7 @@ namespace Voussoir
   {
     // Length over the dam's height in which the lines of the mesh turn from the
     // dam's normal into the river's direction.
-    constexpr double relative_turning_length = 0.35;
+    constexpr double relative_turning_length = 0.25;
 
 
     /** An arch dam in its canyon. */

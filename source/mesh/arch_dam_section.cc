@@ -198,7 +198,7 @@ namespace Voussoir
 
 
   // Move the vertices towards the minimum of the sum over all corners of
-  // |J^-1|^4, J holding the two edges over the cell's size in the grid. This
+  // |J^-1|^8, J holding the two edges over the cell's size in the grid. This
   // grows without bound as a cell becomes small, flat or slanted. All vertices
   // move at the same time, so that a symmetric mesh stays symmetric.
   void
@@ -231,7 +231,7 @@ namespace Voussoir
                 return std::numeric_limits<double>::max();
               const double inverse =
                 (a.norm_square() + b.norm_square()) / (det * det);
-              sum += inverse * inverse;
+              sum += inverse * inverse * inverse * inverse;
             }
         }
       return sum;

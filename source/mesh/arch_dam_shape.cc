@@ -18,7 +18,7 @@ namespace Voussoir
     constexpr double circle_limit = 0.97;
 
     // Length over the dam's height in which the arch turns, inside the rock.
-    constexpr double relative_turning_length = 0.75;
+    constexpr double relative_turning_length = 1.0;
 
 
     std::map<std::string, ArchDamShape>

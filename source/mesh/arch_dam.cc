@@ -17,9 +17,12 @@ namespace Voussoir
 
   namespace
   {
+    // Columns between the abutments that the shape of a dam needs.
+    constexpr double least_columns = 8.;
+
     // Length over the dam's height in which the lines of the mesh turn from the
     // dam's normal into the river's direction.
-    constexpr double relative_turning_length = 0.25;
+    constexpr double relative_turning_length = 0.35;
 
 
     /** An arch dam in its canyon. */
@@ -32,7 +35,8 @@ namespace Voussoir
         prm.add_parameter("Shape",
                           shape_name,
                           "A built-in dam, or \"custom\" for the one that the "
-                          "section \"Custom shape\" describes.",
+                          "section \"Custom shape\" describes, which is "
+                          "ignored otherwise.",
                           Patterns::Selection(
                             join(ArchDamShape::preset_names(), "|") +
                             "|custom"));
@@ -77,8 +81,8 @@ namespace Voussoir
 
     private:
       std::string  shape_name  = "Baihetan-like";
-      unsigned int n_joints    = 13;
-      double       cell_size   = 13.;
+      unsigned int n_joints    = 9;
+      double       cell_size   = 16.;
       unsigned int n_thickness = 2;
       double       rock_extent = 2.;
       double       growth      = 1.4;
@@ -193,12 +197,14 @@ namespace Voussoir
                                       ArchDamShape::preset(shape_name);
       const ArchDamSections sections(shape);
       const double          crest = sections.left_end - sections.right_end;
-      // Columns are halved by the subdivision.
+      // Columns are halved in the cross-section.
+      const unsigned int n_blocks = n_joints + 1;
+      const double columns = std::max(least_columns, crest / (2. * cell_size));
       const unsigned int columns_per_block =
-        std::max(1., std::round(crest / (n_joints + 1) / (2. * cell_size)));
+        std::max(1., std::round(columns / n_blocks));
       const ArchDamCrossSection section(sections,
                                         shape.height,
-                                        n_joints + 1,
+                                        n_blocks,
                                         columns_per_block,
                                         rock_extent,
                                         growth);

@@ -13,10 +13,11 @@ namespace Voussoir
 
   namespace
   {
-    // Steps of the smoothing over the size of the cells: the first, how they
-    // shrink, and how many.
-    constexpr double       first_step = 0.1, step_ratio = 0.95;
-    constexpr unsigned int n_steps = 60;
+    // Smoothing: lengths over the size of a cell, part of Newton's step that
+    // lets neighbours move at the same time, and number of steps.
+    constexpr double       relative_probe = 0.01, largest_step = 0.05;
+    constexpr double       relaxation = 0.6;
+    constexpr unsigned int n_steps    = 120;
   } // namespace
 
 
@@ -162,17 +163,30 @@ namespace Voussoir
         centre.s += vertices[around[i]].s / n;
         centre.z += vertices[around[i]].z / n;
       }
-    for (unsigned int i = 0; i < n; ++i)
-      quads.push_back({{{corners[i],
-                         around[i],
-                         static_cast<unsigned int>(vertices.size()),
-                         around[(i + n - 1) % n]}},
-                       column,
-                       inside,
-                       0.5 * (columns[column + 1] - columns[column]),
-                       0.5 * (rows[row + 1] - rows[row])});
     vertices.push_back(centre);
     on_contour.push_back(false);
+
+    const double cell_width    = 0.5 * (columns[column + 1] - columns[column]),
+                 cell_height   = 0.5 * (rows[row + 1] - rows[row]);
+    const auto is_further_down = [&](const unsigned int u,
+                                     const unsigned int v) {
+      return vertices[u].s / cell_width + vertices[u].z / cell_height <
+             vertices[v].s / cell_width + vertices[v].z / cell_height;
+    };
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        std::array<unsigned int, 4> quad{
+          {corners[i],
+           around[i],
+           static_cast<unsigned int>(vertices.size() - 1),
+           around[(i + n - 1) % n]}};
+        // Begin all at the lower right-bank corner, so that neighbours have the
+        // same orientation.
+        std::rotate(quad.begin(),
+                    std::min_element(quad.begin(), quad.end(), is_further_down),
+                    quad.end());
+        quads.push_back({quad, column, inside, cell_width, cell_height});
+      }
   }
 
 
@@ -237,45 +251,64 @@ namespace Voussoir
       return sum;
     };
 
-    double step = first_step;
-    for (unsigned int i = 0; i < n_steps; ++i, step *= step_ratio)
+    // Joints, the ends of the crest and of the rock stay where they are.
+    const auto may_move_along = [&](const Vertex &vertex) {
+      const int  column = vertex.column;
+      const bool in_dam =
+        column >= first_dam_column && column <= last_dam_column;
+      return column < 0 ||
+             (in_dam ? (column - first_dam_column) % columns_per_block != 0 :
+                       column > 0 && column < last_column);
+    };
+    const auto may_move_up = [&](const unsigned int v) {
+      return !on_contour[v] && vertices[v].z < height &&
+             vertices[v].z > rows.front();
+    };
+
+    // Newton's step along one direction, by differences over a probe.
+    const auto newton_step = [&](const unsigned int v,
+                                 const double       size,
+                                 const auto        &shifted) {
+      const double probe     = relative_probe * size;
+      const double before    = badness(v, shifted(-probe)),
+                   at        = badness(v, vertices[v]),
+                   after     = badness(v, shifted(probe));
+      const double slope     = (after - before) / (2. * probe),
+                   curvature = (after - 2. * at + before) / (probe * probe);
+      const double limit     = largest_step * size;
+      return std::max(-limit,
+                      std::min(limit,
+                               -relaxation * slope /
+                                 std::max(curvature, std::abs(slope) / size)));
+    };
+
+    for (unsigned int i = 0; i < n_steps; ++i)
       {
         std::vector<Vertex> moved = vertices;
         for (unsigned int v = 0; v < vertices.size(); ++v)
           {
-            const Vertex &vertex = vertices[v];
-            // Joints, the ends of the crest and of the rock stay where they
-            // are.
-            const bool may_move_along =
-              vertex.column < 0 ||
-              (vertex.column > 0 && vertex.column < last_column &&
-               (vertex.column < first_dam_column ||
-                vertex.column > last_dam_column ||
-                (vertex.column - first_dam_column) % columns_per_block != 0));
-            const bool may_move_up =
-              !on_contour[v] && vertex.z < height && vertex.z > rows.front();
-            const Quad &quad = quads[quads_at[v].front()];
-
-            double     least   = badness(v, vertex);
-            const auto attempt = [&](const double ds, const double dz) {
-              Vertex place = vertex;
-              place.s += ds;
-              place.z =
-                on_contour[v] ? sections.contour(place.s) : place.z + dz;
-              const double value = badness(v, place);
-              if (value < least * (1. - 1e-9))
-                {
-                  least    = value;
-                  moved[v] = place;
-                }
-            };
-            for (const double sign : {-1., 1.})
+            const Vertex vertex     = vertices[v];
+            double       cell_width = std::numeric_limits<double>::max(),
+                   cell_height      = cell_width;
+            for (const unsigned int q : quads_at[v])
               {
-                if (may_move_along)
-                  attempt(sign * step * quad.width, 0.);
-                if (may_move_up)
-                  attempt(0., sign * step * quad.height);
+                cell_width  = std::min(cell_width, quads[q].width);
+                cell_height = std::min(cell_height, quads[q].height);
               }
+            const auto along = [&](const double ds) {
+              const double s = vertex.s + ds;
+              return Vertex{s,
+                            on_contour[v] ? sections.contour(s) : vertex.z,
+                            vertex.column};
+            };
+            const auto up = [&](const double dz) {
+              return Vertex{vertex.s, vertex.z + dz, vertex.column};
+            };
+
+            if (may_move_along(vertex))
+              moved[v] = along(newton_step(v, cell_width, along));
+            if (may_move_up(v))
+              moved[v].z += newton_step(v, cell_height, up);
           }
         vertices = moved;
       }

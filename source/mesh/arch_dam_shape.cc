@@ -18,7 +18,7 @@ namespace Voussoir
     constexpr double circle_limit = 0.97;
 
     // Length over the dam's height in which the arch turns, inside the rock.
-    constexpr double relative_turning_length = 1.0;
+    constexpr double relative_turning_length = 0.75;
 
 
     std::map<std::string, ArchDamShape>
@@ -27,12 +27,12 @@ namespace Voussoir
       ArchDamShape shapai;
       shapai.height             = 132.;
       shapai.arch               = "circle";
-      shapai.crest_radius       = 160.;
-      shapai.base_radius        = 160.;
+      shapai.crest_radius       = 155.4;
+      shapai.base_radius        = 155.4;
       shapai.radius_exponent    = 1.;
-      shapai.crest_width        = {115.5, 115.5};
-      shapai.base_width         = {38.7, 38.7};
-      shapai.canyon_exponent    = 0.85;
+      shapai.crest_width        = {112.2, 112.2};
+      shapai.base_width         = {37.6, 37.6};
+      shapai.canyon_exponent    = 0.8;
       shapai.face               = {0., 0., 0.};
       shapai.thickness          = {9.5, 18.5, 0., 0.};
       shapai.abutment_thickness = 1.;

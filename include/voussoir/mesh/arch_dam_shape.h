@@ -12,8 +12,8 @@ namespace Voussoir
   /**
    * The shape of an arch dam and of the canyon it closes, as a few numbers.
    *
-   * Axes: x across, positive towards the left bank; y upstream; z up; origin at
-   * the base of the crown's upstream face as seen from above the crest. Lengths
+   * Axes: x across, positive towards the left bank, 0 at the crown; y upstream,
+   * 0 at the upstream edge of the crest's crown; z up, 0 at the base. Lengths
    * in metres.
    */
   struct ArchDamShape

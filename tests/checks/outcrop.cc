@@ -1,0 +1,100 @@
+#include "check.h"
+#include "histories.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Where a motion is given: one for the free surface comes out there, after
+     * twice the travel time of an S wave (see `incident_for_surface`), in
+     * layers with damping; one for an outcrop is twice the incident wave.
+     */
+    class Outcrop : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto given = make_case(file)->ground_motion.build(file.folder());
+
+        double     delay = 0.;
+        const auto at_surface =
+          surface(file.with({"Ground motion/Given at=free surface"}),
+                  delay,
+                  communicator);
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            double error = 0., peak = 0.;
+            for (std::size_t i = 0; i < at_surface.times.size(); ++i)
+              {
+                const double wanted =
+                  given[d]->displacement(at_surface.times[i] - delay);
+                peak = std::max(peak, std::abs(wanted));
+                error =
+                  std::max(error,
+                           std::abs(at_surface.displacement[0][i][d] - wanted));
+              }
+            verdicts.below(std::string("free surface ") + "xyz"[d] +
+                             ": error over peak",
+                           error / peak,
+                           0.01);
+          }
+
+        const auto outcrop =
+          surface(file.with({"Ground motion/Given at=outcrop"}),
+                  delay,
+                  communicator);
+        const auto incident =
+          surface(file.with({"Ground motion/Given at=incident wave",
+                             "Ground motion/Overload factor=0.5"}),
+                  delay,
+                  communicator);
+        double difference = 0., peak = 0.;
+        for (std::size_t i = 0; i < outcrop.times.size(); ++i)
+          {
+            const Tensor<1, 3> &u = outcrop.displacement[0][i];
+            peak                  = std::max(peak, u.norm());
+            difference =
+              std::max(difference, (u - incident.displacement[0][i]).norm());
+          }
+        verdicts.below("outcrop against half the incident wave",
+                       difference / peak,
+                       1e-12);
+      }
+
+    private:
+      /** Motion of the surface, and the delay of a motion given there. */
+      static Histories
+      surface(const ParameterFile &file,
+              double              &delay,
+              const MPI_Comm       communicator)
+      {
+        const auto parameters      = make_case(file);
+        const auto simulation      = make_simulation(*parameters, communicator);
+        const auto &[lower, upper] = simulation->boundary.extent();
+
+        // twice the S travel time through the levels of one side, whole steps
+        std::map<double, double> levels;
+        for (const SideFace &face : simulation->boundary.side_faces())
+          levels[face.lower] =
+            (face.upper - face.lower) / simulation->materials[face.material]
+                                          ->elastic_constants()
+                                          .s_wave_speed();
+        double travel_time = 0.;
+        for (const auto &level : levels)
+          travel_time += level.second;
+        delay = std::ceil(2. * travel_time / simulation->time_step) *
+                simulation->time_step;
+        return run_and_record(*simulation, {{"surface", upper}});
+      }
+    };
+
+    const Registry<Check>::Add<Outcrop>
+      registered("outcrop", "Motions given at the surface or an outcrop.");
+  } // namespace
+} // namespace Voussoir

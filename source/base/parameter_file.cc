@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -49,6 +50,51 @@ namespace Voussoir
       std::string                                    section;
       std::unique_ptr<dealii::Patterns::PatternBase> pattern;
     };
+
+    // deal.II's descriptions of what is allowed, such as "[Double 0...1
+    // (inclusive)]", as the end of a sentence that refuses a value.
+    std::string
+    what_is_allowed(const std::string &pattern, const std::string &value)
+    {
+      std::smatch       parts;
+      static const auto number = std::regex(
+        "\\[(Double|Integer)(?: range)?(?: (\\S*?)\\.\\.\\.(\\S+))?.*\\]");
+      static const auto selection =
+        std::regex("\\[(Multiple)?Selection (.*?) ?\\]");
+      static const auto list = std::regex(
+        "\\[List of <(.*)> of length ([0-9]+)\\.\\.\\.([0-9]+).*\\]");
+
+      if (std::regex_match(pattern, parts, number))
+        {
+          const std::set<std::string> none{
+            "", "-MAX_DOUBLE", "MAX_DOUBLE", "-2147483648", "2147483647"};
+          const std::string from = parts[2], to = parts[3];
+          return std::string("; it must be a ") +
+                 (parts[1] == "Integer" ? "whole number" : "number") +
+                 (none.count(from) ? "" : " from " + from) +
+                 (none.count(to) == none.count(from) ? "" : " up") +
+                 (none.count(to) ? "" : " to " + to);
+        }
+      if (std::regex_match(pattern, parts, selection))
+        {
+          const auto  known = split_list(parts[2], '|');
+          std::string wrong = value;
+          if (parts[1].matched)
+            for (const std::string &part : split_list(value))
+              if (std::find(known.begin(), known.end(), part) == known.end())
+                wrong = part;
+          return known_names(wrong, known);
+        }
+      if (std::regex_match(pattern, parts, list))
+        return "; it must be " +
+               (parts[2] == parts[3] ? parts[2].str() + " values" :
+                                       std::string("a list of values")) +
+               " separated by commas, and of each" +
+               what_is_allowed(parts[1], value).substr(1);
+      return "; allowed is: " +
+             dealii::Patterns::pattern_factory(pattern)->description(
+               dealii::Patterns::PatternBase::Text);
+    }
 
     // All entries that prm knows, by path. ParameterHandler has no way to ask
     // for them but its JSON form.
@@ -100,7 +146,6 @@ namespace Voussoir
   }
 
 
-
   ParameterFile
   ParameterFile::with(const std::vector<std::string> &changes) const
   {
@@ -108,7 +153,6 @@ namespace Voussoir
     copy.change(changes);
     return copy;
   }
-
 
 
   void
@@ -125,7 +169,6 @@ namespace Voussoir
           trim(item.substr(equals + 1)), "--set \"" + item + "\""};
       }
   }
-
 
 
   void
@@ -222,9 +265,15 @@ namespace Voussoir
       for (const std::string &other : declared_sections)
         if (!other.empty() && section_of(other) == section_of(section))
           siblings.push_back(entry_of(other));
+      // where the user himself names the sections
+      std::string cause;
+      for (const std::string entry : {"Names", "Type", "Observers"})
+        if (const auto found = declared.find(section_of(section) + "/" + entry);
+            found != declared.end())
+          cause = "; which ones there are depends on \"" + entry + "\"";
       throw UserError(place + ": there is no section \"" + entry_of(section) +
                       "\" " + in_section(section_of(section)) +
-                      known_names(entry_of(section), siblings) + ".");
+                      known_names(entry_of(section), siblings) + cause + ".");
     };
     for (const auto &[section, place] : sections)
       if (declared_sections.count(section) == 0)
@@ -247,12 +296,11 @@ namespace Voussoir
                             known_names(entry_of(path), siblings) + ".");
           }
         if (!entry->second.pattern->match(value.text))
-          throw UserError(value.place + ": \"" + entry_of(path) + "\" " +
-                          in_section(section) + " cannot be \"" + value.text +
-                          "\"; allowed is: " +
-                          entry->second.pattern->description(
-                            dealii::Patterns::PatternBase::Text) +
-                          ".");
+          throw UserError(
+            value.place + ": \"" + entry_of(path) + "\" " +
+            in_section(section) + " cannot be \"" + value.text + "\"" +
+            what_is_allowed(entry->second.pattern->description(), value.text) +
+            ".");
 
         const auto names = split_list(section, '/');
         for (const std::string &name : names)

@@ -30,7 +30,11 @@ namespace Voussoir
         factor.prepare("\"Time function\" in section \"" + place + "\"");
         mass = &lumped_mass;
         std::vector<std::pair<types::global_dof_index, char>> records;
-        for (const std::string &set : split_list(face_sets))
+        const auto sets = split_list(face_sets);
+        if (sets.empty())
+          throw UserError("\"Face sets\" in section \"" + place +
+                          "\" is empty; name the face sets it acts on.");
+        for (const std::string &set : sets)
           {
             discretization.grid.check_face_set(set,
                                                "\"Face sets\" in section \"" +

@@ -3,7 +3,7 @@
 #include <voussoir/driver/case.h>
 #include <voussoir/mesh/mesh_check.h>
 
-#include <filesystem>
+#include <algorithm>
 
 namespace Voussoir
 {
@@ -24,6 +24,16 @@ namespace Voussoir
       for (const std::string &name : Registry<MeshGenerator>::names())
         names.push_back(name);
       return names;
+    }
+
+    void
+    refuse_repetition(const std::vector<std::string> &names,
+                      const std::string              &place)
+    {
+      for (auto name = names.begin(); name != names.end(); ++name)
+        if (std::find(names.begin(), name, *name) != name)
+          throw UserError(place + " lists \"" + *name +
+                          "\" twice; keep one of the two.");
     }
 
     template <typename Value>
@@ -52,7 +62,9 @@ namespace Voussoir
                         "Names of the " + what +
                           ", separated by commas; each has a section of that "
                           "name here.");
-      for (const std::string &name : split_list(file.given(section + "/Names")))
+      const auto names = split_list(file.given(section + "/Names"));
+      refuse_repetition(names, "\"Names\" in section \"" + section + "\"");
+      for (const std::string &name : names)
         in_section(prm, name, [&] {
           const std::string path = section + "/" + name;
           prm.declare_entry("Class",
@@ -129,7 +141,7 @@ namespace Voussoir
   }
 
 
-  Case::Case(const ParameterFile &file,
+  Case::Case(const ParameterFile                           &file,
              const std::function<void(ParameterHandler &)> &declare_more)
     : file(file)
   {
@@ -137,6 +149,8 @@ namespace Voussoir
     if (declare_more)
       declare_more(prm);
     file.parse(prm);
+    if (!generator && !reader.file.empty())
+      reader.file = file.resolve(reader.file);
     check();
   }
 
@@ -174,8 +188,10 @@ namespace Voussoir
     in_section(prm, "Time", [&] { time.declare(prm); });
     in_section(prm, "Output", [&] {
       output.declare(prm);
-      for (const std::string &name :
-           split_list(file.given("Output/Observers", output.observers)))
+      const auto names =
+        split_list(file.given("Output/Observers", output.observers));
+      refuse_repetition(names, "\"Observers\" in section \"Output\"");
+      for (const std::string &name : names)
         if (Registry<Observer>::entries().count(name) > 0)
           {
             observers.emplace_back(
@@ -231,11 +247,7 @@ namespace Voussoir
         check_mesh(mesh, "The generated mesh");
       }
     else
-      {
-        MeshReader from_folder = reader;
-        from_folder.file       = file.resolve(reader.file);
-        mesh                   = from_folder.read(&log);
-      }
+      mesh = reader.read(&log);
     log << describe_mesh(mesh);
     return mesh;
   }

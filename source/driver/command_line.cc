@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/command_line.h>
 #include <voussoir/driver/simulation.h>
@@ -54,6 +55,17 @@ namespace Voussoir
       for (const auto &item : map)
         names.push_back(item.first);
       return names;
+    }
+
+    template <typename Map>
+    const typename Map::mapped_type &
+    choice(const Map &map, const std::string &option, const std::string &name)
+    {
+      const auto item = map.find(name);
+      if (item == map.end())
+        throw UserError(option + " cannot be \"" + name + "\"" +
+                        known_names(name, keys(map)) + ".");
+      return item->second;
     }
 
     // Everything that can be said of a case without stepping.
@@ -135,14 +147,15 @@ namespace Voussoir
     app.add_flag("--validate",
                  only_validate,
                  "Check everything about the case without running it");
-    app
-      .add_option("--defaults",
-                  defaults,
-                  "Print all entries of the case (or of an empty one) with "
-                  "their values and descriptions")
-      ->check(CLI::IsMember(keys(default_formats())));
-    app.add_option("--list", what, "Print the classes of one kind")
-      ->check(CLI::IsMember(keys(lists())));
+    app.add_option("--defaults",
+                   defaults,
+                   "Print all entries of the case (or of an empty one) with "
+                   "their values and descriptions, as " +
+                     join(keys(default_formats()), ", "));
+    app.add_option("--list",
+                   what,
+                   "Print the classes of one kind: " +
+                     join(keys(lists()), ", "));
     app.add_flag("--restart",
                  options.restart,
                  "Go on from the last checkpoint of the newest output folder");
@@ -157,12 +170,14 @@ namespace Voussoir
       }
     catch (const CLI::ParseError &error)
       {
-        std::ostringstream out, err;
-        const int          code = app.exit(error, out, err);
-        if (first)
-          std::cout << out.str() << std::flush;
-        if (first)
-          std::cerr << err.str() << std::flush;
+        // --help and --version come this way too
+        std::ostringstream text;
+        const int          code = app.exit(error, text, text);
+        if (first && code == 0)
+          std::cout << text.str() << std::flush;
+        else if (first)
+          std::cerr << "Error: " << error.what() << "; see \"voussoir --help\"."
+                    << std::endl;
         return code == 0 ? 0 : 1;
       }
 
@@ -170,27 +185,29 @@ namespace Voussoir
       [&] {
         if (!what.empty())
           {
+            const auto print = choice(lists(), "--list", what);
             if (first)
-              lists().at(what)(std::cout);
+              print(std::cout);
             return;
           }
+        const auto style = defaults.empty() ?
+                             ParameterHandler::Text :
+                             choice(default_formats(), "--defaults", defaults);
         if (case_file.empty() && defaults.empty())
           throw UserError("No parameter file is given; write \"voussoir "
-                          "case.prm\", or \"voussoir --help\".");
+                          "case.prm\", or see \"voussoir --help\".");
         if (case_file.empty())
           {
             const Case empty;
             if (first)
-              empty.prm.print_parameters(std::cout,
-                                         default_formats().at(defaults));
+              empty.prm.print_parameters(std::cout, style);
             return;
           }
         Case parameters(ParameterFile(case_file, changes));
         if (!defaults.empty())
           {
             if (first)
-              parameters.prm.print_parameters(std::cout,
-                                              default_formats().at(defaults));
+              parameters.prm.print_parameters(std::cout, style);
           }
         else if (only_validate)
           validate(parameters, communicator);

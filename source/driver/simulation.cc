@@ -28,43 +28,37 @@ namespace Voussoir
     /** The output folder; without --overwrite the next free number is added,
      *  and a restart goes on in the one that was written last. */
     std::string
-    choose_folder(const Case        &parameters,
-                  const RunOptions  &options,
-                  const std::string &case_name,
-                  const MPI_Comm     communicator)
+    choose_folder(const Case       &parameters,
+                  const RunOptions &options,
+                  const MPI_Comm    communicator)
     {
       if (options.no_output)
         return "";
-      std::string chosen;
-      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      const std::string wanted = parameters.output.folder.empty() ?
+                                   "output/" + parameters.file.name() :
+                                   parameters.output.folder;
+      if (options.overwrite && !options.restart)
         {
-          const std::string wanted = parameters.output.folder.empty() ?
-                                       "output/" + case_name :
-                                       parameters.output.folder;
-          chosen                   = wanted;
-          std::string last         = wanted;
-          for (unsigned int n = 2; fs::exists(chosen); ++n)
-            {
-              last   = chosen;
-              chosen = wanted + "-" + std::to_string(n);
-            }
-          if (options.restart)
-            chosen = last;
-          else if (options.overwrite)
-            {
-              chosen = wanted;
-              fs::remove_all(chosen);
-            }
-          std::error_code problem;
-          fs::create_directories(chosen, problem);
-          if (problem)
-            chosen = "?" + chosen;
+          if (fs::exists(wanted) && !fs::exists(wanted + "/parameters.prm"))
+            throw UserError("--overwrite does not remove \"" + wanted +
+                            "\", which holds no parameters.prm of an earlier "
+                            "run; choose another \"Folder\" in section "
+                            "\"Output\".");
+          return wanted;
         }
-      chosen = Utilities::MPI::broadcast(communicator, chosen);
-      if (chosen[0] == '?')
-        throw UserError("The output folder \"" + chosen.substr(1) +
-                        "\" cannot be made; choose another \"Folder\" in "
-                        "section \"Output\".");
+      std::string next = wanted, last = wanted;
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        for (unsigned int n = 2; fs::exists(next); ++n)
+          {
+            last = next;
+            next = wanted + "-" + std::to_string(n);
+          }
+      const std::string chosen =
+        Utilities::MPI::broadcast(communicator, options.restart ? last : next);
+      if (options.restart && !Checkpoint::exists(chosen + "/checkpoint"))
+        throw UserError("There is no checkpoint in \"" + chosen +
+                        "\" to restart from; run the case without "
+                        "--restart.");
       return chosen;
     }
 
@@ -116,15 +110,10 @@ namespace Voussoir
     : parameters(parameters)
     , options(options)
     , log(communicator, options.quiet)
-    , timer(
-            std::cout,
-            TimerOutput::never,
-            TimerOutput::wall_times)
-    , folder(choose_folder(parameters,
-                           options,
-                           parameters.file.name(),
-                           communicator))
-    , coarse_mesh((report_start(), make_mesh(parameters, log)))
+    , timer(std::cout, TimerOutput::never, TimerOutput::wall_times)
+    , folder(choose_folder(parameters, options, communicator))
+    , coarse_mesh(
+        (report_start(), check_checkpoint(), make_mesh(parameters, log)))
     , coarse_materials(parameters.material_of_coarse_cells(coarse_mesh))
     , damping(parameters.damping)
     , materials(scaled_materials(parameters, damping))
@@ -186,34 +175,18 @@ namespace Voussoir
             time_step,
             parameters.time.end_time,
             [this](const double time) { return base_motion(time); }}
-    , energy(discretization,
-             internal_force,
-             mass,
-             damping,
-             terms,
-             scheme,
-             folder,
-             options.restart ? Checkpoint::read_header(folder + "/checkpoint")
-                                 .at("time")
-                                 .get<double>() :
-                               0.,
-             options.restart)
+    , energy(discretization, internal_force, mass, damping, terms, scheme)
   {
     coarse_mesh = CoarseMesh();
     report_step();
     prepare_ground_motion();
+    for (const auto &observer : parameters.observers)
+      observer.second->check(model);
+    // a case that is refused up to here leaves nothing behind
+    if (!folder.empty())
+      open_output();
     if (options.restart)
       read_checkpoint();
-    if (!folder.empty())
-      {
-        for (const auto &observer : parameters.observers)
-          observer.second->prepare(model, state.time, options.restart);
-        if (Utilities::MPI::this_mpi_process(grid.communicator()) == 0)
-          {
-            std::ofstream prm(folder + "/parameters.prm");
-            parameters.prm.print_parameters(prm, ParameterHandler::Text);
-          }
-      }
     energy.evaluate(state);
     last_good = state;
   }
@@ -222,8 +195,6 @@ namespace Voussoir
   void
   Simulation::report_start()
   {
-    if (!folder.empty())
-      log.open(folder + "/log.txt", options.restart);
     log.line("Voussoir ", version(), " with deal.II " DEAL_II_PACKAGE_VERSION);
 #ifdef DEBUG
     log.line("DEBUG build: every check is on, and it is some thirty times "
@@ -237,6 +208,41 @@ namespace Voussoir
       log.line(parameters.title);
     if (!folder.empty())
       log.line("Results go to ", folder);
+  }
+
+
+  void
+  Simulation::open_output()
+  {
+    const bool first =
+      Utilities::MPI::this_mpi_process(grid.communicator()) == 0;
+    std::error_code problem;
+    if (first)
+      {
+        if (options.overwrite && !options.restart)
+          fs::remove_all(folder, problem);
+        if (!problem)
+          fs::create_directories(folder, problem);
+      }
+    if (Utilities::MPI::max(problem ? 1 : 0, grid.communicator()) == 1)
+      throw UserError("The output folder \"" + folder +
+                      "\" cannot be made; choose another \"Folder\" in "
+                      "section \"Output\".");
+
+    log.open(folder + "/log.txt", options.restart);
+    if (first)
+      {
+        std::ofstream prm(folder + "/parameters.prm");
+        parameters.prm.print_parameters(prm, ParameterHandler::Text);
+      }
+    const double start_time = options.restart ?
+                                Checkpoint::read_header(folder + "/checkpoint")
+                                  .at("time")
+                                  .get<double>() :
+                                0.;
+    energy.open(folder, start_time, options.restart);
+    for (const auto &observer : parameters.observers)
+      observer.second->prepare(model, start_time, options.restart);
   }
 
 
@@ -326,14 +332,29 @@ namespace Voussoir
              discretization.dof_handler.n_dofs(),
              " of degree ",
              discretization.degree);
+    // longest edge of the cells of each material
+    std::vector<double> longest(materials.size(), 0.);
+    for (const auto &cell : grid.triangulation().active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (unsigned int line = 0; line < 12; ++line)
+          {
+            double &edge = longest[material_of(cell)];
+            edge         = std::max(edge, cell->line(line)->diameter());
+          }
     for (unsigned int m = 0; m < materials.size(); ++m)
       {
         const ElasticConstants c = materials[m]->elastic_constants();
-        std::ostringstream     text;
+        const double           edge =
+          Utilities::MPI::max(longest[m], grid.communicator());
+        std::ostringstream text;
         text << std::setprecision(4) << "Material "
              << parameters.materials.objects[m].first << ": mass "
              << mass.total[m] << " kg, P wave " << c.p_wave_speed()
-             << " m/s, S wave " << c.s_wave_speed() << " m/s";
+             << " m/s, S wave " << c.s_wave_speed()
+             << " m/s; its largest cells carry waves up to "
+             << std::setprecision(2)
+             << c.s_wave_speed() * discretization.degree / (8. * edge)
+             << " Hz with 8 nodes per wavelength";
         log.line(text.str());
       }
   }
@@ -423,6 +444,7 @@ namespace Voussoir
   void
   Simulation::run()
   {
+    stop_requested = 0;
     std::signal(SIGINT, request_stop);
     std::signal(SIGTERM, request_stop);
     const Schedule           energy_schedule(parameters.output.energy_interval,
@@ -432,8 +454,8 @@ namespace Voussoir
     clock.restart();
     since_report.restart();
     since_checkpoint.restart();
-    if (!options.restart)
-      observe();
+    // after a restart the observers see again what they saw last
+    observe();
 
     while (state.step < last_step)
       {
@@ -561,12 +583,16 @@ namespace Voussoir
   Simulation::write_checkpoint()
   {
     TimerOutput::Scope scope(timer, "checkpoint");
+    nlohmann::json     seen;
+    for (const auto &[name, observer] : parameters.observers)
+      seen[name] = observer->save();
     checkpoint.write(checkpoint_vectors(),
                      {{"time", state.time},
                       {"step", state.step},
                       {"time step", time_step},
                       {"energy", energy.save()},
                       {"work", accumulated_work()},
+                      {"observers", seen},
                       {"physics", physics()}});
     log.line("Checkpoint written at t = ", state.time, " s");
     since_checkpoint.restart();
@@ -586,27 +612,48 @@ namespace Voussoir
 
 
   void
+  Simulation::check_checkpoint()
+  {
+    if (!options.restart)
+      return;
+    const nlohmann::json header =
+      Checkpoint::read_header(folder + "/checkpoint");
+    const nlohmann::json mine = physics(), theirs = header.at("physics");
+    const auto           line = [](const nlohmann::json &lines, std::size_t i) {
+      return i < lines.size() ? Utilities::trim(lines[i].get<std::string>()) :
+                                          std::string("nothing");
+    };
+    for (std::size_t i = 0; i < std::max(mine.size(), theirs.size()); ++i)
+      if (line(mine, i) != line(theirs, i))
+        throw UserError("The checkpoint in \"" + folder +
+                        "\" was written with \"" + line(theirs, i) +
+                        "\", the case now has \"" + line(mine, i) +
+                        "\"; restart with the same physics, or start "
+                        "afresh.");
+    const double reached = header.at("time");
+    if (reached >= parameters.time.end_time)
+      {
+        std::ostringstream text;
+        text << "The checkpoint in \"" << folder << "\" is of " << reached
+             << " s, but \"End time\" in section \"Time\" is "
+             << parameters.time.end_time << " s; set a later one.";
+        throw UserError(text.str());
+      }
+  }
+
+
+  void
   Simulation::read_checkpoint()
   {
     const nlohmann::json header =
       Checkpoint::read_header(folder + "/checkpoint");
-    const nlohmann::json mine = physics(), theirs = header.at("physics");
-    for (std::size_t i = 0; i < std::max(mine.size(), theirs.size()); ++i)
-      if (i >= mine.size() || i >= theirs.size() || mine[i] != theirs[i])
-        throw UserError(
-          "The checkpoint in \"" + folder + "\" was written with \"" +
-          Utilities::trim(i < theirs.size() ? theirs[i].get<std::string>() :
-                                              "less") +
-          "\", the case now has \"" +
-          Utilities::trim(i < mine.size() ? mine[i].get<std::string>() :
-                                            "less") +
-          "\"; restart with the same physics, or start afresh.");
-    for (const auto &observer : parameters.observers)
-      observer.second->prepare(model, header.at("time"), true);
     checkpoint.read(checkpoint_vectors());
     state.time = header.at("time");
     state.step = header.at("step");
     energy.load(header.at("energy"));
+    for (const auto &[name, observer] : parameters.observers)
+      if (header.at("observers").contains(name))
+        observer->load(header.at("observers").at(name));
     const std::vector<double> work = header.at("work");
     if (Utilities::MPI::this_mpi_process(grid.communicator()) == 0)
       {

@@ -26,6 +26,10 @@ namespace Voussoir
                           "\" is no point; write \"name: x y z\" [m], several "
                           "separated by \";\".");
         point.name = Utilities::trim(item.substr(0, colon));
+        for (const NamedPoint &other : points)
+          if (other.name == point.name)
+            throw UserError(place + " names \"" + point.name +
+                            "\" twice; give each point its own name.");
         points.push_back(point);
       }
     return points;

@@ -8,8 +8,7 @@
 set(VOUSSOIR_SIMD_WIDENED 0)
 set(VOUSSOIR_SIMD_INCLUDE)
 
-find_path(_dealii_include deal.II/base/config.h PATHS ${DEAL_II_INCLUDE_DIRS} NO_DEFAULT_PATH REQUIRED)
-file(READ ${_dealii_include}/deal.II/base/config.h _config)
+file(READ ${DEAL_II_PATH}/${DEAL_II_INCLUDE_RELDIR}/deal.II/base/config.h _config)
 string(REGEX MATCH "DEAL_II_VECTORIZATION_WIDTH_IN_BITS ([0-9]+)" _ "${_config}")
 set(_packaged_width ${CMAKE_MATCH_1})
 

@@ -177,7 +177,7 @@ namespace Voussoir
     };
     struct Traction
     {
-      double point[3], area[3];
+      double point[3], area[3], middle;
     };
     std::vector<std::pair<types::global_dof_index, Stiffness>> stiffnesses;
     std::vector<std::pair<types::global_dof_index, Traction>>  tractions;
@@ -246,6 +246,7 @@ namespace Voussoir
               for (const unsigned int q : at_points.quadrature_point_indices())
                 {
                   Traction record;
+                  record.middle = cell->face(face)->center()[2];
                   for (unsigned int d = 0; d < 3; ++d)
                     {
                       record.point[d] = at_points.quadrature_point(q)[d];
@@ -288,7 +289,8 @@ namespace Voussoir
       boundary.contributions.push_back(
         {boundary_number.at(node),
          Point<3>(record.point[0], record.point[1], record.point[2]),
-         Tensor<1, 3>({record.area[0], record.area[1], record.area[2]})});
+         Tensor<1, 3>({record.area[0], record.area[1], record.area[2]}),
+         record.middle});
 
     for (unsigned int d = 0; d < 3; ++d)
       {

@@ -45,7 +45,11 @@ namespace Voussoir
           double components[3];
         };
         std::vector<std::pair<types::global_dof_index, Force>> forces;
-        for (const std::string &set : split_list(face_sets))
+        const auto sets = split_list(face_sets);
+        if (sets.empty())
+          throw UserError("\"Face sets\" in section \"" + place +
+                          "\" is empty; name the face sets it acts on.");
+        for (const std::string &set : sets)
           {
             discretization.grid.check_face_set(set,
                                                "\"Face sets\" in section \"" +

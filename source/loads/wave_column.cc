@@ -238,9 +238,9 @@ namespace Voussoir
 
 
   WaveColumn::StressPoint
-  WaveColumn::stress_point(const double z) const
+  WaveColumn::stress_point(const double z, const double middle) const
   {
-    const unsigned int e = element_at(z);
+    const unsigned int e = element_at(z + 1e-6 * (middle - z));
     StressPoint        point{e, {}};
     for (const auto &shape : shapes)
       point.gradients.push_back(
@@ -386,7 +386,8 @@ namespace Voussoir
     const auto   key       = [&](const double z) {
       return static_cast<long>(std::lround((z - column.bottom()) / tolerance));
     };
-    std::map<long, unsigned int> level_numbers, stress_numbers;
+    std::map<long, unsigned int>                          level_numbers;
+    std::map<std::pair<unsigned int, long>, unsigned int> stress_numbers;
     for (const Point<3> &node : geometry.nodes)
       {
         const auto [place, is_new] =
@@ -401,10 +402,13 @@ namespace Voussoir
         unsigned int point = numbers::invalid_unsigned_int;
         if (std::abs(item.area[2]) < 0.9 * item.area.norm())
           {
+            const auto at = column.stress_point(item.point[2], item.middle);
             const auto [place, is_new] =
-              stress_numbers.emplace(key(item.point[2]), stress_points.size());
+              stress_numbers.emplace(std::make_pair(at.element,
+                                                    key(item.point[2])),
+                                     stress_points.size());
             if (is_new)
-              stress_points.push_back(column.stress_point(item.point[2]));
+              stress_points.push_back(at);
             point = place->second;
           }
         sums[{item.node, point}] += item.area;
@@ -474,22 +478,32 @@ namespace Voussoir
                        const double               duration,
                        const double               maximum_frequency)
   {
-    // the column's answer to a short pulse, until it has died out
-    WaveColumn         trial = column;
-    const double       width = 2. / maximum_frequency;
-    const Pulse        pulse(Quantity::velocity, width, 1.);
-    const double       listen = width + 40. * column.travel_time();
-    TimeSeries         excitation{time_step, {}}, response[3];
-    const unsigned int n = static_cast<unsigned int>(listen / time_step);
+    // the column's answer to a short pulse, until it has died out: the largest
+    // velocity of four travel times, the period of a layer at least
+    WaveColumn   trial = column;
+    const double width = 2. / maximum_frequency;
+    const Pulse  pulse(Quantity::velocity, width, 1.);
+    const double period = 4. * column.travel_time();
+    TimeSeries   excitation{time_step, {}}, response[3];
+    double       peak = 0., recent = 0., next_look = width + period;
     for (auto &series : response)
       series.time_step = time_step;
-    for (unsigned int i = 0; i < n; ++i)
+    for (double time = 0.; time < next_look;
+         time        = excitation.values.size() * time_step)
       {
-        const double v = pulse.velocity(i * time_step);
-        trial.advance(Tensor<1, 3>({v, v, v}));
-        excitation.values.push_back(v);
-        for (unsigned int d = 0; d < 3; ++d)
+               const double v = pulse.velocity(time);
+               trial.advance(Tensor<1, 3>({v, v, v}));
+               excitation.values.push_back(v);
+               for (unsigned int d = 0; d < 3; ++d)
           response[d].values.push_back(trial.surface_velocity()[d]);
+        recent = std::max(recent, trial.surface_velocity().norm());
+               if (time + time_step >= next_look)
+          {
+                   peak = std::max(peak, recent);
+                   if (recent > 1e-4 * peak)
+              next_look += period;
+            recent = 0.;
+          }
       }
 
     GroundMotionSignals incident;

@@ -65,6 +65,13 @@ namespace Voussoir
                           "Size ratio of successive layers of rock away from "
                           "the dam [-].",
                           Patterns::Double(1., 2.));
+        prm.add_parameter(
+          "Largest rock cell",
+          largest_cell,
+          "At which the rock's cells stop growing [m]; waves need about eight "
+          "cells per wavelength, so 60 m of rock with S waves of 2000 m/s carry "
+          "4 Hz.",
+          Patterns::Double(1.));
         prm.enter_subsection("Custom shape");
         custom_shape.declare(prm);
         prm.leave_subsection();
@@ -80,12 +87,13 @@ namespace Voussoir
       generate() const override;
 
     private:
-      std::string  shape_name  = "Baihetan-like";
-      unsigned int n_joints    = 9;
-      double       cell_size   = 16.;
-      unsigned int n_thickness = 2;
-      double       rock_extent = 2.;
-      double       growth      = 1.4;
+      std::string  shape_name   = "Baihetan-like";
+      unsigned int n_joints     = 9;
+      double       cell_size    = 16.;
+      unsigned int n_thickness  = 2;
+      double       rock_extent  = 2.;
+      double       growth       = 1.4;
+      double       largest_cell = 60.;
       ArchDamShape custom_shape;
     };
 
@@ -101,7 +109,8 @@ namespace Voussoir
             const double               rock_extent,
             const unsigned int         n_thickness,
             const double               cell_size,
-            const double               growth)
+            const double               growth,
+            const double               largest_cell)
         : n_thickness(n_thickness)
         , turning_length(relative_turning_length * height)
       {
@@ -115,13 +124,12 @@ namespace Voussoir
         upstream_end += rock_extent * height;
         downstream_end -= rock_extent * height;
 
-        const unsigned int n =
-          n_graded_cells(rock_extent * height + turning_length,
-                         cell_size,
-                         growth);
-        points       = graded_points(n, growth);
-        first_in_dam = n;
-        n_layers     = 2 * n + n_thickness;
+        points       = graded_points(rock_extent * height + turning_length,
+                               cell_size,
+                               growth,
+                               largest_cell);
+        first_in_dam = points.size() - 1;
+        n_layers     = 2 * first_in_dam + n_thickness;
       }
 
       // x, y of all vertices on a line, from downstream to upstream.
@@ -207,14 +215,16 @@ namespace Voussoir
                                         n_blocks,
                                         columns_per_block,
                                         rock_extent,
-                                        growth);
+                                        growth,
+                                        largest_cell);
       const Sweep               sweep(section,
                         sections,
                         shape.height,
                         rock_extent,
                         n_thickness,
                         cell_size,
-                        growth);
+                        growth,
+                        largest_cell);
       const unsigned int        n_lines   = section.vertices.size();
       const unsigned int        n_layers  = sweep.n_layers;
       const unsigned int        dam_begin = sweep.first_in_dam,

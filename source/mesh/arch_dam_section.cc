@@ -1,3 +1,4 @@
+#include <voussoir/base/error.h>
 #include <voussoir/mesh/arch_dam_section.h>
 #include <voussoir/mesh/grading.h>
 
@@ -26,12 +27,16 @@ namespace Voussoir
                                            const unsigned int     n_blocks,
                                            const unsigned int columns_per_block,
                                            const double       rock_extent,
-                                           const double       growth)
+                                           const double       growth,
+                                           const double       largest_cell)
     : sections(sections)
     , height(height)
   {
-    place_columns(n_blocks * columns_per_block, rock_extent, growth);
-    place_rows(rock_extent, growth);
+    place_columns(n_blocks * columns_per_block,
+                  rock_extent,
+                  growth,
+                  largest_cell);
+    place_rows(rock_extent, growth, largest_cell);
     follow_contour();
     make_quads();
     smooth(columns_per_block);
@@ -41,7 +46,8 @@ namespace Voussoir
   void
   ArchDamCrossSection::place_columns(const unsigned int n_dam_columns,
                                      const double       rock_extent,
-                                     const double       growth)
+                                     const double       growth,
+                                     const double       largest_cell)
   {
     const double right = sections.right_end, left = sections.left_end;
     const double width = (left - right) / n_dam_columns;
@@ -52,7 +58,7 @@ namespace Voussoir
       const double extent = (end < 0 ? -1. : 1.) * rock_extent * height;
       const double length = std::abs(sections.arc_length_at(x + extent) - end);
       auto         distances =
-        graded_points(n_graded_cells(length, growth * width, growth), growth);
+        graded_points(length, growth * width, growth, 2. * largest_cell);
       for (double &distance : distances)
         distance *= length;
       return distances;
@@ -76,7 +82,9 @@ namespace Voussoir
 
   // Rows so high that the contour crosses at most one of them per column.
   void
-  ArchDamCrossSection::place_rows(const double rock_extent, const double growth)
+  ArchDamCrossSection::place_rows(const double rock_extent,
+                                  const double growth,
+                                  const double largest_cell)
   {
     double row_height =
       columns[first_dam_column + 1] - columns[first_dam_column];
@@ -85,10 +93,15 @@ namespace Voussoir
     const unsigned int n_dam_rows =
       std::max(1., std::floor(height / row_height * (1. + 1e-9)));
     row_height = height / n_dam_rows;
+    if (n_dam_rows < 3)
+      throw UserError("In section \"Mesh/arch dam\" the canyon's banks are so "
+                      "steep that the dam would have fewer than three rows of "
+                      "blocks; choose a smaller \"Cell size\" or gentler "
+                      "banks.");
 
     const double depth = rock_extent * height;
     const auto   below =
-      graded_points(n_graded_cells(depth, growth * row_height, growth), growth);
+      graded_points(depth, growth * row_height, growth, 2. * largest_cell);
     base_row = below.size() - 1;
     for (unsigned int i = base_row; i > 0; --i)
       rows.push_back(-depth * below[i]);
@@ -105,7 +118,12 @@ namespace Voussoir
     const double row_height = height / (rows.size() - 1 - base_row);
     for (int i = 0; i <= last_column; ++i)
       {
-        contour_rows.push_back(base_row + std::lround(contour[i] / row_height));
+        // only the ends of the crest stand in the crest's row
+        const int crest_row = rows.size() - 1;
+        const int row       = base_row + std::lround(contour[i] / row_height);
+        contour_rows.push_back(contour[i] < height * (1. - 1e-9) ?
+                                 std::min(row, crest_row - 1) :
+                                 row);
         for (int k = 0; k < int(rows.size()); ++k)
           {
             on_contour.push_back(k == contour_rows[i]);

@@ -44,8 +44,14 @@ namespace Voussoir
       {
         for (unsigned int d = 0; d < 3; ++d)
           if (lower[d] >= upper[d])
-            throw UserError("In section \"Mesh/box\" the \"Upper corner\" must "
-                            "lie above the \"Lower corner\" in x, y and z.");
+            {
+              std::ostringstream text;
+              text << "\"Upper corner\" in section \"Mesh/box\" is " << upper[d]
+                   << " m in "
+                   << "xyz"[d] << ", but must lie above the \"Lower corner\", "
+                   << lower[d] << " m; correct one of them.";
+              throw UserError(text.str());
+            }
         layers();
       }
 

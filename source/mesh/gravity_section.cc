@@ -166,8 +166,8 @@ namespace Voussoir
       {
         std::vector<double> distances;
         if (rock_extent > 0.)
-          for (const double point :
-               graded_points(n_graded_cells(rock_extent, size, growth), growth))
+          for (const double point : graded_points(
+                 rock_extent, size, growth, std::numeric_limits<double>::max()))
             if (point > 0.)
               distances.push_back(rock_extent * point);
         return distances;

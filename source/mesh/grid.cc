@@ -4,10 +4,8 @@
 #include <voussoir/mesh/grid.h>
 
 #include <deal.II/base/mpi.h>
-
 #include <deal.II/distributed/fully_distributed_tria.h>
 #include <deal.II/distributed/tria.h>
-
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/tria_description.h>
 
@@ -29,7 +27,6 @@ namespace Voussoir
                                  coarse.cells[c].end());
       return {cells, SubCellData()};
     }
-
 
 
     // The path of a refined cell below its coarse cell, one child number per
@@ -92,7 +89,6 @@ namespace Voussoir
   } // namespace
 
 
-
   void
   GridParameters::declare(ParameterHandler &prm)
   {
@@ -114,11 +110,10 @@ namespace Voussoir
   }
 
 
-
-  Grid::Grid(const CoarseMesh &                                coarse,
-             const GridParameters &                            parameters,
+  Grid::Grid(const CoarseMesh                                &coarse,
+             const GridParameters                            &parameters,
              const std::function<double(const unsigned int)> &cost,
-             const MPI_Comm                                    communicator)
+             const MPI_Comm                                   communicator)
     : mpi_communicator(communicator)
     , sets_of_cell(coarse.cells.size())
     , sets_of_faces(coarse.cells.size())
@@ -146,10 +141,9 @@ namespace Voussoir
   }
 
 
-
   void
-  Grid::create_p4est(const CoarseMesh &                                coarse,
-                     const GridParameters &                            parameters,
+  Grid::create_p4est(const CoarseMesh     &coarse,
+                     const GridParameters &parameters,
                      const std::function<double(const unsigned int)> &cost)
   {
     using Distributed = parallel::distributed::Triangulation<3>;
@@ -160,8 +154,8 @@ namespace Voussoir
     // deal.II adds 1000 to each weight
     triangulation->signals.weight.connect(
       [&](const auto &cell, const auto) -> unsigned int {
-        return static_cast<unsigned int>(
-          1000. * (cost(Grid::coarse_cell(cell)) - 1.));
+        return static_cast<unsigned int>(1000. *
+                                         (cost(Grid::coarse_cell(cell)) - 1.));
       });
     const auto [cells, faces] = cell_data(coarse);
     triangulation->create_triangulation(coarse.vertices, cells, faces);
@@ -172,10 +166,9 @@ namespace Voussoir
   }
 
 
-
   void
-  Grid::create_metis(const CoarseMesh &                                coarse,
-                     const GridParameters &                            parameters,
+  Grid::create_metis(const CoarseMesh     &coarse,
+                     const GridParameters &parameters,
                      const std::function<double(const unsigned int)> &cost)
   {
     dealii::Triangulation<3> serial(
@@ -188,14 +181,13 @@ namespace Voussoir
     for (const auto &cell : serial.active_cell_iterators())
       weights.push_back(
         static_cast<unsigned int>(100. * cost(Grid::coarse_cell(cell))));
-    GridTools::partition_triangulation(
-      Utilities::MPI::n_mpi_processes(mpi_communicator),
-      weights,
-      serial,
-      SparsityTools::Partitioner::metis);
-    const auto description =
-      TriangulationDescription::Utilities::create_description_from_triangulation(
-        serial, mpi_communicator);
+    GridTools::partition_triangulation(Utilities::MPI::n_mpi_processes(
+                                         mpi_communicator),
+                                       weights,
+                                       serial,
+                                       SparsityTools::Partitioner::metis);
+    const auto description = TriangulationDescription::Utilities::
+      create_description_from_triangulation(serial, mpi_communicator);
 
     auto triangulation =
       std::make_unique<parallel::fullydistributed::Triangulation<3>>(
@@ -205,10 +197,9 @@ namespace Voussoir
   }
 
 
-
   void
   Grid::refine(dealii::Triangulation<3> &triangulation,
-               const GridParameters &    parameters) const
+               const GridParameters     &parameters) const
   {
     triangulation.refine_global(parameters.global_refinement);
     for (const LocalRefinement &item :
@@ -237,7 +228,6 @@ namespace Voussoir
   }
 
 
-
   const Grid::Triangulation &
   Grid::triangulation() const
   {
@@ -245,13 +235,11 @@ namespace Voussoir
   }
 
 
-
   MPI_Comm
   Grid::communicator() const
   {
     return mpi_communicator;
   }
-
 
 
   bool
@@ -266,9 +254,8 @@ namespace Voussoir
   }
 
 
-
   bool
-  Grid::in_face_set(const Cell &       cell,
+  Grid::in_face_set(const Cell        &cell,
                     const unsigned int face,
                     const std::string &name) const
   {
@@ -286,13 +273,11 @@ namespace Voussoir
   }
 
 
-
   void
-  Grid::for_each_face(
-    const std::string &name,
-    const std::function<
-      void(const dealii::Triangulation<3>::active_cell_iterator &,
-           const unsigned int)> &visit) const
+  Grid::for_each_face(const std::string      &name,
+                      const std::function<void(
+                        const dealii::Triangulation<3>::active_cell_iterator &,
+                        const unsigned int)> &visit) const
   {
     for (const auto &cell : mesh->active_cell_iterators())
       if (cell->is_locally_owned() &&
@@ -303,7 +288,6 @@ namespace Voussoir
   }
 
 
-
   const std::vector<std::string> &
   Grid::cell_set_names() const
   {
@@ -311,13 +295,11 @@ namespace Voussoir
   }
 
 
-
   const std::vector<std::string> &
   Grid::face_set_names() const
   {
     return face_sets;
   }
-
 
 
   void
@@ -330,7 +312,6 @@ namespace Voussoir
   }
 
 
-
   void
   Grid::check_face_set(const std::string &name, const std::string &place) const
   {
@@ -339,7 +320,6 @@ namespace Voussoir
                       "\", which the mesh does not have" +
                       known_names(name, face_sets) + ".");
   }
-
 
 
   std::string
@@ -357,7 +337,6 @@ namespace Voussoir
   }
 
 
-
   unsigned int
   Grid::coarse_cell(const Cell &cell)
   {
@@ -371,7 +350,6 @@ namespace Voussoir
       coarse = coarse->parent();
     return coarse->index();
   }
-
 
 
   std::uint64_t

@@ -77,8 +77,7 @@ namespace Voussoir
       "Abaqus (.inp), AVS UCD (.inp or .ucd) or VTK legacy (.vtk). Named sets "
       "are physical groups in Gmsh, ELSET, NSET and SURFACE in Abaqus; the "
       "others call cells \"material 3\" and faces \"boundary 2\" after their "
-      "numbers. The path is seen from the folder in which the program is "
-      "started.",
+      "numbers. The path is relative to the folder of the parameter file.",
       Patterns::FileName(Patterns::FileName::input));
     prm.add_parameter("Scale",
                       scale,
@@ -93,8 +92,8 @@ namespace Voussoir
   {
     if (file.empty())
       throw UserError(
-        "The entry \"File\" of the mesh is empty; give the path of "
-        "a mesh file (.msh, .inp, .ucd or .vtk).");
+        "\"File\" in section \"Mesh/file\" is empty; give the path of a mesh "
+        "file (.msh, .inp, .ucd or .vtk).");
     MeshFile exists(file);
   }
 

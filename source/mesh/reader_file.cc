@@ -20,9 +20,9 @@ namespace Voussoir
     content.assign(std::istreambuf_iterator<char>(in), {});
     if (!in || content.empty())
       throw UserError("The mesh file \"" + filename +
-                      "\" does not exist, cannot be read or is empty; give the "
-                      "path of a mesh file, as seen from the folder in which "
-                      "the program is started.");
+                      "\" does not exist, cannot be read or is empty; give in "
+                      "\"File\" the path of a mesh file, relative to the "
+                      "folder of the parameter file.");
   }
 
 

@@ -12,10 +12,7 @@ namespace Voussoir
                                const LumpedMass        &mass,
                                const Damping           &damping,
                                const NodalTerms        &terms,
-                               const CentralDifference &scheme,
-                               const std::string       &folder,
-                               const double             start_time,
-                               const bool               restarted)
+                               const CentralDifference &scheme)
     : discretization(discretization)
     , internal_force(internal_force)
     , mass(mass)
@@ -23,9 +20,16 @@ namespace Voussoir
     , terms(terms)
     , scheme(scheme)
     , work_vector(discretization.create_vector())
+  {}
+
+
+  void
+  EnergyBalance::open(const std::string &folder,
+                      const double       start_time,
+                      const bool         restarted)
   {
-    if (folder.empty() || Utilities::MPI::this_mpi_process(
-                            discretization.grid.communicator()) != 0)
+    if (Utilities::MPI::this_mpi_process(discretization.grid.communicator()) !=
+        0)
       return;
     const std::string        name = folder + "/energy.csv";
     std::vector<std::string> kept;
@@ -33,7 +37,8 @@ namespace Voussoir
       {
         std::ifstream old(name);
         for (std::string line; std::getline(old, line);)
-          if (kept.empty() || std::strtod(line.c_str(), nullptr) <= start_time)
+          if (kept.empty() || std::strtod(line.c_str(), nullptr) <
+                                start_time - 0.5 * scheme.time_step)
             kept.push_back(line);
       }
     file.open(name);

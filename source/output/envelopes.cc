@@ -36,26 +36,11 @@ namespace Voussoir
       void
       observe(const State &state) override
       {
+        if (state.step > 0 && schedule.due(state.step))
+          update(state);
         // the acceleration needs the velocity of two steps in a row
         if (schedule.due(state.step + 1))
           previous = state.velocity;
-        if (state.step == 0 || !schedule.due(state.step))
-          return;
-        const auto norm = [](const double *x) {
-          return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-        };
-        for (unsigned int i = 0; i < largest.locally_owned_size(); i += 3)
-          {
-            const double *v = state.velocity.begin() + i;
-            const double *p = previous.begin() + i;
-            const double  a[3]{(v[0] - p[0]) / model->time_step,
-                               (v[1] - p[1]) / model->time_step,
-                               (v[2] - p[2]) / model->time_step};
-            double       *m = largest.begin() + i;
-            m[0] = std::max(m[0], norm(state.displacement.begin() + i));
-            m[1] = std::max(m[1], norm(v));
-            m[2] = std::max(m[2], norm(a));
-          }
       }
 
       void
@@ -78,6 +63,26 @@ namespace Voussoir
       }
 
     private:
+      void
+      update(const State &state)
+      {
+        const auto norm = [](const double *x) {
+          return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+        };
+        for (unsigned int i = 0; i < largest.locally_owned_size(); i += 3)
+          {
+            const double *v = state.velocity.begin() + i;
+            const double *p = previous.begin() + i;
+            const double  a[3]{(v[0] - p[0]) / model->time_step,
+                               (v[1] - p[1]) / model->time_step,
+                               (v[2] - p[2]) / model->time_step};
+            double       *m = largest.begin() + i;
+            m[0] = std::max(m[0], norm(state.displacement.begin() + i));
+            m[1] = std::max(m[1], norm(v));
+            m[2] = std::max(m[2], norm(a));
+          }
+      }
+
       double interval = 0.01;
 
       std::unique_ptr<ObservedModel> model;

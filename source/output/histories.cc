@@ -61,7 +61,7 @@ namespace Voussoir
         communicator = model->discretization.grid.communicator();
         if (Utilities::MPI::this_mpi_process(communicator) == 0)
           open_file(start_time, restarted);
-        largest.resize(setup.points.size());
+        largest.assign(setup.points.size(), {{0., 0., 0.}});
       }
 
       void
@@ -106,6 +106,20 @@ namespace Voussoir
             {"largest displacement [m]", largest[p][0]},
             {"largest velocity [m/s]", largest[p][1]},
             {"largest acceleration [m/s2]", largest[p][2]}};
+      }
+
+      nlohmann::json
+      save() override
+      {
+        flush();
+        return largest;
+      }
+
+      void
+      load(const nlohmann::json &saved) override
+      {
+        if (saved.size() == largest.size())
+          saved.get_to(largest);
       }
 
     private:
@@ -162,11 +176,11 @@ namespace Voussoir
         std::vector<std::string> kept;
         if (restarted)
           {
-            // lines written after the checkpoint come again
+            // lines from the checkpoint's time on come again
             std::ifstream old(name);
             for (std::string line; std::getline(old, line);)
               if (kept.empty() || std::strtod(line.c_str(), nullptr) <
-                                    start_time - 1.5 * model->time_step)
+                                    start_time - 0.5 * model->time_step)
                 kept.push_back(line);
           }
         file.open(name);

@@ -80,6 +80,14 @@ namespace Voussoir
     void
     report_start();
 
+    /** Makes the output folder and its files. */
+    void
+    open_output();
+
+    /** Refuses a checkpoint of other physics or of a finished run. */
+    void
+    check_checkpoint();
+
     bool
     rigid_base() const;
 
@@ -89,7 +97,6 @@ namespace Voussoir
 
     double
     find_largest_step();
-
 
     double
     choose_time_step();

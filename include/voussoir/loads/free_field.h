@@ -22,6 +22,7 @@ namespace Voussoir
       unsigned int         node;
       dealii::Point<3>     point;
       dealii::Tensor<1, 3> area; // outward normal times shape function times dA
+      double               middle; // height of the face's middle [m]
     };
     std::vector<Contribution> contributions;
   };

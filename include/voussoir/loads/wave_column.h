@@ -59,8 +59,10 @@ namespace Voussoir
       unsigned int        element;
       std::vector<double> gradients;
     };
+    /** At @p z, in the element on the side of the height @p middle: between
+     *  two elements the stress may jump. */
     StressPoint
-    stress_point(const double z) const;
+    stress_point(const double z, const double middle) const;
 
     /** sigma_xz, sigma_yz, sigma_zz [Pa]. */
     dealii::Tensor<1, 3>

@@ -26,13 +26,15 @@ namespace Voussoir
      * @param columns_per_block columns of the grid
      * @param rock_extent       rock beside and below over the height
      * @param growth            size ratio of successive columns and rows
+     * @param largest_cell      at which their halves stop growing [m]
      */
     ArchDamCrossSection(const ArchDamSections &sections,
                         const double           height,
                         const unsigned int     n_blocks,
                         const unsigned int     columns_per_block,
                         const double           rock_extent,
-                        const double           growth);
+                        const double           growth,
+                        const double           largest_cell);
 
     struct Vertex
     {
@@ -58,10 +60,13 @@ namespace Voussoir
     void
     place_columns(const unsigned int n_dam_columns,
                   const double       rock_extent,
-                  const double       growth);
+                  const double       growth,
+                  const double       largest_cell);
 
     void
-    place_rows(const double rock_extent, const double growth);
+    place_rows(const double rock_extent,
+               const double growth,
+               const double largest_cell);
 
     void
     follow_contour();

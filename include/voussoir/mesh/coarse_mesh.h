@@ -18,7 +18,8 @@ namespace Voussoir
    */
   struct CoarseMesh
   {
-    /** One face of one cell, numbered as deal.II numbers faces: -x +x -y +y -z +z of the reference cell. */
+    /** One face of one cell, numbered as deal.II numbers faces: -x +x -y +y -z
+     * +z of the reference cell. */
     struct Face
     {
       unsigned int cell;
@@ -27,12 +28,14 @@ namespace Voussoir
 
     std::vector<dealii::Point<3>> vertices;
 
-    /** Vertex indices in deal.II's lexicographic order (x fastest, then y, then z of the reference cell). */
+    /** Vertex indices in deal.II's lexicographic order (x fastest, then y, then
+     * z of the reference cell). */
     std::vector<std::array<unsigned int, 8>> cells;
 
     std::map<std::string, std::vector<unsigned int>> cell_sets;
 
-    /** Sets of outer or inner faces; an inner face is named from one of its two sides. */
+    /** Sets of outer or inner faces; an inner face is named from one of its two
+     * sides. */
     std::map<std::string, std::vector<Face>> face_sets;
 
     /** Sets of vertices (Abaqus NSET, Gmsh physical points). */

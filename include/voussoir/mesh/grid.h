@@ -4,7 +4,6 @@
 #include <voussoir/mesh/coarse_mesh.h>
 
 #include <deal.II/base/parameter_handler.h>
-
 #include <deal.II/distributed/tria_base.h>
 
 #include <functional>
@@ -27,9 +26,9 @@ namespace Voussoir
   /**
    * The distributed triangulation with its named sets.
    *
-   * The sets are those of the coarse mesh; refined cells and faces belong to the
-   * sets of the coarse cell or face they lie in. Set names are checked when they
-   * are looked up, with the known names in the message.
+   * The sets are those of the coarse mesh; refined cells and faces belong to
+   * the sets of the coarse cell or face they lie in. Set names are checked when
+   * they are looked up, with the known names in the message.
    */
   class Grid
   {
@@ -41,10 +40,10 @@ namespace Voussoir
      * @param cost_of_cell relative cost of a cell of the set with this index in
      *   cell_set_names(), used to balance the ranks
      */
-    Grid(const CoarseMesh &                                mesh,
-         const GridParameters &                            parameters,
+    Grid(const CoarseMesh                                &mesh,
+         const GridParameters                            &parameters,
          const std::function<double(const unsigned int)> &cost_of_coarse_cell,
-         const MPI_Comm                                    communicator);
+         const MPI_Comm                                   communicator);
 
     const Triangulation &
     triangulation() const;
@@ -58,16 +57,16 @@ namespace Voussoir
 
     /** Whether this face of the cell lies in the named face set. */
     bool
-    in_face_set(const Cell &       cell,
+    in_face_set(const Cell        &cell,
                 const unsigned int face,
                 const std::string &name) const;
 
     /** Calls @p visit for each locally owned cell and face of the set. */
     void
-    for_each_face(
-      const std::string &name,
-      const std::function<void(const dealii::Triangulation<3>::active_cell_iterator &,
-                               const unsigned int)> &visit) const;
+    for_each_face(const std::string &name,
+                  const std::function<
+                    void(const dealii::Triangulation<3>::active_cell_iterator &,
+                         const unsigned int)> &visit) const;
 
     const std::vector<std::string> &
     cell_set_names() const;
@@ -92,26 +91,26 @@ namespace Voussoir
     coarse_cell(const Cell &cell);
 
     /**
-     * A number for a cell that does not depend on the partition: its coarse cell
-     * and the path of children below it.
+     * A number for a cell that does not depend on the partition: its coarse
+     * cell and the path of children below it.
      */
     static std::uint64_t
     global_key(const Cell &cell);
 
   private:
     void
-    create_p4est(const CoarseMesh &                                coarse,
-                 const GridParameters &                            parameters,
+    create_p4est(const CoarseMesh                                &coarse,
+                 const GridParameters                            &parameters,
                  const std::function<double(const unsigned int)> &cost);
 
     void
-    create_metis(const CoarseMesh &                                coarse,
-                 const GridParameters &                            parameters,
+    create_metis(const CoarseMesh                                &coarse,
+                 const GridParameters                            &parameters,
                  const std::function<double(const unsigned int)> &cost);
 
     void
     refine(dealii::Triangulation<3> &triangulation,
-           const GridParameters &    parameters) const;
+           const GridParameters     &parameters) const;
 
     MPI_Comm                       mpi_communicator;
     std::unique_ptr<Triangulation> mesh;

@@ -17,12 +17,12 @@ namespace Voussoir
    */
   struct EnergyTerms
   {
-    double kinetic = 0.;
-    double strain  = 0.; // cells and boundary springs
-    double memory  = 0.; // in the springs of the Maxwell branches
-    double damping = 0.; // lost in the material so far
-    double boundary = 0.; // gone through the boundary dashpots so far
-    double input   = 0.; // work of all forces and of a moving base so far
+    double kinetic     = 0.;
+    double strain      = 0.; // cells and boundary springs
+    double memory      = 0.; // in the springs of the Maxwell branches
+    double damping     = 0.; // lost in the material so far
+    double boundary    = 0.; // gone through the boundary dashpots so far
+    double input       = 0.; // work of all forces and of a moving base so far
     double constraints = 0.; // work of the projections so far
 
     double
@@ -46,15 +46,19 @@ namespace Voussoir
   class EnergyBalance
   {
   public:
-    EnergyBalance(const Discretization &   discretization,
-                  const InternalForce &    internal_force,
-                  const LumpedMass &       mass,
-                  const Damping &          damping,
-                  const NodalTerms &       terms,
-                  const CentralDifference &scheme,
-                  const std::string &      folder,
-                  const double             start_time,
-                  const bool               restarted);
+    EnergyBalance(const Discretization    &discretization,
+                  const InternalForce     &internal_force,
+                  const LumpedMass        &mass,
+                  const Damping           &damping,
+                  const NodalTerms        &terms,
+                  const CentralDifference &scheme);
+
+    /** Writes to energy.csv in this folder from now on. @p restarted: continue
+     *  the file of a run that was interrupted at @p start_time [s]. */
+    void
+    open(const std::string &folder,
+         const double       start_time,
+         const bool         restarted);
 
     /** Evaluates the balance at the state. */
     const EnergyTerms &
@@ -83,11 +87,11 @@ namespace Voussoir
     load(const nlohmann::json &saved);
 
   private:
-    const Discretization &   discretization;
-    const InternalForce &    internal_force;
-    const LumpedMass &       mass;
-    const Damping &          damping;
-    const NodalTerms &       terms;
+    const Discretization    &discretization;
+    const InternalForce     &internal_force;
+    const LumpedMass        &mass;
+    const Damping           &damping;
+    const NodalTerms        &terms;
     const CentralDifference &scheme;
 
     EnergyTerms   terms_now;

@@ -49,13 +49,26 @@ namespace Voussoir
             const double         start_time,
             const bool           restarted) = 0;
 
-    /** Called for the initial state and after each step. */
+    /** Called for the initial state and after each step; after a restart
+     *  first for the state of the checkpoint, once more. */
     virtual void
     observe(const State &state) = 0;
 
     /** Writes what is left and adds to the summary. */
     virtual void
     finish(const State &state, nlohmann::json &summary) = 0;
+
+    /** What else a checkpoint must hold; files are written up to here. Called
+     *  on all ranks, the first one's result counts. */
+    virtual nlohmann::json
+    save()
+    {
+      return {};
+    }
+
+    virtual void
+    load(const nlohmann::json &)
+    {}
 
     /** Own vectors that a checkpoint must hold, by name. */
     virtual std::map<std::string, Vector *>

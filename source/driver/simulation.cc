@@ -405,7 +405,7 @@ namespace Voussoir
     if (options.restart)
       return Checkpoint::read_header(folder + "/checkpoint").at("time step");
     const double given = parameters.time.time_step;
-    if (given > largest_step * 1.1)
+    if (given > largest_step)
       {
         std::ostringstream text;
         text << "\"Time step\" in section \"Time\" is " << given

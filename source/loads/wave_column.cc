@@ -478,33 +478,39 @@ namespace Voussoir
                        const double               duration,
                        const double               maximum_frequency)
   {
-    // the column's answer to a short pulse, until it has died out: the largest
-    // velocity of four travel times, the period of a layer at least
-    WaveColumn   trial = column;
-    const double width = 2. / maximum_frequency;
-    const Pulse  pulse(Quantity::velocity, width, 1.);
-    const double period = 4. * column.travel_time();
-    TimeSeries   excitation{time_step, {}}, response[3];
-    double       peak = 0., recent = 0., next_look = width + period;
+    // the column's answer to a short pulse, until it has died out over a period
+    // (four travel times) of its slowest layer
+    WaveColumn         trial = column;
+    const double       width = 2. / maximum_frequency;
+    const Pulse        pulse(Quantity::velocity, width, 1.);
+    const unsigned int period = static_cast<unsigned int>(
+      std::ceil((width + 4. * column.travel_time()) / time_step));
+    TimeSeries excitation{time_step, {}}, response[3];
     for (auto &series : response)
       series.time_step = time_step;
-    for (double time = 0.; time < next_look;
-         time        = excitation.values.size() * time_step)
+    double peak = 0., recent = 0.;
+    do
       {
-               const double v = pulse.velocity(time);
-               trial.advance(Tensor<1, 3>({v, v, v}));
-               excitation.values.push_back(v);
-               for (unsigned int d = 0; d < 3; ++d)
-          response[d].values.push_back(trial.surface_velocity()[d]);
-        recent = std::max(recent, trial.surface_velocity().norm());
-               if (time + time_step >= next_look)
+        recent = 0.;
+        for (unsigned int i = 0; i < period; ++i)
           {
-                   peak = std::max(peak, recent);
-                   if (recent > 1e-4 * peak)
-              next_look += period;
-            recent = 0.;
+            const double v =
+              pulse.velocity(excitation.values.size() * time_step);
+            trial.advance(Tensor<1, 3>({v, v, v}));
+            excitation.values.push_back(v);
+            for (unsigned int d = 0; d < 3; ++d)
+              response[d].values.push_back(trial.surface_velocity()[d]);
+            recent = std::max(recent, trial.surface_velocity().norm());
           }
+        peak = std::max(peak, recent);
+        if (excitation.values.size() > 200 * period)
+          throw UserError(
+            "The layers at the sides of the model ring too long for a motion "
+            "\"Given at\" the free surface; lower the \"Maximum frequency\" in "
+            "section \"Wave field\" to what the mesh resolves, or give the "
+            "layers damping in section \"Damping\".");
       }
+    while (recent > 1e-4 * peak);
 
     GroundMotionSignals incident;
     for (unsigned int d = 0; d < 3; ++d)

@@ -1,0 +1,42 @@
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** A driven, damped, absorbing model loses no energy to nowhere. */
+    class EnergyAccounted : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto     parameters = make_case(file);
+        const auto     simulation = make_simulation(*parameters, communicator);
+        const Schedule schedule(parameters->output.energy_interval,
+                                simulation->time_step);
+        while (simulation->state.time < parameters->time.end_time)
+          {
+            simulation->scheme.step(simulation->state);
+            if (schedule.due(simulation->state.step))
+              simulation->energy.evaluate(simulation->state);
+          }
+        const auto   summary = simulation->energy.summary();
+        const double input   = summary["input [J]"];
+        verdicts.above("lost in damping over input [%]",
+                       100. * double(summary["lost in damping [J]"]) / input,
+                       0.1);
+        verdicts.below("largest unaccounted share of the input",
+                       summary["largest unaccounted share"],
+                       0.005);
+      }
+    };
+
+    const Registry<Check>::Add<EnergyAccounted>
+      registered("energy accounted", "Energy balance of a driven model.");
+  } // namespace
+} // namespace Voussoir

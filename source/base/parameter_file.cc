@@ -41,7 +41,7 @@ namespace Voussoir
     std::string
     in_section(const std::string &section)
     {
-      return section.empty() ? "outside all sections" :
+      return section.empty() ? "at the top level" :
                                "in section \"" + section + "\"";
     }
 
@@ -51,30 +51,37 @@ namespace Voussoir
       std::unique_ptr<dealii::Patterns::PatternBase> pattern;
     };
 
-    // deal.II's descriptions of what is allowed, such as "[Double 0...1
-    // (inclusive)]", as the end of a sentence that refuses a value.
+    // "a whole number from 1 to 4" for "[Integer range 1...4 (inclusive)]",
+    // deal.II's description of what is allowed; empty if it is no number.
+    std::string
+    number_in_words(const std::string &pattern)
+    {
+      static const std::regex number(
+        "\\[(Double|Integer)(?: range)?(?: (\\S*?)\\.\\.\\.(\\S+))?.*\\]");
+      static const std::set<std::string> unbounded{
+        "", "-MAX_DOUBLE", "MAX_DOUBLE", "-2147483648", "2147483647"};
+      std::smatch parts;
+      if (!std::regex_match(pattern, parts, number))
+        return "";
+      const std::string from = parts[2], to = parts[3];
+      const bool        is_from = unbounded.count(from) == 0;
+      const bool        is_to   = unbounded.count(to) == 0;
+      return std::string(parts[1] == "Integer" ? "a whole number" :
+                                                 "a number") +
+             (is_from ? " from " + from : "") +
+             (is_from != is_to ? " up" : "") + (is_to ? " to " + to : "");
+    }
+
+    // The end of a sentence that refuses a value.
     std::string
     what_is_allowed(const std::string &pattern, const std::string &value)
     {
-      std::smatch       parts;
-      static const auto number = std::regex(
-        "\\[(Double|Integer)(?: range)?(?: (\\S*?)\\.\\.\\.(\\S+))?.*\\]");
-      static const auto selection =
-        std::regex("\\[(Multiple)?Selection (.*?) ?\\]");
-      static const auto list = std::regex(
+      static const std::regex selection("\\[(Multiple)?Selection (.*?) ?\\]");
+      static const std::regex list(
         "\\[List of <(.*)> of length ([0-9]+)\\.\\.\\.([0-9]+).*\\]");
-
-      if (std::regex_match(pattern, parts, number))
-        {
-          const std::set<std::string> none{
-            "", "-MAX_DOUBLE", "MAX_DOUBLE", "-2147483648", "2147483647"};
-          const std::string from = parts[2], to = parts[3];
-          return std::string("; it must be a ") +
-                 (parts[1] == "Integer" ? "whole number" : "number") +
-                 (none.count(from) ? "" : " from " + from) +
-                 (none.count(to) == none.count(from) ? "" : " up") +
-                 (none.count(to) ? "" : " to " + to);
-        }
+      std::smatch parts;
+      if (const std::string number = number_in_words(pattern); !number.empty())
+        return "; it must be " + number;
       if (std::regex_match(pattern, parts, selection))
         {
           const auto  known = split_list(parts[2], '|');
@@ -85,12 +92,12 @@ namespace Voussoir
                 wrong = part;
           return known_names(wrong, known);
         }
-      if (std::regex_match(pattern, parts, list))
+      if (std::regex_match(pattern, parts, list) &&
+          !number_in_words(parts[1]).empty())
         return "; it must be " +
                (parts[2] == parts[3] ? parts[2].str() + " values" :
-                                       std::string("a list of values")) +
-               " separated by commas, and of each" +
-               what_is_allowed(parts[1], value).substr(1);
+                                       std::string("values")) +
+               " separated by commas, each " + number_in_words(parts[1]);
       return "; allowed is: " +
              dealii::Patterns::pattern_factory(pattern)->description(
                dealii::Patterns::PatternBase::Text);
@@ -184,6 +191,8 @@ namespace Voussoir
     for (unsigned int number = 1; std::getline(in, line); ++number)
       {
         const std::string place = filename + ", line " + std::to_string(number);
+        if (line.find('\0') != std::string::npos)
+          throw UserError(place + ": this is no text; give a parameter file.");
         // a backslash at the end continues the line
         while (!line.empty() && trim(line).size() > 0 &&
                trim(line).back() == '\\')

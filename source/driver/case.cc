@@ -26,14 +26,19 @@ namespace Voussoir
       return names;
     }
 
+    // Each name becomes a section.
     void
-    refuse_repetition(const std::vector<std::string> &names,
-                      const std::string              &place)
+    check_names(const std::vector<std::string> &names, const std::string &place)
     {
       for (auto name = names.begin(); name != names.end(); ++name)
-        if (std::find(names.begin(), name, *name) != name)
-          throw UserError(place + " lists \"" + *name +
-                          "\" twice; keep one of the two.");
+        {
+          if (std::find(names.begin(), name, *name) != name)
+            throw UserError(place + " lists \"" + *name +
+                            "\" twice; keep one of the two.");
+          if (name->find('/') != std::string::npos)
+            throw UserError(place + " lists \"" + *name +
+                            "\"; choose a name without \"/\".");
+        }
     }
 
     template <typename Value>
@@ -63,7 +68,7 @@ namespace Voussoir
                           ", separated by commas; each has a section of that "
                           "name here.");
       const auto names = split_list(file.given(section + "/Names"));
-      refuse_repetition(names, "\"Names\" in section \"" + section + "\"");
+      check_names(names, "\"Names\" in section \"" + section + "\"");
       for (const std::string &name : names)
         in_section(prm, name, [&] {
           const std::string path = section + "/" + name;
@@ -190,7 +195,7 @@ namespace Voussoir
       output.declare(prm);
       const auto names =
         split_list(file.given("Output/Observers", output.observers));
-      refuse_repetition(names, "\"Observers\" in section \"Output\"");
+      check_names(names, "\"Observers\" in section \"Output\"");
       for (const std::string &name : names)
         if (Registry<Observer>::entries().count(name) > 0)
           {
@@ -279,7 +284,7 @@ namespace Voussoir
                   throw UserError(
                     "Cells of the set \"" + set + "\" have two materials, \"" +
                     materials.objects[result[cell]].first + "\" and \"" + name +
-                    "\"; make the \"Cell sets\" of the two disjoint.");
+                    "\"; make their \"Cell sets\" in section \"Materials\" disjoint.");
                 result[cell] = m;
               }
           }
@@ -298,12 +303,13 @@ namespace Voussoir
         for (const auto &[name, cells] : mesh.cell_sets)
           if (std::find(cells.begin(), cells.end(), example) != cells.end())
             sets.push_back(name);
-        throw UserError(counted(without, "cell has", "cells have") +
-                        " no material, for example one of " +
-                        (sets.empty() ?
-                           "no set at all" :
-                           "the set \"" + join(sets, "\", \"") + "\"") +
-                        "; add the set to the \"Cell sets\" of a material.");
+        throw UserError(
+          counted(without, "cell has", "cells have") +
+          " no material, for example one of " +
+          (sets.empty() ? "no set at all" :
+                          "the set \"" + join(sets, "\", \"") + "\"") +
+          "; add the set to the \"Cell sets\" of a material in section "
+          "\"Materials\".");
       }
     return result;
   }

@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
+#include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/simulation.h>
 #include <voussoir/output/field_writer.h>
@@ -7,6 +8,7 @@
 #include <csignal>
 #include <filesystem>
 #include <iomanip>
+#include <set>
 
 namespace Voussoir
 {
@@ -408,8 +410,8 @@ namespace Voussoir
     if (given > largest_step)
       {
         std::ostringstream text;
-        text << "\"Time step\" in section \"Time\" is " << given
-             << " s, but the largest stable one is " << largest_step
+        text << std::setprecision(3) << "\"Time step\" in section \"Time\" is "
+             << given << " s, but the largest stable one is " << largest_step
              << " s; choose a smaller one, or 0 for the automatic choice.";
         throw UserError(text.str());
       }
@@ -558,22 +560,31 @@ namespace Voussoir
   nlohmann::json
   Simulation::physics() const
   {
-    // what must not change between a checkpoint and the run that goes on
-    std::ostringstream text;
+    // what must not change between a checkpoint and the run that goes on,
+    // each as "Section/Entry = value"
+    const std::set<std::string> free{"Title",
+                                     "Mesh/Partition",
+                                     "Time/End time"};
+    std::ostringstream          text;
     parameters.prm.print_parameters(text, ParameterHandler::ShortText);
-    nlohmann::json     result = nlohmann::json::array();
-    std::istringstream in(text.str());
-    std::string        section;
+    nlohmann::json           result = nlohmann::json::array();
+    std::istringstream       in(text.str());
+    std::vector<std::string> sections;
     for (std::string line; std::getline(in, line);)
       {
-        if (line.rfind("subsection", 0) == 0)
-          section = line;
-        const bool free = section == "subsection Output" ||
-                          line.find("set End time") != std::string::npos ||
-                          line.find("set Partition") != std::string::npos ||
-                          line.find("set Title") != std::string::npos;
-        if (!free)
-          result.push_back(line);
+        line              = Utilities::trim(line);
+        const auto equals = line.find('=');
+        if (line.rfind("subsection ", 0) == 0)
+          sections.push_back(line.substr(11) + "/");
+        else if (line == "end")
+          sections.pop_back();
+        else if (line.rfind("set ", 0) == 0)
+          {
+            const std::string entry =
+              join(sections, "") + Utilities::trim(line.substr(4, equals - 4));
+            if (free.count(entry) == 0 && entry.rfind("Output/", 0) != 0)
+              result.push_back(entry + " =" + line.substr(equals + 1));
+          }
       }
     return result;
   }

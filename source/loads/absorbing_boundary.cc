@@ -64,7 +64,7 @@ namespace Voussoir
           const auto [place, is_new] = kind_of_set.emplace(set, kind);
           if (!is_new)
             throw UserError("In section \"Boundaries\" the face set \"" + set +
-                            "\" is named both as \"" + place->second +
+                            "\" is named twice, as \"" + place->second +
                             "\" and as \"" + kind + "\"; keep one of them.");
         }
   }

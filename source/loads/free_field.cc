@@ -3,6 +3,8 @@
 #include <voussoir/loads/oblique_wave.h>
 #include <voussoir/loads/wave_column.h>
 
+#include <iomanip>
+
 namespace Voussoir
 {
   using namespace dealii;
@@ -48,30 +50,33 @@ namespace Voussoir
     };
 
 
-
     std::unique_ptr<FreeField>
     make_oblique_field(const AbsorbingBoundary &boundary,
-                       const Discretization &   discretization,
-                       const ElasticConstants & rock,
-                       const WaveParameters &   wave,
-                       GroundMotionSignals &&   motion)
+                       const Discretization    &discretization,
+                       const ElasticConstants  &rock,
+                       const WaveParameters    &wave,
+                       GroundMotionSignals    &&motion)
     {
-      const auto type = wave.type == "oblique P"  ? ObliqueWave::Type::P :
-                        wave.type == "oblique SV" ? ObliqueWave::Type::SV :
-                                                    ObliqueWave::Type::SH;
+      const auto   type = wave.type == "oblique P"  ? ObliqueWave::Type::P :
+                          wave.type == "oblique SV" ? ObliqueWave::Type::SV :
+                                                      ObliqueWave::Type::SH;
       const double critical =
         std::asin(rock.s_wave_speed() / rock.p_wave_speed());
       const double angle = wave.angle * numbers::PI / 180.;
       if (type == ObliqueWave::Type::SV && angle >= critical)
-        throw UserError(
-          "\"Angle\" in section \"Wave field\" must be below the critical "
-          "angle of this rock, " +
-          std::to_string(critical * 180. / numbers::PI) +
-          " degrees, for an oblique SV wave.");
+        {
+          std::ostringstream text;
+          text << "\"Angle\" in section \"Wave field\" is " << wave.angle
+               << " degrees, but an oblique SV wave must stay below the "
+                  "critical angle of this rock, "
+               << std::setprecision(4) << critical * 180. / numbers::PI
+               << " degrees; choose a smaller one.";
+          throw UserError(text.str());
+        }
 
       // the incident front touches the model's boundary at t = 0
-      const auto &box = boundary.extent();
-      Point<3>    origin(0.5 * (box.first[0] + box.second[0]),
+      const auto       &box = boundary.extent();
+      Point<3>          origin(0.5 * (box.first[0] + box.second[0]),
                       0.5 * (box.first[1] + box.second[1]),
                       box.second[2]);
       const double      azimuth = wave.azimuth * numbers::PI / 180.;
@@ -93,16 +98,15 @@ namespace Voussoir
   } // namespace
 
 
-
   std::unique_ptr<FreeField>
-  make_free_field(const AbsorbingBoundary &            boundary,
-                  const Discretization &               discretization,
+  make_free_field(const AbsorbingBoundary             &boundary,
+                  const Discretization                &discretization,
                   const std::vector<const Material *> &materials,
-                  const std::string &                  quadrature,
-                  const Damping &                      damping,
-                  const WaveParameters &               wave,
-                  const std::string &                  given_at,
-                  GroundMotionSignals &&               motion,
+                  const std::string                   &quadrature,
+                  const Damping                       &damping,
+                  const WaveParameters                &wave,
+                  const std::string                   &given_at,
+                  GroundMotionSignals                &&motion,
                   const bool                           paper_scheme,
                   const double                         time_step,
                   const double                         duration)

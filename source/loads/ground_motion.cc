@@ -242,9 +242,18 @@ namespace Voussoir
       // An absolute path replaces the folder.
       const std::string file =
         (std::filesystem::path(folder) / record.files[component]).string();
-      const TimeSeries whole =
-        read_record(file,
-                    {record.unit, record.time_step, record.columns[component]});
+      TimeSeries whole;
+      try
+        {
+          whole = read_record(
+            file, {record.unit, record.time_step, record.columns[component]});
+        }
+      catch (const UserError &error)
+        {
+          throw UserError(
+            "\"File " + axis_names[component] +
+            "\" in section \"Ground motion/Record\": " + error.what());
+        }
 
       const TimeSeries part =
         time_window(whole, record.start_time, record.duration);

@@ -139,7 +139,8 @@ namespace Voussoir
             double             top   = upper[2];
             std::istringstream in(
               colon == std::string::npos ? "" : items[i].substr(colon + 1));
-            if (!(in >> top) && !last)
+            std::string rest;
+            if ((!(in >> top) && !last) || (in >> rest))
               throw UserError("\"Layers\" in section \"Mesh/box\": \"" +
                               items[i] +
                               "\" has no top elevation; write \"name: "

@@ -67,7 +67,9 @@ namespace Voussoir
                             "\"dam: 1\" or \"box 0 0 0 10 10 10: 1\".");
           LocalRefinement    result;
           std::istringstream levels(item.substr(colon + 1));
-          if (!(levels >> result.levels) || result.levels > 4)
+          std::string        rest;
+          if (!(levels >> result.levels) || result.levels > 4 ||
+              (levels >> rest))
             throw UserError(place + ": \"" + item +
                             "\" must end in a number of levels from 0 to 4.");
           result.set = Utilities::trim(item.substr(0, colon));
@@ -76,10 +78,10 @@ namespace Voussoir
               std::istringstream in(result.set.substr(4));
               for (Point<3> *corner : {&result.lower, &result.upper})
                 for (unsigned int d = 0; d < 3; ++d)
-                  if (!(in >> (*corner)[d]))
-                    throw UserError(place + ": \"" + item +
-                                    "\" needs six coordinates [m] after "
-                                    "\"box\".");
+                  in >> (*corner)[d];
+              if (!in || (in >> rest))
+                throw UserError(place + ": \"" + item +
+                                "\" needs six coordinates [m] after \"box\".");
               result.set.clear();
             }
           items.push_back(result);
@@ -151,11 +153,9 @@ namespace Voussoir
       std::make_unique<Distributed>(mpi_communicator,
                                     dealii::Triangulation<3>::none,
                                     Distributed::no_automatic_repartitioning);
-    // deal.II adds 1000 to each weight
     triangulation->signals.weight.connect(
       [&](const auto &cell, const auto) -> unsigned int {
-        return static_cast<unsigned int>(1000. *
-                                         (cost(Grid::coarse_cell(cell)) - 1.));
+        return static_cast<unsigned int>(1000. * cost(coarse_cell(cell)));
       });
     const auto [cells, faces] = cell_data(coarse);
     triangulation->create_triangulation(coarse.vertices, cells, faces);

@@ -43,10 +43,15 @@ namespace Voussoir
       {
         for (const double time : times)
           if (time > model_to_check.end_time)
-            throw UserError("\"Times\" in section \"Output/fields\" names " +
-                            std::to_string(time) +
-                            " s, which lies after the \"End time\" of section "
-                            "\"Time\"; leave it out or compute longer.");
+            {
+              std::ostringstream text;
+              text << "\"Times\" in section \"Output/fields\" names " << time
+                   << " s, which lies after the \"End time\" of section "
+                      "\"Time\", "
+                   << model_to_check.end_time
+                   << " s; leave it out or compute longer.";
+              throw UserError(text.str());
+            }
       }
 
       void

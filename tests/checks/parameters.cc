@@ -1,0 +1,86 @@
+#include <voussoir/driver/command_line.h>
+
+#include <fstream>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** What the program prints for some arguments. */
+    std::string
+    printed(std::vector<std::string> arguments)
+    {
+      std::ostringstream    text;
+      std::streambuf *const terminal = std::cout.rdbuf(text.rdbuf());
+      arguments.insert(arguments.begin(), "voussoir");
+      std::vector<char *> pointers;
+      for (std::string &argument : arguments)
+        pointers.push_back(argument.data());
+      const int code =
+        run_command_line(pointers.size(), pointers.data(), MPI_COMM_SELF);
+      std::cout.rdbuf(terminal);
+      return code == 0 ? text.str() : "";
+    }
+
+
+    /** What the program prints of a case can be read again and is the same
+     *  case; every kind of class can be listed. */
+    class Parameters : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Case", name, "The case to print.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm) override
+      {
+        const std::string original = file.resolve(name);
+        for (const std::string format : {"prm", "short"})
+          {
+            const std::string text = printed({original, "--defaults", format});
+            std::ofstream("again.prm") << text;
+            verdicts.is_true("printed as " + format +
+                               ", read and printed again",
+                             text.size() > 1000 &&
+                               printed({"again.prm", "--defaults", format}) ==
+                                 text);
+          }
+        verdicts.is_true(
+          "--set changes what is printed",
+          printed(
+            {original, "--set", "Time/End time=3.25", "--defaults", "short"})
+              .find("= 3.25\n") != std::string::npos);
+        for (const std::string format : {"description", "json", "xml", "latex"})
+          verdicts.is_true("printed as " + format,
+                           printed({original, "--defaults", format}).size() >
+                             1000);
+        verdicts.is_true("an empty case can be printed",
+                         printed({"--defaults", "prm"}).size() > 1000);
+        for (const std::string kind :
+             {"constraints", "loads", "materials", "meshes", "observers"})
+          verdicts.is_true("--list " + kind,
+                           printed({"--list", kind}).find(": ") !=
+                             std::string::npos);
+        verdicts.is_true("--help tells of every option",
+                         printed({"--help"}).find("--restart") !=
+                           std::string::npos);
+        verdicts.is_true("--version", !printed({"--version"}).empty());
+      }
+
+    private:
+      std::string name;
+    };
+
+    const Registry<Check>::Add<Parameters>
+      registered("parameters", "Printing and reading of a case.");
+  } // namespace
+} // namespace Voussoir

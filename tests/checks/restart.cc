@@ -1,0 +1,277 @@
+#include <voussoir/base/error.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Sends the program the signal of Ctrl-C at a given time. */
+    class Interruption : public Observer
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Time", time, "When to interrupt [s].");
+      }
+
+      void
+      check(const ObservedModel &) const override
+      {}
+
+      void
+      prepare(const ObservedModel &, const double, const bool) override
+      {}
+
+      void
+      observe(const State &state) override
+      {
+        if (!sent && state.time >= time)
+          std::raise(SIGINT);
+        sent = state.time >= time;
+      }
+
+      void
+      finish(const State &, nlohmann::json &) override
+      {}
+
+    private:
+      double time = 0.;
+      bool   sent = false;
+    };
+
+    const Registry<Observer>::Add<Interruption>
+      interruption("interruption", "Interrupts a run, for the tests.");
+
+
+    /**
+     * A run that is interrupted and goes on from its checkpoint is the run that
+     * was not: bit for bit on as many ranks, to round-off on others.
+     */
+    class Restart : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
+        if (first)
+          for (const std::string folder : {"straight", "together", "alone"})
+            std::filesystem::remove_all(folder);
+        MPI_Barrier(communicator);
+
+        const auto straight = make_case(folder(file, "straight", false));
+        Simulation uninterrupted(*straight, options(false), communicator);
+        uninterrupted.run();
+
+        // on the same ranks
+        const auto stopped = make_case(folder(file, "together", true));
+        interrupt(*stopped, communicator, verdicts);
+        const auto continued = make_case(folder(file, "together", false));
+        Simulation going_on(*continued, options(true), communicator);
+        verdicts.is_true("it goes on from a time between start and end",
+                         going_on.state.time > 0. &&
+                           going_on.state.time < continued->time.end_time);
+        going_on.run();
+        verdicts.is_true("same displacement, bit for bit",
+                         same(uninterrupted.state.displacement,
+                              going_on.state.displacement));
+        verdicts.is_true("same velocity, bit for bit",
+                         same(uninterrupted.state.velocity,
+                              going_on.state.velocity));
+        bool memory = !going_on.state.memory.empty();
+        for (unsigned int i = 0; i < going_on.state.memory.size(); ++i)
+          memory = memory && same(uninterrupted.state.memory[i],
+                                  going_on.state.memory[i]);
+        verdicts.is_true("same damping memory, bit for bit", memory);
+        for (unsigned int i = 0; i < straight->observers.size(); ++i)
+          for (const auto &[name, vector] :
+               straight->observers[i].second->checkpoint_vectors())
+            verdicts.is_true(
+              "same " + name + ", bit for bit",
+              same(*vector,
+                   *continued->observers[i].second->checkpoint_vectors().at(
+                     name)));
+        verdicts.is_true("same list of pictures",
+                         text("straight/fields.txt") ==
+                             text("together/fields.txt") &&
+                           text("straight/fields.txt").size() > 100);
+        verdicts.is_true("same histories.csv",
+                         text("straight/histories.csv") ==
+                             text("together/histories.csv") &&
+                           text("straight/histories.csv").size() > 1000);
+        compare_tables("straight", "together", verdicts);
+
+        // written by one rank, continued by all
+        if (first)
+          {
+            const auto alone = make_case(folder(file, "alone", true));
+            interrupt(*alone, MPI_COMM_SELF, verdicts);
+          }
+        MPI_Barrier(communicator);
+        const auto shared = make_case(folder(file, "alone", false));
+        Simulation shared_run(*shared, options(true), communicator);
+        shared_run.run();
+        verdicts.below("difference after a change of ranks",
+                       difference(uninterrupted.state.displacement,
+                                  shared_run.state.displacement),
+                       1e-10);
+        compare_tables("straight", "alone", verdicts);
+
+        refuse(
+          folder(file, "together", false).with({"Discretization/Degree=3"}),
+          communicator,
+          verdicts);
+        refuse(folder(file, "nowhere", false), communicator, verdicts);
+        refuse(folder(file, "together", false).with({"Time/End time=0.1"}),
+               communicator,
+               verdicts);
+      }
+
+    private:
+      static ParameterFile
+      folder(const ParameterFile &file,
+             const std::string   &name,
+             const bool           interrupted)
+      {
+        return file.with({"Output/Folder=" + name,
+                          std::string("Output/interruption/Time=") +
+                            (interrupted ? "0.2" : "1e300")});
+      }
+
+
+      static RunOptions
+      options(const bool restart)
+      {
+        RunOptions result;
+        result.restart = restart;
+        result.quiet   = true;
+        return result;
+      }
+
+
+      static void
+      interrupt(Case          &parameters,
+                const MPI_Comm communicator,
+                Verdicts      &verdicts)
+      {
+        bool stopped = false;
+        try
+          {
+            Simulation(parameters, options(false), communicator).run();
+          }
+        catch (const UserError &)
+          {
+            stopped = true;
+          }
+        verdicts.is_true("the run is interrupted", stopped);
+      }
+
+
+      static void
+      refuse(const ParameterFile &file,
+             const MPI_Comm       communicator,
+             Verdicts            &verdicts)
+      {
+        const auto  parameters = make_case(file);
+        std::string sentence   = "accepted";
+        try
+          {
+            Simulation(*parameters, options(true), communicator);
+          }
+        catch (const UserError &error)
+          {
+            sentence = error.what();
+          }
+        verdicts.is_true("refused: " + sentence, sentence != "accepted");
+      }
+
+
+      static bool
+      same(const Vector &a, const Vector &b)
+      {
+        const bool here =
+          std::equal(a.begin(), a.begin() + a.locally_owned_size(), b.begin());
+        return Utilities::MPI::min(here ? 1 : 0, a.get_mpi_communicator()) == 1;
+      }
+
+
+      static double
+      difference(const Vector &a, const Vector &b)
+      {
+        Vector change = a;
+        change -= b;
+        return change.linfty_norm() / a.linfty_norm();
+      }
+
+
+      static std::string
+      text(const std::string &name)
+      {
+        std::ifstream in(name);
+        return std::string(std::istreambuf_iterator<char>(in), {});
+      }
+
+
+      /** The numbers of a table without its heading. */
+      static std::vector<double>
+      numbers(const std::string &name)
+      {
+        std::ifstream in(name);
+        std::string   line, word;
+        std::getline(in, line);
+        std::vector<double> values;
+        while (std::getline(in, line))
+          for (std::istringstream words(line); std::getline(words, word, ',');)
+            values.push_back(std::stod(word));
+        return values;
+      }
+
+
+      // histories.csv and energy.csv have nine digits; sums over other ranks
+      // round differently
+      static void
+      compare_tables(const std::string &reference,
+                     const std::string &folder,
+                     Verdicts          &verdicts)
+      {
+        for (const std::string table : {"/histories.csv", "/energy.csv"})
+          {
+            const auto a = numbers(reference + table);
+            const auto b = numbers(folder + table);
+            verdicts.is_true("as many numbers in" + (" " + folder + table),
+                             a.size() == b.size());
+            double change = 0., size = 0.;
+            for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+              {
+                change = std::max(change, std::abs(a[i] - b[i]));
+                size   = std::max(size, std::abs(a[i]));
+              }
+            verdicts.below("largest change in it over the largest number",
+                           change / size,
+                           1e-8);
+          }
+        const auto a = nlohmann::json::parse(text(reference + "/summary.json"));
+        const auto b = nlohmann::json::parse(text(folder + "/summary.json"));
+        for (const std::string quantity :
+             {"largest displacement [m]", "largest acceleration [m/s2]"})
+          verdicts.near("  " + quantity,
+                        b.at("histories").at("top").at(quantity),
+                        a.at("histories").at("top").at(quantity),
+                        1e-8);
+      }
+    };
+
+    const Registry<Check>::Add<Restart>
+      registered("restart", "Interrupted and continued runs.");
+  } // namespace
+} // namespace Voussoir

@@ -1,5 +1,4 @@
 #include <voussoir/base/error.h>
-#include <voussoir/base/mpi.h>
 #include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/simulation.h>
@@ -320,48 +319,6 @@ namespace Voussoir
   }
 
 
-  void
-  Simulation::report_mesh()
-  {
-    log.line("Mesh: ",
-             grid.describe_balance(),
-             ", partition by ",
-             parameters.grid.partition,
-             ", at most ",
-             discretization.largest_interface(),
-             " nodes of a rank owned by others");
-    log.line("Unknowns: ",
-             discretization.dof_handler.n_dofs(),
-             " of degree ",
-             discretization.degree);
-    // longest edge of the cells of each material
-    std::vector<double> longest(materials.size(), 0.);
-    for (const auto &cell : grid.triangulation().active_cell_iterators())
-      if (cell->is_locally_owned())
-        for (unsigned int line = 0; line < 12; ++line)
-          {
-            double &edge = longest[material_of(cell)];
-            edge         = std::max(edge, cell->line(line)->diameter());
-          }
-    for (unsigned int m = 0; m < materials.size(); ++m)
-      {
-        const ElasticConstants c = materials[m]->elastic_constants();
-        const double           edge =
-          Utilities::MPI::max(longest[m], grid.communicator());
-        std::ostringstream text;
-        text << std::setprecision(4) << "Material "
-             << parameters.materials.objects[m].first << ": mass "
-             << mass.total[m] << " kg, P wave " << c.p_wave_speed()
-             << " m/s, S wave " << c.s_wave_speed()
-             << " m/s; its largest cells carry waves up to "
-             << std::setprecision(2)
-             << c.s_wave_speed() * discretization.degree / (8. * edge)
-             << " Hz with 8 nodes per wavelength";
-        log.line(text.str());
-      }
-  }
-
-
   double
   Simulation::find_largest_step()
   {
@@ -416,23 +373,6 @@ namespace Voussoir
         throw UserError(text.str());
       }
     return given > 0. ? given : parameters.time.safety_factor * largest_step;
-  }
-
-
-  void
-  Simulation::report_step()
-  {
-    std::ostringstream text;
-    damping.print(text);
-    text << std::setprecision(4) << "Time step: " << time_step
-         << " s, largest stable " << largest_step << " s";
-    if (undamped_step > 0.)
-      text << " (" << std::setprecision(3)
-           << 100. * largest_step / undamped_step << " % of the undamped "
-           << std::setprecision(4) << undamped_step << " s)";
-    text << ", " << n_steps() << " steps to " << parameters.time.end_time
-         << " s\n";
-    log(text.str());
   }
 
 
@@ -517,171 +457,6 @@ namespace Voussoir
 
 
   void
-  Simulation::report_progress()
-  {
-    const double done =
-      double(state.step - first_step) / double(n_steps() - first_step);
-    const double       seconds = clock.wall_time();
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(1) << std::setw(5)
-         << 100. * double(state.step) / double(n_steps())
-         << " %  t = " << std::setprecision(3) << state.time << " s  "
-         << std::setprecision(1) << throughput(seconds)
-         << " MDOF-steps/s  energy error " << std::setprecision(3)
-         << 100. * energy.relative_error() << " %  time left "
-         << duration_text(seconds * (1. - done) / done);
-    log.line(text.str());
-  }
-
-
-  double
-  Simulation::throughput(const double seconds) const
-  {
-    return 1e-6 * double(discretization.dof_handler.n_dofs()) *
-           double(state.step - first_step) / seconds;
-  }
-
-
-  std::map<std::string, Vector *>
-  Simulation::checkpoint_vectors()
-  {
-    std::map<std::string, Vector *> vectors{{"displacement",
-                                             &state.displacement},
-                                            {"velocity", &state.velocity}};
-    for (unsigned int i = 0; i < state.memory.size(); ++i)
-      vectors["damping memory " + std::to_string(i)] = &state.memory[i];
-    for (const auto &[name, observer] : parameters.observers)
-      for (const auto &[vector_name, vector] : observer->checkpoint_vectors())
-        vectors[name + "/" + vector_name] = vector;
-    return vectors;
-  }
-
-
-  nlohmann::json
-  Simulation::physics() const
-  {
-    // what must not change between a checkpoint and the run that goes on,
-    // each as "Section/Entry = value"
-    const std::set<std::string> free{"Title",
-                                     "Mesh/Partition",
-                                     "Time/End time"};
-    std::ostringstream          text;
-    parameters.prm.print_parameters(text, ParameterHandler::ShortText);
-    nlohmann::json           result = nlohmann::json::array();
-    std::istringstream       in(text.str());
-    std::vector<std::string> sections;
-    for (std::string line; std::getline(in, line);)
-      {
-        line              = Utilities::trim(line);
-        const auto equals = line.find('=');
-        if (line.rfind("subsection ", 0) == 0)
-          sections.push_back(line.substr(11) + "/");
-        else if (line == "end")
-          sections.pop_back();
-        else if (line.rfind("set ", 0) == 0)
-          {
-            const std::string entry =
-              join(sections, "") + Utilities::trim(line.substr(4, equals - 4));
-            if (free.count(entry) == 0 && entry.rfind("Output/", 0) != 0)
-              result.push_back(entry + " =" + line.substr(equals + 1));
-          }
-      }
-    return result;
-  }
-
-
-  void
-  Simulation::write_checkpoint()
-  {
-    TimerOutput::Scope scope(timer, "checkpoint");
-    nlohmann::json     seen;
-    for (const auto &[name, observer] : parameters.observers)
-      seen[name] = observer->save();
-    checkpoint.write(checkpoint_vectors(),
-                     {{"time", state.time},
-                      {"step", state.step},
-                      {"time step", time_step},
-                      {"energy", energy.save()},
-                      {"work", accumulated_work()},
-                      {"observers", seen},
-                      {"physics", physics()}});
-    log.line("Checkpoint written at t = ", state.time, " s");
-    since_checkpoint.restart();
-  }
-
-
-  std::vector<double>
-  Simulation::accumulated_work() const
-  {
-    return sum_over_ranks(std::vector<double>{terms.work_of_forces,
-                                              terms.loss_in_dashpots,
-                                              scheme.work_of_base,
-                                              scheme.work_of_projections,
-                                              scheme.loss_by_mass},
-                          grid.communicator());
-  }
-
-
-  void
-  Simulation::check_checkpoint()
-  {
-    if (!options.restart)
-      return;
-    const nlohmann::json header =
-      Checkpoint::read_header(folder + "/checkpoint");
-    const nlohmann::json mine = physics(), theirs = header.at("physics");
-    const auto           line = [](const nlohmann::json &lines, std::size_t i) {
-      return i < lines.size() ? Utilities::trim(lines[i].get<std::string>()) :
-                                          std::string("nothing");
-    };
-    for (std::size_t i = 0; i < std::max(mine.size(), theirs.size()); ++i)
-      if (line(mine, i) != line(theirs, i))
-        throw UserError("The checkpoint in \"" + folder +
-                        "\" was written with \"" + line(theirs, i) +
-                        "\", the case now has \"" + line(mine, i) +
-                        "\"; restart with the same physics, or start "
-                        "afresh.");
-    const double reached = header.at("time");
-    if (reached >= parameters.time.end_time)
-      {
-        std::ostringstream text;
-        text << "The checkpoint in \"" << folder << "\" is of " << reached
-             << " s, but \"End time\" in section \"Time\" is "
-             << parameters.time.end_time << " s; set a later one.";
-        throw UserError(text.str());
-      }
-  }
-
-
-  void
-  Simulation::read_checkpoint()
-  {
-    const nlohmann::json header =
-      Checkpoint::read_header(folder + "/checkpoint");
-    checkpoint.read(checkpoint_vectors());
-    state.time = header.at("time");
-    state.step = header.at("step");
-    energy.load(header.at("energy"));
-    for (const auto &[name, observer] : parameters.observers)
-      if (header.at("observers").contains(name))
-        observer->load(header.at("observers").at(name));
-    const std::vector<double> work = header.at("work");
-    if (Utilities::MPI::this_mpi_process(grid.communicator()) == 0)
-      {
-        terms.work_of_forces       = work[0];
-        terms.loss_in_dashpots     = work[1];
-        scheme.work_of_base        = work[2];
-        scheme.work_of_projections = work[3];
-        scheme.loss_by_mass        = work[4];
-      }
-    // the free field has no checkpoint: it is marched again, which is cheap
-    for (unsigned long long step = 0; step < state.step; ++step)
-      boundary.replay(step * time_step);
-    log.line("Going on from the checkpoint at t = ", state.time, " s");
-  }
-
-
-  void
   Simulation::abort_run(const std::string &reason)
   {
     std::string written;
@@ -701,32 +476,6 @@ namespace Voussoir
          << ". The time step may be too large for the model: take a smaller "
             "\"Safety factor\" in section \"Time\".";
     throw UserError(text.str());
-  }
-
-
-  nlohmann::json
-  Simulation::summary() const
-  {
-    nlohmann::json result;
-    result["version"]   = version();
-    result["title"]     = parameters.title;
-    result["SIMD bits"] = 64 * Lanes::size();
-    result["ranks"]     = Utilities::MPI::n_mpi_processes(grid.communicator());
-    result["cells"]     = grid.triangulation().n_global_active_cells();
-    result["unknowns"]  = discretization.dof_handler.n_dofs();
-    result["degree"]    = discretization.degree;
-    result["time step [s]"]           = time_step;
-    result["largest stable step [s]"] = largest_step;
-    result["steps"]                   = state.step;
-    result["end time [s]"]            = state.time;
-    result["loop time [s]"]           = loop_seconds;
-    result["MDOF-steps/s"] = loop_seconds > 0. ? throughput(loop_seconds) : 0.;
-    Utilities::System::MemoryStats memory;
-    Utilities::System::get_memory_stats(memory);
-    result["peak memory of a rank [MB]"] =
-      Utilities::MPI::max(memory.VmHWM / 1024., grid.communicator());
-    result["energy balance"] = energy.summary();
-    return result;
   }
 
 
@@ -752,21 +501,5 @@ namespace Voussoir
          << 100. * energy.relative_error() << " %\n";
     log(text.str());
     log(timer_table());
-  }
-
-
-  std::string
-  Simulation::timer_table() const
-  {
-    std::ostringstream text;
-    const auto         times =
-      timer.get_summary_data(TimerOutput::OutputData::total_wall_time);
-    const auto calls = timer.get_summary_data(TimerOutput::OutputData::n_calls);
-    text << "  seconds      calls  section\n" << std::fixed;
-    for (const auto &[name, seconds] : times)
-      text << std::setw(9) << std::setprecision(2) << seconds << "  "
-           << std::setw(9) << std::setprecision(0) << calls.at(name) << "  "
-           << name << '\n';
-    return text.str();
   }
 } // namespace Voussoir

@@ -7,7 +7,6 @@
 #include <csignal>
 #include <filesystem>
 #include <iomanip>
-#include <set>
 
 namespace Voussoir
 {

@@ -2,7 +2,6 @@
 #include <voussoir/fem/damping.h>
 
 #include <deal.II/base/numbers.h>
-
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
 
@@ -48,7 +47,6 @@ namespace Voussoir
   }
 
 
-
   void
   DampingParameters::check() const
   {
@@ -56,7 +54,6 @@ namespace Voussoir
       throw UserError("In section \"Damping\" the \"Lowest frequency\" must be "
                       "below the \"Highest frequency\".");
   }
-
 
 
   Damping::Damping(const DampingParameters &parameters)
@@ -76,7 +73,6 @@ namespace Voussoir
   }
 
 
-
   void
   Damping::fit_maxwell()
   {
@@ -89,7 +85,8 @@ namespace Voussoir
               std::pow(span, n == 1 ? 0.5 : i / (n - 1.))));
 
     // Least squares of xi S = 1/2 sum D_i w t/(1 + (w t)^2) over the band, with
-    // the storage modulus S of the last pass; few passes suffice as S is near 1.
+    // the storage modulus S of the last pass; few passes suffice as S is
+    // near 1.
     constexpr unsigned int n_samples = 60;
     coefficients.assign(n, 0.);
     for (unsigned int pass = 0; pass < 30; ++pass)
@@ -123,13 +120,11 @@ namespace Voussoir
   }
 
 
-
   unsigned int
   Damping::n_branches() const
   {
     return coefficients.size();
   }
-
 
 
   double
@@ -140,7 +135,6 @@ namespace Voussoir
       sum += D;
     return sum;
   }
-
 
 
   double
@@ -154,7 +148,6 @@ namespace Voussoir
       }
     return sum;
   }
-
 
 
   double
@@ -172,13 +165,11 @@ namespace Voussoir
   }
 
 
-
   double
   Damping::stiffness_scale(const double factor) const
   {
     return 1. / modulus_ratio(parameters.reference, factor);
   }
-
 
 
   void

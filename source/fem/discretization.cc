@@ -2,10 +2,8 @@
 #include <voussoir/fem/discretization.h>
 
 #include <deal.II/base/quadrature_lib.h>
-
 #include <deal.II/dofs/dof_renumbering.h>
 #include <deal.II/dofs/dof_tools.h>
-
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 
@@ -30,11 +28,10 @@ namespace Voussoir
   }
 
 
-
   Discretization::Discretization(
-    const Grid &                    grid,
-    const DiscretizationParameters &parameters,
-    const std::vector<Support> &    supports,
+    const Grid                                            &grid,
+    const DiscretizationParameters                        &parameters,
+    const std::vector<Support>                            &supports,
     const std::function<unsigned int(const Grid::Cell &)> &material_of_cell)
     : grid(grid)
     , degree(parameters.degree)
@@ -46,8 +43,7 @@ namespace Voussoir
     owned_dofs = dof_handler.locally_owned_dofs();
     DoFTools::extract_locally_relevant_dofs(dof_handler, relevant_dofs);
     const auto owned_by_all =
-      Utilities::MPI::all_gather(grid.communicator(),
-                                 owned_dofs.n_elements());
+      Utilities::MPI::all_gather(grid.communicator(), owned_dofs.n_elements());
     first_dof_of_rank.push_back(0);
     for (const auto owned : owned_by_all)
       first_dof_of_rank.push_back(first_dof_of_rank.back() + owned);
@@ -78,7 +74,8 @@ namespace Voussoir
     node_positions.resize(n_owned_nodes());
     FEValues<3> nodes(mapping,
                       fe.base_element(0),
-                      Quadrature<3>(fe.base_element(0).get_unit_support_points()),
+                      Quadrature<3>(
+                        fe.base_element(0).get_unit_support_points()),
                       update_quadrature_points);
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
@@ -92,7 +89,6 @@ namespace Voussoir
                 nodes.quadrature_point(j);
         }
   }
-
 
 
   void
@@ -123,7 +119,6 @@ namespace Voussoir
         }
     dof_handler.renumber_dofs(new_numbers);
   }
-
 
 
   void
@@ -181,7 +176,6 @@ namespace Voussoir
   }
 
 
-
   Vector
   Discretization::create_vector() const
   {
@@ -191,13 +185,11 @@ namespace Voussoir
   }
 
 
-
   unsigned int
   Discretization::n_owned_nodes() const
   {
     return owned_dofs.n_elements() / 3;
   }
-
 
 
   unsigned int
@@ -206,7 +198,6 @@ namespace Voussoir
     const auto rank = Utilities::MPI::this_mpi_process(grid.communicator());
     return global_node - first_dof_of_rank[rank] / 3;
   }
-
 
 
   unsigned int
@@ -219,7 +210,6 @@ namespace Voussoir
   }
 
 
-
   unsigned int
   Discretization::largest_interface() const
   {
@@ -227,7 +217,6 @@ namespace Voussoir
       matrix_free.get_vector_partitioner()->n_ghost_indices() / 3,
       grid.communicator());
   }
-
 
 
   std::vector<Discretization::Share>
@@ -243,7 +232,6 @@ namespace Voussoir
   }
 
 
-
   std::vector<types::global_dof_index>
   Discretization::cell_nodes(const Cell &cell) const
   {
@@ -255,7 +243,6 @@ namespace Voussoir
       nodes[j] = dofs[fe.component_to_system_index(0, j)] / 3;
     return nodes;
   }
-
 
 
   Discretization::Cell

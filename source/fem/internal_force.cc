@@ -12,7 +12,7 @@ namespace Voussoir
     for_each_run(const std::vector<unsigned int> &material_of_batch,
                  const unsigned int               first,
                  const unsigned int               last,
-                 const Run &                      run)
+                 const Run                       &run)
     {
       for (unsigned int begin = first; begin < last;)
         {
@@ -27,13 +27,11 @@ namespace Voussoir
   } // namespace
 
 
-
-  InternalForce::InternalForce(const Discretization &                 discretization,
+  InternalForce::InternalForce(const Discretization &discretization,
                                const std::vector<const CellKernel *> &kernels)
     : discretization(discretization)
     , kernels(kernels)
   {}
-
 
 
   bool
@@ -46,7 +44,6 @@ namespace Voussoir
   }
 
 
-
   double
   InternalForce::damping_factor() const
   {
@@ -54,11 +51,10 @@ namespace Voussoir
   }
 
 
-
   void
-  InternalForce::sweep(Vector &         force,
-                       const Vector &   displacement,
-                       const Vector *   memory,
+  InternalForce::sweep(Vector          &force,
+                       const Vector    &displacement,
+                       const Vector    *memory,
                        const RangeWork &before,
                        const RangeWork &after) const
   {
@@ -66,9 +62,9 @@ namespace Voussoir
                              Vector &,
                              const Vector &,
                              const std::pair<unsigned int, unsigned int> &)>
-      cells = [&](const Discretization::MatrixFree &matrix_free,
-                  Vector &                          dst,
-                  const Vector &                    src,
+      cells = [&](const Discretization::MatrixFree            &matrix_free,
+                  Vector                                      &dst,
+                  const Vector                                &src,
                   const std::pair<unsigned int, unsigned int> &range) {
         for_each_run(discretization.material_of_batch,
                      range.first,
@@ -97,20 +93,17 @@ namespace Voussoir
   }
 
 
-
   void
   InternalForce::apply(Vector &force, const Vector &displacement) const
   {
-    sweep(
-      force,
-      displacement,
-      nullptr,
-      [&](const unsigned int begin, const unsigned int end) {
-        std::fill(force.begin() + begin, force.begin() + end, 0.);
-      },
-      {});
+    sweep(force,
+          displacement,
+          nullptr,
+          [&](const unsigned int begin, const unsigned int end) {
+            std::fill(force.begin() + begin, force.begin() + end, 0.);
+          },
+          {});
   }
-
 
 
   double
@@ -122,18 +115,17 @@ namespace Voussoir
     if (&u != &v)
       v.update_ghost_values();
     double sum = 0.;
-    for_each_run(discretization.material_of_batch,
-                 0,
-                 discretization.matrix_free.n_cell_batches(),
-                 [&](const unsigned int material,
-                     const unsigned int begin,
-                     const unsigned int end) {
-                   sum += (with_damping_factors ?
-                             kernels[material]->damping_factor() :
-                             1.) *
-                          kernels[material]->work(
-                            discretization.matrix_free, u, v, begin, end);
-                 });
+    for_each_run(
+      discretization.material_of_batch,
+      0,
+      discretization.matrix_free.n_cell_batches(),
+      [&](const unsigned int material,
+          const unsigned int begin,
+          const unsigned int end) {
+        sum +=
+          (with_damping_factors ? kernels[material]->damping_factor() : 1.) *
+          kernels[material]->work(discretization.matrix_free, u, v, begin, end);
+      });
     u.zero_out_ghost_values();
     if (&u != &v)
       v.zero_out_ghost_values();

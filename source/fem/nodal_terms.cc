@@ -17,7 +17,6 @@ namespace Voussoir
   } // namespace
 
 
-
   unsigned int
   NodalTerms::add_node(const unsigned int node)
   {
@@ -31,7 +30,6 @@ namespace Voussoir
       }
     return place->second;
   }
-
 
 
   void
@@ -66,7 +64,6 @@ namespace Voussoir
   }
 
 
-
   void
   NodalTerms::before_step(const Vector &displacement, const Vector &velocity)
   {
@@ -76,7 +73,6 @@ namespace Voussoir
         last_velocity[slot]     = read(velocity, nodes[slot]);
       }
   }
-
 
 
   void
@@ -91,8 +87,8 @@ namespace Voussoir
           lag * (dashpots[slot] * last_velocity[slot]);
         for (unsigned int d = 0; d < 3; ++d)
           {
-            momentum[d] += masses[slot][d] *
-                           velocity.local_element(3 * node + d);
+            momentum[d] +=
+              masses[slot][d] * velocity.local_element(3 * node + d);
             if (masses[slot][d] == 0.)
               momentum[d] = 0.;
           }
@@ -112,7 +108,6 @@ namespace Voussoir
   }
 
 
-
   double
   NodalTerms::spring_energy(const Vector &displacement,
                             const Vector &velocity) const
@@ -129,9 +124,8 @@ namespace Voussoir
   }
 
 
-
   void
-  NodalTerms::add_to(Vector &      force,
+  NodalTerms::add_to(Vector       &force,
                      const Vector &displacement,
                      const double  dashpot_factor) const
   {

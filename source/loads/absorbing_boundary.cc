@@ -223,9 +223,9 @@ namespace Voussoir
                         {
                           const double nn = n[d] * n[e];
                           const double tt = (d == e ? 1. : 0.) - nn;
-                          spring[d][e]    = spring_area *
-                                         (coefficients.normal_spring * nn +
-                                          coefficients.tangential_spring * tt);
+                          spring[d][e] =
+                            spring_area * (coefficients.normal_spring * nn +
+                                           coefficients.tangential_spring * tt);
                           dashpot[d][e] =
                             area * (coefficients.normal_dashpot * nn +
                                     coefficients.tangential_dashpot * tt);

@@ -10,7 +10,7 @@ namespace Voussoir
                            const double            angle,
                            const double            azimuth,
                            const ElasticConstants &rock,
-                           const Point<3> &        origin,
+                           const Point<3>         &origin,
                            const double            delay)
     : origin(origin)
     , delay(delay)
@@ -21,8 +21,7 @@ namespace Voussoir
 
     // directions in the plane of travel: horizontal h, vertical z
     const auto in_plane = [&](const double h, const double z) {
-      return Tensor<1, 3>(
-        {h * std::cos(azimuth), h * std::sin(azimuth), z});
+      return Tensor<1, 3>({h * std::cos(azimuth), h * std::sin(azimuth), z});
     };
     const Tensor<1, 3> across({-std::sin(azimuth), std::cos(azimuth), 0.});
 
@@ -79,7 +78,6 @@ namespace Voussoir
   }
 
 
-
   double
   ObliqueWave::arrival(const Point<3> &point) const
   {
@@ -87,50 +85,44 @@ namespace Voussoir
   }
 
 
-
   Tensor<1, 3>
-  ObliqueWave::displacement(const Signal &  motion,
+  ObliqueWave::displacement(const Signal   &motion,
                             const Point<3> &point,
                             const double    time) const
   {
     Tensor<1, 3> sum;
     for (const PlaneWave &wave : waves)
-      sum += motion.displacement(time - delay -
-                                 wave.slowness * (point - origin)) *
-             wave.polarisation;
-    return sum;
-  }
-
-
-
-  Tensor<1, 3>
-  ObliqueWave::velocity(const Signal &  motion,
-                        const Point<3> &point,
-                        const double    time) const
-  {
-    Tensor<1, 3> sum;
-    for (const PlaneWave &wave : waves)
       sum +=
-        motion.velocity(time - delay - wave.slowness * (point - origin)) *
+        motion.displacement(time - delay - wave.slowness * (point - origin)) *
         wave.polarisation;
     return sum;
   }
 
 
+  Tensor<1, 3>
+  ObliqueWave::velocity(const Signal   &motion,
+                        const Point<3> &point,
+                        const double    time) const
+  {
+    Tensor<1, 3> sum;
+    for (const PlaneWave &wave : waves)
+      sum += motion.velocity(time - delay - wave.slowness * (point - origin)) *
+             wave.polarisation;
+    return sum;
+  }
+
 
   SymmetricTensor<2, 3>
-  ObliqueWave::stress(const Signal &  motion,
+  ObliqueWave::stress(const Signal   &motion,
                       const Point<3> &point,
                       const double    time) const
   {
     SymmetricTensor<2, 3> sum;
     for (const PlaneWave &wave : waves)
-      sum +=
-        motion.velocity(time - delay - wave.slowness * (point - origin)) *
-        wave.stress;
+      sum += motion.velocity(time - delay - wave.slowness * (point - origin)) *
+             wave.stress;
     return sum;
   }
-
 
 
   Tensor<1, 3>
@@ -143,10 +135,9 @@ namespace Voussoir
   }
 
 
-
-  ObliqueField::ObliqueField(const ObliqueWave &       wave,
+  ObliqueField::ObliqueField(const ObliqueWave        &wave,
                              std::unique_ptr<Signal> &&signal,
-                             const BoundaryGeometry &  geometry)
+                             const BoundaryGeometry   &geometry)
     : wave(wave)
     , motion(std::move(signal))
     , nodes(geometry.nodes)
@@ -166,7 +157,6 @@ namespace Voussoir
         shares.push_back({item.node, place->second, item.area});
       }
   }
-
 
 
   void

@@ -31,7 +31,6 @@ namespace Voussoir
   }
 
 
-
   void
   Material::check(const std::string &place) const
   {
@@ -41,7 +40,6 @@ namespace Voussoir
   }
 
 
-
   double
   Material::damping_factor() const
   {
@@ -49,13 +47,11 @@ namespace Voussoir
   }
 
 
-
   double
   Material::inertial_density() const
   {
     return density * inertia_factor;
   }
-
 
 
   double

@@ -29,9 +29,8 @@ namespace Voussoir
   } // namespace
 
 
-
   Checkpoint::Checkpoint(const Discretization &discretization,
-                         const std::string &   folder)
+                         const std::string    &folder)
     : discretization(discretization)
     , folder(folder)
     , keys(discretization.n_owned_nodes(),
@@ -56,13 +55,11 @@ namespace Voussoir
   }
 
 
-
   bool
   Checkpoint::exists(const std::string &folder)
   {
     return fs::exists(folder + "/last_complete");
   }
-
 
 
   nlohmann::json
@@ -73,10 +70,9 @@ namespace Voussoir
   }
 
 
-
   void
   Checkpoint::write(const std::map<std::string, Vector *> &vectors,
-                    const nlohmann::json &                 header)
+                    const nlohmann::json                  &header)
   {
     const MPI_Comm     communicator = discretization.grid.communicator();
     const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
@@ -118,12 +114,11 @@ namespace Voussoir
   }
 
 
-
   void
   Checkpoint::read(const std::map<std::string, Vector *> &vectors) const
   {
-    const std::string    slot   = complete_slot(folder);
-    const nlohmann::json header = read_header(folder);
+    const std::string        slot   = complete_slot(folder);
+    const nlohmann::json     header = read_header(folder);
     std::vector<std::string> names;
     for (const auto &item : vectors)
       names.push_back(item.first);

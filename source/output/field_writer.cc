@@ -20,7 +20,7 @@ namespace Voussoir
       void
       evaluate_vector_field(
         const DataPostprocessorInputs::Vector<3> &inputs,
-        std::vector<dealii::Vector<double>> &     values) const override
+        std::vector<dealii::Vector<double>>      &values) const override
       {
         const auto &material =
           *model.materials[model.material_of_cell(inputs.get_cell<3>())];
@@ -61,12 +61,11 @@ namespace Voussoir
   } // namespace
 
 
-
   std::string
-  write_fields(const ObservedModel &          model,
+  write_fields(const ObservedModel           &model,
                const std::vector<NodalField> &fields,
-               const Vector *                 stress_of,
-               const std::string &            name,
+               const Vector                  *stress_of,
+               const std::string             &name,
                const double                   time)
   {
     const Discretization &discretization = model.discretization;

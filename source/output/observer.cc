@@ -8,7 +8,6 @@ namespace Voussoir
   {}
 
 
-
   bool
   Schedule::due(const unsigned long long step) const
   {

@@ -5,16 +5,16 @@ namespace Voussoir
   using namespace dealii;
 
   CentralDifference::CentralDifference(
-    const Discretization &                                   discretization,
-    const InternalForce &                                    internal_force,
-    const LumpedMass &                                       mass,
-    const Damping &                                          damping,
-    NodalTerms &                                             terms,
-    const std::vector<Projection *> &                        projections,
-    const std::function<void(const double)> &                evaluate_loads,
-    const std::function<Tensor<1, 3>(const double)> &        base_acceleration,
-    const bool                                               paper_scheme,
-    const double                                             time_step)
+    const Discretization                            &discretization,
+    const InternalForce                             &internal_force,
+    const LumpedMass                                &mass,
+    const Damping                                   &damping,
+    NodalTerms                                      &terms,
+    const std::vector<Projection *>                 &projections,
+    const std::function<void(const double)>         &evaluate_loads,
+    const std::function<Tensor<1, 3>(const double)> &base_acceleration,
+    const bool                                       paper_scheme,
+    const double                                     time_step)
     : time_step(time_step)
     , discretization(discretization)
     , internal_force(internal_force)
@@ -46,7 +46,6 @@ namespace Voussoir
   }
 
 
-
   State
   CentralDifference::state_at_rest() const
   {
@@ -58,13 +57,11 @@ namespace Voussoir
   }
 
 
-
   void
   CentralDifference::step(State &state)
   {
-    const Tensor<1, 3> base = base_acceleration ?
-                                base_acceleration(state.time) :
-                                Tensor<1, 3>();
+    const Tensor<1, 3> base =
+      base_acceleration ? base_acceleration(state.time) : Tensor<1, 3>();
     evaluate_loads(state.time);
     terms.before_step(state.displacement, state.velocity);
 
@@ -87,17 +84,16 @@ namespace Voussoir
   }
 
 
-
   void
-  CentralDifference::update_memory(State &            state,
+  CentralDifference::update_memory(State             &state,
                                    const unsigned int begin,
                                    const unsigned int end)
   {
     const double *v = state.velocity.begin();
     const double *u = state.displacement.begin();
-    double *      f = force.begin();
-    double *      e = effective.begin();
-    double *      w = uniform ? e : memory.begin();
+    double       *f = force.begin();
+    double       *e = effective.begin();
+    double       *w = uniform ? e : memory.begin();
 
     // sum of the branches, or beta v
     const double factor = uniform ? uniform_factor : 1.;
@@ -110,9 +106,9 @@ namespace Voussoir
           break;
         case 3: // the default, in one pass
           {
-            double *     w0 = state.memory[0].begin();
-            double *     w1 = state.memory[1].begin();
-            double *     w2 = state.memory[2].begin();
+            double      *w0 = state.memory[0].begin();
+            double      *w1 = state.memory[1].begin();
+            double      *w2 = state.memory[2].begin();
             const double a0 = decay[0], a1 = decay[1], a2 = decay[2];
             const double b0 = gain[0], b1 = gain[1], b2 = gain[2];
 #pragma GCC ivdep
@@ -129,7 +125,7 @@ namespace Voussoir
           std::fill(w + begin, w + end, 0.);
           for (unsigned int k = 0; k < n_branches; ++k)
             {
-              double *     wk = state.memory[k].begin();
+              double      *wk = state.memory[k].begin();
               const double ak = decay[k], bk = gain[k];
 #pragma GCC ivdep
               for (unsigned int i = begin; i < end; ++i)
@@ -149,23 +145,21 @@ namespace Voussoir
   }
 
 
-
   void
-  CentralDifference::update_motion(State &             state,
+  CentralDifference::update_motion(State              &state,
                                    const Tensor<1, 3> &base,
                                    const unsigned int  begin,
                                    const unsigned int  end)
   {
-    double *      v       = state.velocity.begin();
-    double *      u       = state.displacement.begin();
+    double       *v       = state.velocity.begin();
+    double       *u       = state.displacement.begin();
     const double *f       = force.begin();
     const double *inverse = mass.inverse.begin();
 
     // alpha M v centrally, or with v-
-    const double keep = central ?
-                          (1. - 0.5 * time_step * mass_coefficient) /
-                            (1. + 0.5 * time_step * mass_coefficient) :
-                          1. - time_step * mass_coefficient;
+    const double keep = central ? (1. - 0.5 * time_step * mass_coefficient) /
+                                    (1. + 0.5 * time_step * mass_coefficient) :
+                                  1. - time_step * mass_coefficient;
     const double push =
       central ? time_step / (1. + 0.5 * time_step * mass_coefficient) :
                 time_step;
@@ -192,8 +186,8 @@ namespace Voussoir
 
             const double mean = 0.5 * (before + v[i]);
             work_of_base -= time_step * inertia * mean;
-            loss_by_mass += time_step * mass_coefficient * diagonal[i] *
-                            mean * (central ? mean : before);
+            loss_by_mass += time_step * mass_coefficient * diagonal[i] * mean *
+                            (central ? mean : before);
           }
       }
   }

@@ -35,9 +35,9 @@ namespace Voussoir
 
     virtual void
     prepare(const Discretization &discretization,
-            const LumpedMass &    mass,
-            const ParameterFile & file,
-            const std::string &   place) = 0;
+            const LumpedMass     &mass,
+            const ParameterFile  &file,
+            const std::string    &place) = 0;
 
     /** Corrects @p state at the end of a step of length @p time_step [s]; its
      *  time is already that end. The result is of this rank. */

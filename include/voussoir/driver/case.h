@@ -74,7 +74,7 @@ namespace Voussoir
     /** Declares, parses and checks; @p declare_more adds sections that the
      *  caller reads himself. */
     explicit Case(
-      const ParameterFile &file,
+      const ParameterFile                                   &file,
       const std::function<void(dealii::ParameterHandler &)> &declare_more = {});
 
     ParameterFile            file;

@@ -28,9 +28,10 @@ namespace Voussoir
   /**
    * Coefficients of the damping model.
    *
-   * Maxwell: a constant ratio over a band of frequencies by filters on the nodal
-   * displacement, f = K (u + s sum w_i), dw_i/dt = D_i du/dt - w_i/tau_i, with
-   * the damping factor s of the material. Rayleigh: C = alpha M + beta s K.
+   * Maxwell: a constant ratio over a band of frequencies by filters on the
+   * nodal displacement, f = K (u + s sum w_i), dw_i/dt = D_i du/dt - w_i/tau_i,
+   * with the damping factor s of the material. Rayleigh: C = alpha M + beta s
+   * K.
    */
   class Damping
   {

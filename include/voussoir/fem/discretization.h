@@ -5,15 +5,11 @@
 #include <voussoir/mesh/grid.h>
 
 #include <deal.II/base/parameter_handler.h>
-
 #include <deal.II/dofs/dof_handler.h>
-
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_q1.h>
-
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/la_parallel_vector.h>
-
 #include <deal.II/matrix_free/matrix_free.h>
 
 #include <cstring>
@@ -60,21 +56,21 @@ namespace Voussoir
      *   batch holds cells of one material only
      */
     Discretization(
-      const Grid &                    grid,
-      const DiscretizationParameters &parameters,
-      const std::vector<Support> &    supports,
+      const Grid                                            &grid,
+      const DiscretizationParameters                        &parameters,
+      const std::vector<Support>                            &supports,
       const std::function<unsigned int(const Grid::Cell &)> &material_of_cell);
 
-    const Grid &                                   grid;
-    const unsigned int                             degree;
-    const dealii::FESystem<3>                      fe;
-    const dealii::MappingQ1<3>                     mapping;
-    dealii::DoFHandler<3>                          dof_handler;
-    dealii::AffineConstraints<double>              hanging_nodes;
+    const Grid                       &grid;
+    const unsigned int                degree;
+    const dealii::FESystem<3>         fe;
+    const dealii::MappingQ1<3>        mapping;
+    dealii::DoFHandler<3>             dof_handler;
+    dealii::AffineConstraints<double> hanging_nodes;
     /** Hanging nodes and supports. */
-    dealii::AffineConstraints<double>              constraints;
-    dealii::IndexSet                               owned_dofs, relevant_dofs;
-    MatrixFree                                     matrix_free;
+    dealii::AffineConstraints<double> constraints;
+    dealii::IndexSet                  owned_dofs, relevant_dofs;
+    MatrixFree                        matrix_free;
 
     /** Material index of each cell batch of the matrix-free data. */
     std::vector<unsigned int> material_of_batch;
@@ -143,7 +139,6 @@ namespace Voussoir
   };
 
 
-
   template <typename Record>
   std::vector<std::pair<unsigned int, Record>>
   Discretization::send_to_owners(
@@ -160,7 +155,7 @@ namespace Voussoir
     for (const auto &[node, record] : records)
       {
         const Item item{node, record};
-        auto &     buffer = outgoing[owner(node)];
+        auto      &buffer = outgoing[owner(node)];
         const auto bytes  = reinterpret_cast<const char *>(&item);
         buffer.insert(buffer.end(), bytes, bytes + sizeof(Item));
       }

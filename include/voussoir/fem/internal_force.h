@@ -26,18 +26,18 @@ namespace Voussoir
      * the damping factor s of this material.
      */
     virtual void
-    add_force(const MatrixFree & matrix_free,
-              Vector &           force,
-              const Vector &     displacement,
-              const Vector *     memory,
+    add_force(const MatrixFree  &matrix_free,
+              Vector            &force,
+              const Vector      &displacement,
+              const Vector      *memory,
               const unsigned int begin,
               const unsigned int end) const = 0;
 
     /** Integral of sigma(u) : epsilon(v) over the batches [begin, end) [J]. */
     virtual double
-    work(const MatrixFree & matrix_free,
-         const Vector &     u,
-         const Vector &     v,
+    work(const MatrixFree  &matrix_free,
+         const Vector      &u,
+         const Vector      &v,
          const unsigned int begin,
          const unsigned int end) const = 0;
 
@@ -47,8 +47,8 @@ namespace Voussoir
      *   dof values of one component
      */
     virtual Lanes
-    element_eigenvalues(const MatrixFree &                         matrix_free,
-                        const unsigned int                         batch,
+    element_eigenvalues(const MatrixFree                   &matrix_free,
+                        const unsigned int                  batch,
                         const dealii::AlignedVector<Lanes> &masses) const = 0;
 
     /** Factor s on the damping memory, relative to the damping model. */
@@ -64,7 +64,7 @@ namespace Voussoir
   {
   public:
     /** @param kernels one per material index of the discretization */
-    InternalForce(const Discretization &                 discretization,
+    InternalForce(const Discretization                  &discretization,
                   const std::vector<const CellKernel *> &kernels);
 
     /** Whether all materials have the same damping factor, so that u + s w can
@@ -77,7 +77,8 @@ namespace Voussoir
     damping_factor() const;
 
     /** Work on a range of owned vector entries. */
-    using RangeWork = std::function<void(const unsigned int, const unsigned int)>;
+    using RangeWork =
+      std::function<void(const unsigned int, const unsigned int)>;
 
     /**
      * force = f(displacement + s memory) with @p before and @p after called
@@ -86,9 +87,9 @@ namespace Voussoir
      * the exchange accordingly). @p before may still change the source vectors.
      */
     void
-    sweep(Vector &         force,
-          const Vector &   displacement,
-          const Vector *   memory,
+    sweep(Vector          &force,
+          const Vector    &displacement,
+          const Vector    *memory,
           const RangeWork &before,
           const RangeWork &after) const;
 
@@ -106,7 +107,7 @@ namespace Voussoir
          const bool    with_damping_factors = false) const;
 
   private:
-    const Discretization &          discretization;
+    const Discretization           &discretization;
     std::vector<const CellKernel *> kernels;
   };
 } // namespace Voussoir

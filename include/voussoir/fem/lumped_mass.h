@@ -19,11 +19,11 @@ namespace Voussoir
      * @param driven_density the part of it that an inertial earthquake force
      *                       (rigid base) acts on [kg/m3]
      */
-    LumpedMass(const Discretization &     discretization,
-               const std::vector<double> &density,
-               const std::vector<double> &driven_density,
-               const std::function<unsigned int(const Grid::Cell &)>
-                 &material_of_cell);
+    LumpedMass(
+      const Discretization                                  &discretization,
+      const std::vector<double>                             &density,
+      const std::vector<double>                             &driven_density,
+      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell);
 
     /** Mass of each degree of freedom [kg], zero where held. */
     Vector mass;
@@ -48,9 +48,9 @@ namespace Voussoir
     of(const dealii::Triangulation<3>::active_cell_iterator &cell);
 
   private:
-    dealii::FEValues<3> values;
+    dealii::FEValues<3>       values;
     std::vector<unsigned int> node_of_point;
-    std::vector<double> volumes;
+    std::vector<double>       volumes;
   };
 } // namespace Voussoir
 

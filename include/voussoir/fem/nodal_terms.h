@@ -27,9 +27,9 @@ namespace Voussoir
     std::vector<dealii::Tensor<1, 3>> forces;   // of the present step [N]
 
     /**
-     * Makes the inverses of M + dt/2 (alpha M + C) for the step. Without @p central the
-     * dashpots act on the velocity of the last half step instead (the paper's
-     * scheme), and the inverse is that of M.
+     * Makes the inverses of M + dt/2 (alpha M + C) for the step. Without @p
+     * central the dashpots act on the velocity of the last half step instead
+     * (the paper's scheme), and the inverse is that of M.
      */
     void
     prepare(const LumpedMass &mass,
@@ -54,12 +54,11 @@ namespace Voussoir
 
     /** Energy in the springs between two steps, u_n K u_(n-1) / 2 [J]. */
     double
-    spring_energy(const Vector &displacement,
-                  const Vector &velocity) const;
+    spring_energy(const Vector &displacement, const Vector &velocity) const;
 
     /** Adds the springs, and the dashpots times @p dashpot_factor. */
     void
-    add_to(Vector &      force,
+    add_to(Vector       &force,
            const Vector &displacement,
            const double  dashpot_factor) const;
 

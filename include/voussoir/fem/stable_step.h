@@ -21,7 +21,8 @@ namespace Voussoir
 
     /** Adds the diagonal terms (boundary springs; dashpots and mass damping
      *  times 2/dt where they are not treated centrally). */
-    std::function<void(Vector &force, const Vector &displacement, const double dt)>
+    std::function<
+      void(Vector &force, const Vector &displacement, const double dt)>
       add_diagonal;
   };
 
@@ -31,17 +32,17 @@ namespace Voussoir
    */
   double
   stable_step(const Discretization &discretization,
-              const InternalForce & force,
-              const LumpedMass &    mass,
-              const StepLimits &    limits);
+              const InternalForce  &force,
+              const LumpedMass     &mass,
+              const StepLimits     &limits);
 
   /** The undamped limit of each cell by itself, and the cell that governs. */
   class ElementSteps
   {
   public:
-    ElementSteps(const Discretization &                 discretization,
+    ElementSteps(const Discretization                  &discretization,
                  const std::vector<const CellKernel *> &kernels,
-                 const std::vector<double> &            density);
+                 const std::vector<double>             &density);
 
     /** Prints the histogram and the cell that governs, on the first rank. */
     void

@@ -21,9 +21,9 @@ namespace Voussoir
     /** Finds the nodes it acts on; @p place names its section in messages. */
     virtual void
     prepare(const Discretization &discretization,
-            NodalTerms &          terms,
-            const ParameterFile & file,
-            const std::string &   place) = 0;
+            NodalTerms           &terms,
+            const ParameterFile  &file,
+            const std::string    &place) = 0;
 
     /** Adds its nodal forces at @p time [s] to `terms.forces`. */
     virtual void

@@ -6,7 +6,6 @@
 
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/symmetric_tensor.h>
-
 #include <deal.II/matrix_free/fe_evaluation.h>
 
 namespace Voussoir
@@ -18,9 +17,9 @@ namespace Voussoir
   /** The isotropic elastic constants that waves and boundaries go by. */
   struct ElasticConstants
   {
-    double density;         // rho [kg/m3]
-    double young_modulus;   // E [Pa]
-    double poisson_ratio;   // nu
+    double density;       // rho [kg/m3]
+    double young_modulus; // E [Pa]
+    double poisson_ratio; // nu
 
     double
     shear_modulus() const // G [Pa]
@@ -88,7 +87,8 @@ namespace Voussoir
     virtual SymmetricTensor3<double>
     stress(const SymmetricTensor3<double> &strain) const = 0;
 
-    /** Cost of a cell relative to a linear elastic one, to balance the ranks. */
+    /** Cost of a cell relative to a linear elastic one, to balance the ranks.
+     */
     virtual double
     relative_cost() const;
 
@@ -101,7 +101,6 @@ namespace Voussoir
      *  the reference frequency of the damping model. */
     double stiffness_scale = 1.;
   };
-
 
 
   /** The material that a stress law makes; see Material. */
@@ -136,10 +135,10 @@ namespace Voussoir
     }
 
     void
-    add_force(const MatrixFree & matrix_free,
-              Vector &           force,
-              const Vector &     displacement,
-              const Vector *     memory,
+    add_force(const MatrixFree  &matrix_free,
+              Vector            &force,
+              const Vector      &displacement,
+              const Vector      *memory,
               const unsigned int begin,
               const unsigned int end) const override
     {
@@ -160,9 +159,9 @@ namespace Voussoir
     }
 
     double
-    work(const MatrixFree & matrix_free,
-         const Vector &     u,
-         const Vector &     v,
+    work(const MatrixFree  &matrix_free,
+         const Vector      &u,
+         const Vector      &v,
          const unsigned int begin,
          const unsigned int end) const override
     {
@@ -200,14 +199,14 @@ namespace Voussoir
 
     Lanes
     element_eigenvalues(
-      const MatrixFree &                         matrix_free,
-      const unsigned int                         batch,
+      const MatrixFree                   &matrix_free,
+      const unsigned int                  batch,
       const dealii::AlignedVector<Lanes> &masses) const override
     {
       // power iteration, which 30 products bring within one or two per cent
       Evaluation cell(matrix_free);
       cell.reinit(batch);
-      const unsigned int                  n = masses.size();
+      const unsigned int           n = masses.size();
       dealii::AlignedVector<Lanes> mode(3 * n);
       for (unsigned int i = 0; i < 3 * n; ++i)
         mode[i] = std::cos(2.3 * i * i + 0.7 * i);

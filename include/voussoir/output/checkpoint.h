@@ -8,9 +8,9 @@
 namespace Voussoir
 {
   /**
-   * Writes and reads nodal vectors by a number of each node that does not depend
-   * on the ranks, so that a run can go on with another number of them. Two slots
-   * are written in turn; a pointer file names the last complete one.
+   * Writes and reads nodal vectors by a number of each node that does not
+   * depend on the ranks, so that a run can go on with another number of them.
+   * Two slots are written in turn; a pointer file names the last complete one.
    */
   class Checkpoint
   {
@@ -20,7 +20,7 @@ namespace Voussoir
     /** Writes the vectors (by name) and @p header. */
     void
     write(const std::map<std::string, Vector *> &vectors,
-          const nlohmann::json &                 header);
+          const nlohmann::json                  &header);
 
     /** Whether the folder holds a complete checkpoint. */
     static bool
@@ -36,7 +36,7 @@ namespace Voussoir
     read(const std::map<std::string, Vector *> &vectors) const;
 
   private:
-    const Discretization &     discretization;
+    const Discretization      &discretization;
     const std::string          folder;
     std::vector<std::uint64_t> keys; // of the owned nodes
     unsigned int               next_slot = 1;

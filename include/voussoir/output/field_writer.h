@@ -9,7 +9,7 @@ namespace Voussoir
    *  scalar fields with names of their own. */
   struct NodalField
   {
-    const Vector *           vector;
+    const Vector            *vector;
     std::vector<std::string> names; // one or three
   };
 
@@ -20,10 +20,10 @@ namespace Voussoir
    * @return the name of the file without its folder
    */
   std::string
-  write_fields(const ObservedModel &          model,
+  write_fields(const ObservedModel           &model,
                const std::vector<NodalField> &fields,
-               const Vector *                 stress_of,
-               const std::string &            name,
+               const Vector                  *stress_of,
+               const std::string             &name,
                const double                   time);
 } // namespace Voussoir
 

@@ -25,18 +25,17 @@ namespace Voussoir
      * @param evaluate_loads  sets `terms.forces` for a time
      * @param base_acceleration acceleration of a rigid base [m/s2], or empty
      */
-    CentralDifference(
-      const Discretization &                              discretization,
-      const InternalForce &                               internal_force,
-      const LumpedMass &                                  mass,
-      const Damping &                                     damping,
-      NodalTerms &                                        terms,
-      const std::vector<Projection *> &                   projections,
-      const std::function<void(const double)> &           evaluate_loads,
-      const std::function<dealii::Tensor<1, 3>(const double)>
-        &          base_acceleration,
-      const bool   paper_scheme,
-      const double time_step);
+    CentralDifference(const Discretization                    &discretization,
+                      const InternalForce                     &internal_force,
+                      const LumpedMass                        &mass,
+                      const Damping                           &damping,
+                      NodalTerms                              &terms,
+                      const std::vector<Projection *>         &projections,
+                      const std::function<void(const double)> &evaluate_loads,
+                      const std::function<dealii::Tensor<1, 3>(const double)>
+                                  &base_acceleration,
+                      const bool   paper_scheme,
+                      const double time_step);
 
     /** Advances the state by one step. */
     void
@@ -54,20 +53,20 @@ namespace Voussoir
 
   private:
     void
-    update_memory(State &            state,
+    update_memory(State             &state,
                   const unsigned int begin,
                   const unsigned int end);
 
     void
-    update_motion(State &                     state,
+    update_motion(State                      &state,
                   const dealii::Tensor<1, 3> &base,
                   const unsigned int          begin,
                   const unsigned int          end);
 
-    const Discretization &                            discretization;
-    const InternalForce &                             internal_force;
-    const LumpedMass &                                mass;
-    NodalTerms &                                      terms;
+    const Discretization                             &discretization;
+    const InternalForce                              &internal_force;
+    const LumpedMass                                 &mass;
+    NodalTerms                                       &terms;
     const std::vector<Projection *>                   projections;
     const std::function<void(const double)>           evaluate_loads;
     const std::function<dealii::Tensor<1, 3>(double)> base_acceleration;

@@ -55,7 +55,19 @@ namespace Voussoir
         for (const auto &record : discretization.send_to_owners(records))
           unique[record.first] = true;
         for (const auto &item : unique)
-          nodes.push_back(item.first);
+          moved_nodes.push_back(item.first);
+      }
+
+      const std::vector<unsigned int> &
+      nodes() const override
+      {
+        return moved_nodes;
+      }
+
+      bool
+      prescribes() const override
+      {
+        return true;
       }
 
       Result
@@ -70,10 +82,10 @@ namespace Voussoir
             Tensor<1, 3>() :
             (factor(before) - factor(before - time_step)) / time_step *
               displacement;
-        for (unsigned int i = 0; i < nodes.size(); ++i)
+        for (const unsigned int node : moved_nodes)
           for (unsigned int d = 0; d < 3; ++d)
             {
-              const unsigned int entry = 3 * nodes[i] + d;
+              const unsigned int entry = 3 * node + d;
               double            &u = state.displacement.local_element(entry);
               double            &v = state.velocity.local_element(entry);
               const double       wanted = v + (target[d] - u) / time_step;
@@ -93,7 +105,7 @@ namespace Voussoir
       TimeFactor   factor;
 
       const LumpedMass         *mass = nullptr;
-      std::vector<unsigned int> nodes;
+      std::vector<unsigned int> moved_nodes;
     };
 
     const Registry<Projection>::Add<PrescribedMotion>

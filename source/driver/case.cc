@@ -181,12 +181,16 @@ namespace Voussoir
           in_section(prm, type, [&] { generator->declare_parameters(prm); });
         }
     });
+    interfaces.declare(prm, file);
     in_section(prm, "Discretization", [&] { discretization.declare(prm); });
     materials.declare(prm, file, "Materials", "materials", "linear elastic");
     in_section(prm, "Boundaries", [&] { boundaries.declare(prm); });
     in_section(prm, "Ground motion", [&] { ground_motion.declare(prm); });
     in_section(prm, "Wave field", [&] { wave.declare(prm); });
     loads.declare(prm, file, "Loads", "loads", "surface load");
+    in_section(prm, "Reservoir", [&] { reservoir.declare(prm); });
+    in_section(prm, "Static state", [&] { static_state.declare(prm); });
+    in_section(prm, "Modes", [&] { modes.declare(prm); });
     projections.declare(
       prm, file, "Constraints", "constraints", "prescribed motion");
     in_section(prm, "Damping", [&] { damping.declare(prm); });
@@ -224,8 +228,15 @@ namespace Voussoir
                       "least one material and give it cell sets.");
     for (const auto &[name, material] : materials.objects)
       material->check("Section \"Materials/" + name + "\"");
+    interfaces.check();
+    static_state.check(load_list());
+    modes.check(material_names(), boundaries);
+    if (modes.number > 0 && !interfaces.list.empty())
+      throw UserError("Section \"Modes\" asks for natural modes, which a model "
+                      "with \"Interfaces\" does not have, as its joints open "
+                      "and close; compute them without the interfaces.");
     ground_motion.check();
-    damping.check();
+    damping.check(modes.number);
     const bool rigid_base = wave.enters_through == "rigid base";
     if (ground_motion.type != "none" && !rigid_base &&
         split_list(boundaries.absorbing).empty())
@@ -243,7 +254,7 @@ namespace Voussoir
 
 
   CoarseMesh
-  Case::make_mesh(std::ostream &log) const
+  Case::make_mesh(std::ostream &log)
   {
     CoarseMesh mesh;
     if (generator)
@@ -254,6 +265,7 @@ namespace Voussoir
     else
       mesh = reader.read(&log);
     log << describe_mesh(mesh);
+    interfaces.split(mesh);
     return mesh;
   }
 
@@ -321,6 +333,26 @@ namespace Voussoir
     std::vector<const Material *> list;
     for (const auto &item : materials.objects)
       list.push_back(item.second.get());
+    return list;
+  }
+
+
+  std::vector<std::string>
+  Case::material_names() const
+  {
+    std::vector<std::string> names;
+    for (const auto &item : materials.objects)
+      names.push_back(item.first);
+    return names;
+  }
+
+
+  NamedLoads
+  Case::load_list() const
+  {
+    NamedLoads list;
+    for (const auto &[name, load] : loads.objects)
+      list.emplace_back(name, load.get());
     return list;
   }
 } // namespace Voussoir

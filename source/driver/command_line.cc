@@ -75,6 +75,7 @@ namespace Voussoir
       RunOptions options;
       options.quiet     = true;
       options.no_output = true;
+      options.validate  = true;
       Simulation simulation(parameters, options, communicator);
       for (const auto &observer : parameters.observers)
         observer.second->check(simulation.model);

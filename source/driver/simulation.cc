@@ -2,6 +2,7 @@
 #include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/simulation.h>
+#include <voussoir/mesh/reservoir_mesh.h>
 #include <voussoir/output/field_writer.h>
 
 #include <csignal>
@@ -64,12 +65,28 @@ namespace Voussoir
 
 
     CoarseMesh
-    make_mesh(const Case &parameters, Log &log)
+    make_mesh(Case &parameters, Log &log)
     {
       std::ostringstream report;
       CoarseMesh         mesh = parameters.make_mesh(report);
       log(report.str());
       return mesh;
+    }
+
+
+    // The water that a mesh may have is a mesh of its own, used or not.
+    CoarseMesh
+    take_water(const ReservoirParameters &reservoir, CoarseMesh &mesh)
+    {
+      std::vector<std::string> sets;
+      for (const std::string &set : split_list(reservoir.cell_sets))
+        if (reservoir.model == "compressible" || mesh.cell_sets.count(set) > 0)
+          sets.push_back(set);
+      if (sets.empty())
+        return {};
+      return split_off_reservoir(mesh,
+                                 sets,
+                                 "\"Cell sets\" in section \"Reservoir\"");
     }
 
 
@@ -96,6 +113,16 @@ namespace Voussoir
     }
 
 
+    std::vector<Material *>
+    changeable_materials(const Case &parameters)
+    {
+      std::vector<Material *> list;
+      for (const auto &material : parameters.materials.objects)
+        list.push_back(material.second.get());
+      return list;
+    }
+
+
     double
     driven_density(const Material &material)
     {
@@ -114,6 +141,7 @@ namespace Voussoir
     , folder(choose_folder(parameters, options, communicator))
     , coarse_mesh(
         (report_start(), check_checkpoint(), make_mesh(parameters, log)))
+    , water_mesh(take_water(parameters.reservoir, coarse_mesh))
     , coarse_materials(parameters.material_of_coarse_cells(coarse_mesh))
     , damping(parameters.damping)
     , materials(scaled_materials(parameters, damping))
@@ -146,7 +174,9 @@ namespace Voussoir
         [this](const Grid::Cell &cell) { return material_of(cell); },
         parameters.discretization.quadrature,
         terms)
-    , largest_step((prepare_loads(), report_mesh(), find_largest_step()))
+    , initial((report_mesh(), prepare_loads(), find_initial_state()))
+    , modes(find_natural_modes())
+    , largest_step(find_largest_step())
     , time_step(choose_time_step())
     , scheme(
         discretization,
@@ -154,13 +184,22 @@ namespace Voussoir
         mass,
         damping,
         terms,
+        initial,
         projections,
         [this](const double time) {
           std::fill(terms.forces.begin(), terms.forces.end(), Tensor<1, 3>());
           boundary.add_forces(time, terms);
-          for (const auto &load : this->parameters.loads.objects)
-            load.second->add_forces(time, terms);
+          for (const Load *load : running_loads)
+            load->add_forces(time, terms);
+          if (reservoir)
+            reservoir->add_forces(terms);
         },
+        reservoir ?
+          [this](const State &now) {
+            reservoir->advance(now.velocity,
+                               base_motion(now.time - 0.5 * time_step)[1]);
+          } :
+          std::function<void(const State &)>(),
         rigid_base() ?
           [this](const double time) { return base_motion(time)[2]; } :
           std::function<Tensor<1, 3>(const double)>(),
@@ -171,13 +210,25 @@ namespace Voussoir
     , model{discretization,
             materials,
             [this](const Grid::Cell &cell) { return material_of(cell); },
+            initial,
+            reservoir.get(),
+            contact.get(),
             folder,
             time_step,
             parameters.time.end_time,
             [this](const double time) { return base_motion(time); }}
-    , energy(discretization, internal_force, mass, damping, terms, scheme)
+    , energy(discretization,
+             internal_force,
+             mass,
+             damping,
+             terms,
+             initial,
+             scheme)
   {
     coarse_mesh = CoarseMesh();
+    water_mesh  = CoarseMesh();
+    if (reservoir)
+      reservoir->prepare(time_step);
     report_step();
     prepare_ground_motion();
     for (const auto &observer : parameters.observers)
@@ -187,6 +238,8 @@ namespace Voussoir
       open_output();
     if (options.restart)
       read_checkpoint();
+    for (Projection *projection : projections)
+      projection->start(state);
     energy.evaluate(state);
     last_good = state;
   }
@@ -240,6 +293,7 @@ namespace Voussoir
                                   .at("time")
                                   .get<double>() :
                                 0.;
+    write_modes();
     energy.open(folder, start_time, options.restart);
     for (const auto &observer : parameters.observers)
       observer.second->prepare(model, start_time, options.restart);
@@ -279,8 +333,22 @@ namespace Voussoir
   void
   Simulation::prepare_loads()
   {
+    const LoadedModel     loaded{discretization,
+                             materials,
+                             [this](const Grid::Cell &cell) {
+                               return material_of(cell);
+                             },
+                             parameters.file};
+    std::set<std::string> staged;
+    for (const auto &stage : parameters.static_state.stage_names())
+      staged.insert(stage.begin(), stage.end());
     for (const auto &[name, load] : parameters.loads.objects)
-      load->prepare(discretization, terms, parameters.file, "Loads/" + name);
+      {
+        load->prepare(loaded, terms, "Loads/" + name);
+        if (staged.count(name) == 0)
+          running_loads.push_back(load.get());
+      }
+    prepare_reservoir();
     for (const auto &[name, projection] : parameters.projections.objects)
       {
         projection->prepare(discretization,
@@ -289,6 +357,102 @@ namespace Voussoir
                             "Constraints/" + name);
         projections.push_back(projection.get());
       }
+    if (!parameters.interfaces.list.empty())
+      {
+        contact =
+          std::make_unique<Contact>(discretization, parameters.interfaces);
+        projections.push_back(contact.get());
+      }
+  }
+
+
+  void
+  Simulation::prepare_reservoir()
+  {
+    const ReservoirParameters &water = parameters.reservoir;
+    if (water.model == "added mass")
+      log.line("Reservoir: added mass of ",
+               add_westergaard_mass(
+                 discretization, water.added_mass, water.density, terms),
+               " kg over all facets");
+    if (water.model == "compressible")
+      {
+        reservoir = std::make_unique<Reservoir>(
+          water_mesh, parameters.grid, water, discretization, terms);
+        double surface = std::numeric_limits<double>::lowest();
+        for (const Point<3> &node : reservoir->space.node_positions)
+          surface = std::max(surface, node[2]);
+        log.line("Reservoir: ",
+                 reservoir->space.dof_handler.n_dofs(),
+                 " unknowns of compressible water up to z = ",
+                 Utilities::MPI::max(surface, grid.communicator()),
+                 " m, ",
+                 reservoir->space.grid.describe_balance(),
+                 ", largest step ",
+                 reservoir->stable_step(),
+                 " s");
+      }
+  }
+
+
+  InitialState
+  Simulation::find_initial_state()
+  {
+    if (parameters.static_state.stage_names().empty() || options.validate)
+      return {};
+    TimerOutput::Scope scope(timer, "static state");
+    return find_static_state({discretization,
+                              internal_force,
+                              changeable_materials(parameters),
+                              [this](const Grid::Cell &cell) {
+                                return material_of(cell);
+                              },
+                              parameters.boundaries,
+                              mass,
+                              terms,
+                              contact.get()},
+                             parameters.static_state,
+                             parameters.load_list(),
+                             log,
+                             static_summary);
+  }
+
+
+  Modes
+  Simulation::find_natural_modes()
+  {
+    if (parameters.modes.number == 0 || options.validate)
+      return {};
+    TimerOutput::Scope scope(timer, "modes");
+    Modes              found =
+      find_modes({discretization,
+                  internal_force,
+                  parameters.material_names(),
+                  changeable_materials(parameters),
+                  [this](const Grid::Cell &cell) { return material_of(cell); },
+                  parameters.boundaries,
+                  terms},
+                 parameters.modes,
+                 log);
+    damping.adapt_to_modes(found.frequencies());
+    return found;
+  }
+
+
+  void
+  Simulation::write_modes()
+  {
+    if (modes.list.empty())
+      return;
+    std::vector<NodalField> fields;
+    for (unsigned int j = 0; j < modes.list.size(); ++j)
+      {
+        std::ostringstream name;
+        name << std::setprecision(4) << "mode " << j + 1 << " ("
+             << modes.list[j].frequency << " Hz)";
+        fields.push_back({&modes.list[j].shape, {name.str()}});
+      }
+    write_fields(model, fields, nullptr, "modes", 0.);
   }
 
 
@@ -344,6 +508,8 @@ namespace Voussoir
             force.local_element(i) += 2. / dt * alpha *
                                       mass.mass.local_element(i) *
                                       displacement.local_element(i);
+        if (reservoir)
+          reservoir->add_coupling(force, displacement, dt);
       };
     undamped_step =
       damping.stiffening(1.) > 0. ?
@@ -353,7 +519,10 @@ namespace Voussoir
                     {[](const double) { return 0.; },
                      [](Vector &, const Vector &, const double) {}}) :
         0.;
-    return stable_step(discretization, internal_force, mass, limits);
+    const double step =
+      stable_step(discretization, internal_force, mass, limits);
+    // the bound on the coupling holds up to this share of the water's own limit
+    return reservoir ? std::min(step, 0.95 * reservoir->stable_step()) : step;
   }
 
 

@@ -115,6 +115,16 @@ namespace Voussoir
     Utilities::System::get_memory_stats(memory);
     result["peak memory of a rank [MB]"] =
       Utilities::MPI::max(memory.VmHWM / 1024., grid.communicator());
+    if (!static_summary.is_null())
+      result["static state"] = static_summary;
+    if (!modes.list.empty())
+      result["modes"] = modes.summary();
+    if (reservoir)
+      result["reservoir"] = {
+        {"unknowns", reservoir->space.dof_handler.n_dofs()},
+        {"stored energy [J]", reservoir->stored_energy()},
+        {"radiated and absorbed [J]",
+         Utilities::MPI::sum(reservoir->loss, grid.communicator())}};
     result["energy balance"] = energy.summary();
     return result;
   }

@@ -23,6 +23,33 @@ namespace Voussoir
   }
 
 
+  std::map<std::string, KeyedValues>
+  Simulation::checkpoint_values()
+  {
+    std::map<std::string, KeyedValues> values;
+    for (const auto &[name, observer] : parameters.observers)
+      for (auto &[group_name, group] : observer->checkpoint_values())
+        values[name + "/" + group_name] = std::move(group);
+    if (contact)
+      values["contact"] = contact->checkpoint_values();
+    if (reservoir)
+      {
+        const auto keys = reservoir->space.node_keys();
+        for (const auto &[name, vector] :
+             std::map<std::string, Vector *>{{"pressure", &reservoir->pressure},
+                                             {"pressure impulse",
+                                              &reservoir->impulse}})
+          {
+            KeyedValues &group = values["reservoir/" + name];
+            group.width        = 1;
+            for (unsigned int i = 0; i < keys.size(); ++i)
+              group.items.emplace_back(keys[i], vector->begin() + i);
+          }
+      }
+    return values;
+  }
+
+
   nlohmann::json
   Simulation::physics() const
   {
@@ -64,11 +91,13 @@ namespace Voussoir
     for (const auto &[name, observer] : parameters.observers)
       seen[name] = observer->save();
     checkpoint.write(checkpoint_vectors(),
+                     checkpoint_values(),
                      {{"time", state.time},
                       {"step", state.step},
                       {"time step", time_step},
                       {"energy", energy.save()},
                       {"work", accumulated_work()},
+                      {"contact", contact ? contact->save() : nlohmann::json()},
                       {"observers", seen},
                       {"physics", physics()}});
     log.line("Checkpoint written at t = ", state.time, " s");
@@ -83,7 +112,8 @@ namespace Voussoir
                                               terms.loss_in_dashpots,
                                               scheme.work_of_base,
                                               scheme.work_of_projections,
-                                              scheme.loss_by_mass},
+                                              scheme.loss_by_mass,
+                                              reservoir ? reservoir->loss : 0.},
                           grid.communicator());
   }
 
@@ -124,10 +154,12 @@ namespace Voussoir
   {
     const nlohmann::json header =
       Checkpoint::read_header(folder + "/checkpoint");
-    checkpoint.read(checkpoint_vectors());
+    checkpoint.read(checkpoint_vectors(), checkpoint_values());
     state.time = header.at("time");
     state.step = header.at("step");
     energy.load(header.at("energy"));
+    if (contact)
+      contact->load(header.at("contact"));
     for (const auto &[name, observer] : parameters.observers)
       if (header.at("observers").contains(name))
         observer->load(header.at("observers").at(name));
@@ -139,6 +171,8 @@ namespace Voussoir
         scheme.work_of_base        = work[2];
         scheme.work_of_projections = work[3];
         scheme.loss_by_mass        = work[4];
+        if (reservoir)
+          reservoir->loss = work[5];
       }
     // the free field has no checkpoint: it is marched again, which is cheap
     for (unsigned long long step = 0; step < state.step; ++step)

@@ -44,12 +44,36 @@ namespace Voussoir
                       "Frequency at which the materials' moduli hold under "
                       "Maxwell damping [Hz]; 0 for at rest.",
                       Patterns::Double(0.));
+    prm.add_parameter("From modes",
+                      modes,
+                      "Two modes, as in \"1, 3\": Rayleigh damping has its "
+                      "ratio at their natural frequencies (see section "
+                      "\"Modes\") instead of the ends of the band. Empty: the "
+                      "band.",
+                      Patterns::List(Patterns::Integer(1), 0, 2));
   }
 
 
   void
-  DampingParameters::check() const
+  DampingParameters::check(const unsigned int n_modes) const
   {
+    if (!modes.empty())
+      {
+        if (model != "Rayleigh")
+          throw UserError("\"From modes\" in section \"Damping\" is for the "
+                          "\"Model\" Rayleigh only, not " +
+                          model + "; leave it empty.");
+        if (modes.size() != 2 || modes[0] == modes[1])
+          throw UserError("\"From modes\" in section \"Damping\" must name "
+                          "two different modes, as in \"1, 3\".");
+        const unsigned int last = std::max(modes[0], modes[1]);
+        if (last > n_modes)
+          throw UserError("\"From modes\" in section \"Damping\" names mode " +
+                          std::to_string(last) +
+                          ", but \"Number\" in section \"Modes\" is " +
+                          std::to_string(n_modes) + "; set it to " +
+                          std::to_string(last) + " or more.");
+      }
     if (model != "none" && lowest_frequency >= highest_frequency)
       throw UserError("In section \"Damping\" the \"Lowest frequency\" must be "
                       "below the \"Highest frequency\".");
@@ -59,17 +83,34 @@ namespace Voussoir
   Damping::Damping(const DampingParameters &parameters)
     : parameters(parameters)
   {
-    const double w1 = 2. * numbers::PI * parameters.lowest_frequency;
-    const double w2 = 2. * numbers::PI * parameters.highest_frequency;
     if (parameters.model == "Maxwell" && parameters.ratio > 0.)
       fit_maxwell();
     else if (parameters.model == "Rayleigh")
-      {
-        mass_coefficient      = 2. * parameters.ratio * w1 * w2 / (w1 + w2);
-        stiffness_coefficient = 2. * parameters.ratio / (w1 + w2);
-      }
+      fit_rayleigh(parameters.lowest_frequency, parameters.highest_frequency);
     else if (parameters.model == "mass proportional")
-      mass_coefficient = 2. * parameters.ratio * w1;
+      mass_coefficient =
+        4. * numbers::PI * parameters.ratio * parameters.lowest_frequency;
+  }
+
+
+  void
+  Damping::adapt_to_modes(const std::vector<double> &natural_frequencies)
+  {
+    if (parameters.modes.empty())
+      return;
+    fit_rayleigh(natural_frequencies.at(parameters.modes[0] - 1),
+                 natural_frequencies.at(parameters.modes[1] - 1));
+  }
+
+
+  void
+  Damping::fit_rayleigh(const double first_frequency,
+                        const double second_frequency)
+  {
+    const double w1       = 2. * numbers::PI * first_frequency;
+    const double w2       = 2. * numbers::PI * second_frequency;
+    mass_coefficient      = 2. * parameters.ratio * w1 * w2 / (w1 + w2);
+    stiffness_coefficient = 2. * parameters.ratio / (w1 + w2);
   }
 
 

@@ -47,7 +47,10 @@ namespace Voussoir
     first_dof_of_rank.push_back(0);
     for (const auto owned : owned_by_all)
       first_dof_of_rank.push_back(first_dof_of_rank.back() + owned);
-    make_constraints(supports);
+    hanging_nodes.reinit(relevant_dofs);
+    DoFTools::make_hanging_node_constraints(dof_handler, hanging_nodes);
+    hanging_nodes.close();
+    constraints = make_constraints(supports);
 
     MatrixFree::AdditionalData data;
     data.tasks_parallel_scheme = MatrixFree::AdditionalData::none;
@@ -62,10 +65,13 @@ namespace Voussoir
 
     if (parameters.quadrature == "Gauss")
       matrix_free.reinit(
-        mapping, dof_handler, constraints, QGauss<1>(degree + 1), data);
+        mapping, dof_handler, hanging_nodes, QGauss<1>(degree + 1), data);
     else
-      matrix_free.reinit(
-        mapping, dof_handler, constraints, QGaussLobatto<1>(degree + 1), data);
+      matrix_free.reinit(mapping,
+                         dof_handler,
+                         hanging_nodes,
+                         QGaussLobatto<1>(degree + 1),
+                         data);
 
     for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
       material_of_batch.push_back(
@@ -121,15 +127,17 @@ namespace Voussoir
   }
 
 
-  void
-  Discretization::make_constraints(const std::vector<Support> &supports)
+  AffineConstraints<double>
+  Discretization::make_constraints(
+    const std::vector<Support>                    &supports,
+    const std::function<bool(const Grid::Cell &)> &held_cell) const
   {
-    hanging_nodes.reinit(relevant_dofs);
-    DoFTools::make_hanging_node_constraints(dof_handler, hanging_nodes);
-    hanging_nodes.close();
-
-    constraints.reinit(relevant_dofs);
-    DoFTools::make_hanging_node_constraints(dof_handler, constraints);
+    AffineConstraints<double> result(relevant_dofs);
+    DoFTools::make_hanging_node_constraints(dof_handler, result);
+    const auto hold = [&](const types::global_dof_index dof) {
+      if (result.can_store_line(dof) && !result.is_constrained(dof))
+        result.add_line(dof);
+    };
 
     FEFaceValues<3> normals(mapping,
                             fe.base_element(0),
@@ -165,14 +173,17 @@ namespace Voussoir
                      ++j)
                   if (fe.base_element(0).has_support_on_face(j, face))
                     for (unsigned int d = 0; d < 3; ++d)
-                      {
-                        const auto dof = 3 * nodes[j] + d;
-                        if (held[d] && constraints.can_store_line(dof) &&
-                            !constraints.is_constrained(dof))
-                          constraints.add_line(dof);
-                      }
+                      if (held[d])
+                        hold(3 * nodes[j] + d);
               }
-    constraints.close();
+    if (held_cell)
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (!cell->is_artificial() && held_cell(cell))
+          for (const auto node : cell_nodes(cell))
+            for (unsigned int d = 0; d < 3; ++d)
+              hold(3 * node + d);
+    result.close();
+    return result;
   }
 
 

@@ -106,6 +106,30 @@ namespace Voussoir
   }
 
 
+  void
+  InternalForce::add_thermal_force(Vector       &force,
+                                   const Vector &temperature) const
+  {
+    discretization.matrix_free.cell_loop<Vector, Vector>(
+      [&](const auto                                  &matrix_free,
+          Vector                                      &dst,
+          const Vector                                &src,
+          const std::pair<unsigned int, unsigned int> &range) {
+        for_each_run(discretization.material_of_batch,
+                     range.first,
+                     range.second,
+                     [&](const unsigned int material,
+                         const unsigned int begin,
+                         const unsigned int end) {
+                       kernels[material]->add_thermal_force(
+                         matrix_free, dst, src, begin, end);
+                     });
+      },
+      force,
+      temperature);
+  }
+
+
   double
   InternalForce::work(const Vector &u,
                       const Vector &v,

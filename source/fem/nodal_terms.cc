@@ -26,6 +26,7 @@ namespace Voussoir
         nodes.push_back(node);
         springs.emplace_back();
         dashpots.emplace_back();
+        added_mass.emplace_back();
         forces.emplace_back();
       }
     return place->second;
@@ -54,8 +55,10 @@ namespace Voussoir
         for (unsigned int d = 0; d < 3; ++d)
           for (unsigned int e = 0; e < 3; ++e)
             {
-              if (masses[slot][d] > 0. && masses[slot][e] > 0. && central)
-                matrix[d][e] = 0.5 * time_step * dashpots[slot][d][e];
+              if (masses[slot][d] > 0. && masses[slot][e] > 0.)
+                matrix[d][e] =
+                  added_mass[slot][d][e] +
+                  (central ? 0.5 * time_step * dashpots[slot][d][e] : 0.);
               if (d == e)
                 matrix[d][e] += masses[slot][d] > 0. ? masses[slot][d] : 1.;
             }
@@ -65,8 +68,11 @@ namespace Voussoir
 
 
   void
-  NodalTerms::before_step(const Vector &displacement, const Vector &velocity)
+  NodalTerms::before_step(const Vector       &displacement,
+                          const Vector       &velocity,
+                          const Tensor<1, 3> &base_acceleration)
   {
+    base = base_acceleration;
     for (unsigned int slot = 0; slot < nodes.size(); ++slot)
       {
         last_displacement[slot] = read(displacement, nodes[slot]);
@@ -82,8 +88,11 @@ namespace Voussoir
     for (unsigned int slot = 0; slot < nodes.size(); ++slot)
       {
         const unsigned int node = nodes[slot];
+        // what drives the added mass is the ground under a rigid base
+        const Tensor<1, 3> applied = forces[slot] - added_mass[slot] * base;
         Tensor<1, 3>       momentum =
-          time_step * (forces[slot] - springs[slot] * last_displacement[slot]) -
+          added_mass[slot] * last_velocity[slot] +
+          time_step * (applied - springs[slot] * last_displacement[slot]) -
           lag * (dashpots[slot] * last_velocity[slot]);
         for (unsigned int d = 0; d < 3; ++d)
           {
@@ -94,7 +103,7 @@ namespace Voussoir
           }
         const Tensor<1, 3> next = inverse[slot] * momentum;
         const Tensor<1, 3> mean = 0.5 * (next + last_velocity[slot]);
-        work_of_forces += time_step * (forces[slot] * mean);
+        work_of_forces += time_step * (applied * mean);
         loss_in_dashpots +=
           time_step *
           (mean * (dashpots[slot] * (central ? mean : last_velocity[slot])));
@@ -105,6 +114,54 @@ namespace Voussoir
               last_displacement[slot][d] + time_step * next[d];
           }
       }
+  }
+
+
+  std::optional<Tensor<2, 3>>
+  NodalTerms::inverse_at(const unsigned int node) const
+  {
+    const auto slot = slot_of_node.find(node);
+    if (slot == slot_of_node.end())
+      return {};
+    Tensor<2, 3> result = inverse[slot->second];
+    for (unsigned int d = 0; d < 3; ++d)
+      if (masses[slot->second][d] == 0.)
+        result[d][d] = 0.;
+    return result;
+  }
+
+
+  void
+  NodalTerms::account_for(const unsigned int  node,
+                          const Tensor<1, 3> &velocity,
+                          const Tensor<1, 3> &change)
+  {
+    const auto found = slot_of_node.find(node);
+    if (found == slot_of_node.end())
+      return;
+    const unsigned int slot    = found->second;
+    const Tensor<1, 3> applied = forces[slot] - added_mass[slot] * base;
+    const Tensor<1, 3> mean    = 0.5 * (velocity + last_velocity[slot]),
+                       was     = mean - 0.5 * change;
+    work_of_forces += time_step * (applied * (mean - was));
+    // with the paper's scheme dashpots act on the velocity before the step
+    const Tensor<1, 3> &v = last_velocity[slot];
+    loss_in_dashpots +=
+      time_step * (mean * (dashpots[slot] * (central ? mean : v)) -
+                   was * (dashpots[slot] * (central ? was : v)));
+  }
+
+
+  double
+  NodalTerms::kinetic_energy(const Vector &velocity) const
+  {
+    double sum = 0.;
+    for (unsigned int slot = 0; slot < nodes.size(); ++slot)
+      {
+        const Tensor<1, 3> v = read(velocity, nodes[slot]);
+        sum += 0.5 * (v * (added_mass[slot] * v));
+      }
+    return sum;
   }
 
 

@@ -1,8 +1,7 @@
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/text.h>
+#include <voussoir/fem/lanczos.h>
 #include <voussoir/fem/stable_step.h>
-
-#include <deal.II/lac/tridiagonal_matrix.h>
 
 #include <iomanip>
 
@@ -25,64 +24,6 @@ namespace Voussoir
               std::sin(1e3 * p[0] + 2e3 * p[1] + 3e3 * p[2] + 1.7 * d);
         }
     }
-
-
-    // Largest eigenvalue of M^-1/2 A M^-1/2 by Lanczos, which approaches it
-    // from below and fast, as it lies at the end of the spectrum.
-    double
-    largest_eigenvalue(
-      const Discretization                                &discretization,
-      const LumpedMass                                    &mass,
-      const std::function<void(Vector &, const Vector &)> &apply)
-    {
-      constexpr unsigned int max_iterations = 400;
-      Vector                 root(mass.inverse); // M^-1/2
-      for (double &entry : root)
-        entry = std::sqrt(entry);
-
-      Vector q = discretization.create_vector(), previous(q), w(q), scaled(q);
-      fill_start(discretization, q);
-      for (unsigned int i = 0; i < q.locally_owned_size(); ++i)
-        if (root.local_element(i) == 0.)
-          q.local_element(i) = 0.;
-      q /= q.l2_norm();
-
-      std::vector<double> alpha, beta;
-      double              value = 0., older = 0.;
-      for (unsigned int k = 0; k < max_iterations; ++k)
-        {
-          scaled = q;
-          scaled.scale(root);
-          apply(w, scaled);
-          w.scale(root);
-          alpha.push_back(w * q);
-          w.add(-alpha.back(), q);
-          if (k > 0)
-            w.add(-beta.back(), previous);
-          beta.push_back(w.l2_norm());
-
-          if (k % 5 == 4 || beta.back() < 1e-12 * alpha.back())
-            {
-              TridiagonalMatrix<double> tridiagonal(alpha.size(), true);
-              for (unsigned int i = 0; i < alpha.size(); ++i)
-                {
-                  tridiagonal(i, i) = alpha[i];
-                  if (i > 0)
-                    tridiagonal(i, i - 1) = beta[i - 1];
-                }
-              tridiagonal.compute_eigenvalues();
-              value = tridiagonal.eigenvalue(alpha.size() - 1);
-              if (k >= 29 && value - older < 1e-6 * value)
-                break;
-              if (beta.back() < 1e-12 * alpha.back())
-                break;
-              older = value;
-            }
-          previous.swap(q);
-          q.equ(1. / beta.back(), w);
-        }
-      return value;
-    }
   } // namespace
 
 
@@ -92,8 +33,9 @@ namespace Voussoir
               const LumpedMass     &mass,
               const StepLimits     &limits)
   {
-    Vector     memory = discretization.create_vector();
-    const auto limit  = [&](const double dt) {
+    Vector memory = discretization.create_vector(), start(memory);
+    fill_start(discretization, start);
+    const auto limit = [&](const double dt) {
       const double gamma = limits.stiffening(dt);
       const auto   apply = [&](Vector &dst, const Vector &src) {
         memory.equ(gamma, src);
@@ -106,7 +48,7 @@ namespace Voussoir
                     {});
         limits.add_diagonal(dst, src, dt);
       };
-      return 2. / std::sqrt(largest_eigenvalue(discretization, mass, apply));
+      return 2. / std::sqrt(largest_eigenvalue(start, mass.inverse, apply));
     };
 
     // With terms in 1/dt the limit is the fixed point of dt -> limit(dt), whose

@@ -20,13 +20,12 @@ namespace Voussoir
       }
 
       void
-      prepare(const Discretization &discretization,
-              NodalTerms           &terms,
-              const ParameterFile &,
+      prepare(const LoadedModel &model,
+              NodalTerms        &terms,
               const std::string &place) override
       {
         factor.prepare("\"Time function\" in section \"" + place + "\"");
-        const PointWeights weights(discretization,
+        const PointWeights weights(model.discretization,
                                    {{"load", point}},
                                    "\"Point\" in section \"" + place + "\"");
         for (const auto &item : weights.items)

@@ -1,8 +1,6 @@
 #include <voussoir/base/time_factor.h>
+#include <voussoir/loads/face_forces.h>
 #include <voussoir/loads/load.h>
-
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 
 namespace Voussoir
 {
@@ -27,58 +25,19 @@ namespace Voussoir
       }
 
       void
-      prepare(const Discretization &discretization,
-              NodalTerms           &terms,
-              const ParameterFile &,
+      prepare(const LoadedModel &model,
+              NodalTerms        &terms,
               const std::string &place) override
       {
         factor.prepare("\"Time function\" in section \"" + place + "\"");
-        const auto     &scalar = discretization.fe.base_element(0);
-        FEFaceValues<3> values(discretization.mapping,
-                               scalar,
-                               QGauss<2>(discretization.degree + 1),
-                               update_values | update_normal_vectors |
-                                 update_JxW_values);
-
-        struct Force
-        {
-          double components[3];
-        };
-        std::vector<std::pair<types::global_dof_index, Force>> forces;
-        const auto sets = split_list(face_sets);
-        if (sets.empty())
-          throw UserError("\"Face sets\" in section \"" + place +
-                          "\" is empty; name the face sets it acts on.");
-        for (const std::string &set : sets)
-          {
-            discretization.grid.check_face_set(set,
-                                               "\"Face sets\" in section \"" +
-                                                 place + "\"");
-            discretization.grid.for_each_face(
-              set, [&](const auto &cell, const unsigned int face) {
-                values.reinit(cell, face);
-                const auto nodes =
-                  discretization.cell_nodes(discretization.dof_cell(cell));
-                for (unsigned int j = 0; j < nodes.size(); ++j)
-                  if (scalar.has_support_on_face(j, face))
-                    {
-                      Tensor<1, 3> sum;
-                      for (const unsigned int q :
-                           values.quadrature_point_indices())
-                        sum += values.shape_value(j, q) * values.JxW(q) *
-                               (traction - pressure * values.normal_vector(q));
-                      for (const auto &share :
-                           discretization.carriers(nodes[j]))
-                        forces.push_back({share.node,
-                                          {{share.weight * sum[0],
-                                            share.weight * sum[1],
-                                            share.weight * sum[2]}}});
-                    }
-              });
-          }
-        for (const auto &[node, force] : discretization.send_to_owners(forces))
-          shares.emplace_back(terms.add_node(node),
-                              Tensor<1, 3>(force.components));
+        for (const auto &[node, force] :
+             face_forces(model.discretization,
+                         split_list(face_sets),
+                         "\"Face sets\" in section \"" + place + "\"",
+                         [&](const Point<3> &, const Tensor<1, 3> &normal) {
+                           return traction - pressure * normal;
+                         }))
+          shares.emplace_back(terms.add_node(node), force);
       }
 
       void

@@ -28,6 +28,16 @@ namespace Voussoir
                       "Damping of this material relative to the section "
                       "\"Damping\"; 0 for none.",
                       Patterns::Double(0., 4.));
+    prm.add_parameter("Static factor",
+                      static_factor,
+                      "Modulus under the loads of the static stage over the "
+                      "dynamic one; 0.67 where the dynamic modulus is taken as "
+                      "1.5 times the static one.",
+                      Patterns::Double(0.01, 2.));
+    prm.add_parameter("Thermal expansion",
+                      expansion,
+                      "Coefficient of thermal expansion [1/K].",
+                      Patterns::Double(0.));
   }
 
 
@@ -44,6 +54,18 @@ namespace Voussoir
   Material::damping_factor() const
   {
     return damping;
+  }
+
+
+  SymmetricTensor3<double>
+  Material::total_stress(const SymmetricTensor3<double> &strain,
+                         const SymmetricTensor3<double> &initial_strain,
+                         const double                    temperature) const
+  {
+    SymmetricTensor3<double> at_rest = initial_strain;
+    for (unsigned int d = 0; d < 3; ++d)
+      at_rest[d][d] -= expansion * temperature;
+    return stress(strain - initial_strain + static_factor * at_rest);
   }
 
 

@@ -1,4 +1,6 @@
+#include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
+#include <voussoir/mesh/abutment_wedge.h>
 #include <voussoir/mesh/arch_dam_section.h>
 #include <voussoir/mesh/arch_dam_shape.h>
 #include <voussoir/mesh/generator.h>
@@ -10,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace Voussoir
 {
@@ -23,6 +26,9 @@ namespace Voussoir
     // Length over the dam's height in which the lines of the mesh turn from the
     // dam's normal into the river's direction.
     constexpr double relative_turning_length = 0.35;
+
+
+    class Sweep;
 
 
     /** An arch dam in its canyon. */
@@ -72,6 +78,24 @@ namespace Voussoir
           "cells per wavelength, so 60 m of rock with S waves of 2000 m/s carry "
           "4 Hz.",
           Patterns::Double(1.));
+        prm.add_parameter(
+          "Reservoir level",
+          water_level,
+          "Fill the canyon with water up to the row of cells nearest to this "
+          "level, cell set \"reservoir\" [m above the base]; 0: no water.",
+          Patterns::Double(0.));
+        prm.add_parameter("Reservoir length",
+                          relative_water_length,
+                          "From the crown upstream over the dam's height, "
+                          "rounded to whole cells [-]; 0: to the end of the "
+                          "rock.",
+                          Patterns::Double(0., 20.));
+        for (const int bank : {0, 1})
+          {
+            prm.enter_subsection(wedge_section(bank));
+            wedges[bank].declare(prm);
+            prm.leave_subsection();
+          }
         prm.enter_subsection("Custom shape");
         custom_shape.declare(prm);
         prm.leave_subsection();
@@ -81,20 +105,53 @@ namespace Voussoir
       check() const override
       {
         custom_shape.check("Mesh/arch dam/Custom shape");
+        if (water_level > shape().height)
+          {
+            std::ostringstream text;
+            text << "\"Reservoir level\" in section \"Mesh/arch dam\" is "
+                 << water_level << " m, but the dam is only " << shape().height
+                 << " m high; choose a lower level.";
+            throw UserError(text.str());
+          }
+        if (water_level > 0. && relative_water_length > rock_extent)
+          throw UserError("\"Reservoir length\" in section \"Mesh/arch dam\" "
+                          "is more than the \"Rock extent\"; shorten the "
+                          "reservoir or add rock.");
       }
 
       CoarseMesh
       generate() const override;
 
     private:
-      std::string  shape_name   = "Baihetan-like";
-      unsigned int n_joints     = 9;
-      double       cell_size    = 16.;
-      unsigned int n_thickness  = 2;
-      double       rock_extent  = 2.;
-      double       growth       = 1.4;
-      double       largest_cell = 60.;
+      ArchDamShape
+      shape() const
+      {
+        return shape_name == "custom" ? custom_shape :
+                                        ArchDamShape::preset(shape_name);
+      }
+
+      /** Those that are asked for; they lay lines of the section straight. */
+      std::vector<AbutmentWedge>
+      make_wedges(const Sweep &sweep, ArchDamCrossSection &section) const;
+
+      static std::string
+      wedge_section(const int bank)
+      {
+        return bank == 0 ? "Right wedge" : "Left wedge";
+      }
+
+      std::string  shape_name            = "Baihetan-like";
+      unsigned int n_joints              = 9;
+      double       cell_size             = 16.;
+      unsigned int n_thickness           = 2;
+      double       rock_extent           = 2.;
+      double       growth                = 1.4;
+      double       largest_cell          = 60.;
+      double       water_level           = 0.;
+      double       relative_water_length = 0.;
       ArchDamShape custom_shape;
+
+      std::array<AbutmentWedgeParameters, 2> wedges; // right and left bank
     };
 
 
@@ -124,7 +181,8 @@ namespace Voussoir
         upstream_end += rock_extent * height;
         downstream_end -= rock_extent * height;
 
-        points       = graded_points(rock_extent * height + turning_length,
+        full_length  = rock_extent * height;
+        points       = graded_points(full_length + turning_length,
                                cell_size,
                                growth,
                                largest_cell);
@@ -156,6 +214,19 @@ namespace Voussoir
               }
           }
         return result;
+      }
+
+      // Layers beside the dam that come nearest to a length.
+      unsigned int
+      layers_along(const double length) const
+      {
+        const double total  = points.size() - 1;
+        unsigned int layers = 1;
+        while (layers < total &&
+               std::abs(points[layers + 1] * full_length - length) <
+                 std::abs(points[layers] * full_length - length))
+          ++layers;
+        return layers;
       }
 
       unsigned int first_in_dam, n_layers;
@@ -194,15 +265,35 @@ namespace Voussoir
       std::vector<double>                points;
       double upstream_end   = std::numeric_limits<double>::lowest();
       double downstream_end = std::numeric_limits<double>::max();
+      double full_length;
     };
+
+
+    std::vector<AbutmentWedge>
+    ArchDam::make_wedges(const Sweep &sweep, ArchDamCrossSection &section) const
+    {
+      const AbutmentWedge::Layers layers{sweep.first_in_dam,
+                                         sweep.first_in_dam + n_thickness,
+                                         sweep.n_layers,
+                                         [&](const double length) {
+                                           return sweep.layers_along(length);
+                                         }};
+      std::vector<AbutmentWedge>  result;
+      for (const int bank : {0, 1})
+        if (wedges[bank].elevation > 0.)
+          result.emplace_back(wedges[bank],
+                              2 * bank - 1,
+                              layers,
+                              section,
+                              "Mesh/arch dam/" + wedge_section(bank));
+      return result;
+    }
 
 
     CoarseMesh
     ArchDam::generate() const
     {
-      const ArchDamShape    shape = shape_name == "custom" ?
-                                      custom_shape :
-                                      ArchDamShape::preset(shape_name);
+      const ArchDamShape    shape = this->shape();
       const ArchDamSections sections(shape);
       const double          crest = sections.left_end - sections.right_end;
       // Columns are halved in the cross-section.
@@ -210,25 +301,38 @@ namespace Voussoir
       const double columns = std::max(least_columns, crest / (2. * cell_size));
       const unsigned int columns_per_block =
         std::max(1., std::round(columns / n_blocks));
-      const ArchDamCrossSection section(sections,
-                                        shape.height,
-                                        n_blocks,
-                                        columns_per_block,
-                                        rock_extent,
-                                        growth,
-                                        largest_cell);
-      const Sweep               sweep(section,
-                        sections,
-                        shape.height,
-                        rock_extent,
-                        n_thickness,
-                        cell_size,
-                        growth,
-                        largest_cell);
-      const unsigned int        n_lines   = section.vertices.size();
-      const unsigned int        n_layers  = sweep.n_layers;
-      const unsigned int        dam_begin = sweep.first_in_dam,
-                         dam_end          = dam_begin + n_thickness;
+      ArchDamCrossSection section(sections,
+                                  shape.height,
+                                  n_blocks,
+                                  columns_per_block,
+                                  rock_extent,
+                                  growth,
+                                  largest_cell,
+                                  water_level);
+      const auto          make_sweep = [&]() {
+        return Sweep(section,
+                     sections,
+                     shape.height,
+                     rock_extent,
+                     n_thickness,
+                     cell_size,
+                     growth,
+                     largest_cell);
+      };
+      const auto         bank_wedges = make_wedges(make_sweep(), section);
+      const Sweep        sweep       = make_sweep();
+      const unsigned int n_lines     = section.vertices.size();
+      const unsigned int n_layers    = sweep.n_layers;
+      const unsigned int dam_begin   = sweep.first_in_dam,
+                         dam_end     = dam_begin + n_thickness;
+      const unsigned int water_end =
+        relative_water_length > 0. ?
+          dam_end + sweep.layers_along(relative_water_length * shape.height) :
+          n_layers;
+      const auto is_water = [&](const auto &quad, const unsigned int layer) {
+        return quad.inside && quad.half_row < section.surface_row &&
+               layer >= dam_end && layer < water_end;
+      };
 
       // The cells, and which of them stands at a quadrilateral and layer.
       CoarseMesh                mesh;
@@ -241,11 +345,20 @@ namespace Voussoir
           {
             const auto &quad   = section.quads[q];
             const bool  is_dam = j >= dam_begin && j < dam_end && quad.inside;
-            if (quad.inside && !is_dam)
+            if (quad.inside && !is_dam && !is_water(quad, j))
+              continue;
+            if (std::any_of(bank_wedges.begin(),
+                            bank_wedges.end(),
+                            [&](const AbutmentWedge &wedge) {
+                              return wedge.is_cut(quad, j);
+                            }))
               continue;
             const unsigned int cell       = mesh.cells.size();
             cell_number[q * n_layers + j] = cell;
-            mesh.cell_sets[is_dam ? "dam" : "rock"].push_back(cell);
+            mesh.cell_sets[is_dam      ? "dam" :
+                           quad.inside ? "reservoir" :
+                                         "rock"]
+              .push_back(cell);
             if (is_dam)
               mesh
                 .cell_sets["block " +
@@ -290,14 +403,18 @@ namespace Voussoir
                                  const unsigned int quad,
                                  const unsigned int layer,
                                  const unsigned int face) {
-        mesh.face_sets[name].push_back(
-          {cell_number[quad * n_layers + layer], face});
+        // rock may be cut away before a wedge
+        if (const unsigned int cell = cell_number[quad * n_layers + layer];
+            cell != none)
+          mesh.face_sets[name].push_back({cell, face});
       };
       for (unsigned int q = 0; q < section.quads.size(); ++q)
         if (section.quads[q].inside)
           {
             name_face("downstream face", q, dam_begin, 2);
             name_face("upstream face", q, dam_end - 1, 3);
+            if (is_water(section.quads[q], water_end - 1))
+              name_face("reservoir end", q, water_end - 1, 3);
           }
         else
           {
@@ -336,7 +453,11 @@ namespace Voussoir
           if (sides.size() == 1)
             {
               if (quad.inside)
-                name_faces("crest", sides[0], dam_begin, dam_end);
+                {
+                  name_faces("crest", sides[0], dam_begin, dam_end);
+                  if (is_water(quad, dam_end))
+                    name_faces("water surface", sides[0], dam_end, water_end);
+                }
               else if (on_column && a.column == 0)
                 name_faces("right", sides[0], 0, n_layers);
               else if (on_column && a.column == section.last_column)
@@ -357,7 +478,15 @@ namespace Voussoir
               name_faces("dam-rock interface", dam, dam_begin, dam_end);
               name_faces("canyon", rock, 0, dam_begin);
               name_faces("canyon", rock, dam_end, n_layers);
+              name_faces("canyon downstream", rock, 0, dam_begin);
+              name_faces("canyon upstream", rock, dam_end, n_layers);
             }
+          else if (quad.inside && (quad.half_row < section.surface_row) !=
+                                    (other.half_row < section.surface_row))
+            name_faces("water surface",
+                       sides[quad.half_row < section.surface_row ? 0 : 1],
+                       dam_end,
+                       water_end);
           else if (quad.inside && on_column &&
                    (a.column - section.first_dam_column) % columns_per_block ==
                      0)
@@ -368,6 +497,8 @@ namespace Voussoir
                        dam_begin,
                        dam_end);
         }
+      for (const AbutmentWedge &wedge : bank_wedges)
+        wedge.add_sets(section, cell_number, mesh);
       return mesh;
     }
 

@@ -19,6 +19,10 @@ namespace Voussoir
     constexpr double       relative_probe = 0.01, largest_step = 0.05;
     constexpr double       relaxation = 0.6;
     constexpr unsigned int n_steps    = 120;
+
+    // How far a row may be moved to the level of a reservoir, and how near it
+    // may come to the next, over the height of a row.
+    constexpr double surface_shift = 0.25, surface_distance = 0.3;
   } // namespace
 
 
@@ -28,7 +32,8 @@ namespace Voussoir
                                            const unsigned int columns_per_block,
                                            const double       rock_extent,
                                            const double       growth,
-                                           const double       largest_cell)
+                                           const double       largest_cell,
+                                           const double       water_level)
     : sections(sections)
     , height(height)
   {
@@ -38,6 +43,9 @@ namespace Voussoir
                   largest_cell);
     place_rows(rock_extent, growth, largest_cell);
     follow_contour();
+    on_surface.resize(vertices.size());
+    if (water_level > 0.)
+      lay_surface(water_level);
     make_quads();
     smooth(columns_per_block);
   }
@@ -134,6 +142,68 @@ namespace Voussoir
   }
 
 
+  // The surface is the row of vertices, or of middles between two rows, that
+  // can be laid nearest to the level. Its ends on the banks stay where the
+  // columns meet the contour.
+  void
+  ArchDamCrossSection::lay_surface(const double water_level)
+  {
+    const int    n_rows     = rows.size();
+    const double row_height = height / (n_rows - 1 - base_row);
+    double       nearest    = std::numeric_limits<double>::max();
+    for (int half_row = 2 * base_row + 1; half_row < 2 * n_rows - 1; ++half_row)
+      {
+        // the columns between the banks, whose feet lie lower
+        const int row = half_row / 2, foot = (half_row - 1) / 2;
+        int       first = first_dam_column, last = last_dam_column;
+        while (first < last && contour_rows[first] > foot)
+          ++first;
+        while (last > first && contour_rows[last] > foot)
+          --last;
+        if (contour_rows[first] > foot)
+          continue;
+
+        double lower = rows[row], upper = rows[row];
+        if (half_row % 2 == 1)
+          {
+            lower += surface_distance * row_height;
+            upper = rows[row + 1] - surface_distance * row_height;
+          }
+        else if (row < n_rows - 1)
+          {
+            const double ends = 0.5 * (contour[first - 1] + contour[last + 1]);
+            lower             = ends - surface_shift * row_height;
+            upper             = std::min(ends + surface_shift * row_height,
+                             rows[row + 1] - surface_distance * row_height);
+          }
+        for (int i = first; i <= last; ++i)
+          if (contour_rows[i] == foot)
+            lower = std::max(lower, contour[i] + surface_distance * row_height);
+        if (row == n_rows - 1) // the crest
+          lower = upper = height;
+        if (lower > upper)
+          continue;
+        const double z = std::min(upper, std::max(lower, water_level));
+        if (std::abs(z - water_level) < nearest)
+          {
+            nearest         = std::abs(z - water_level);
+            surface_level   = z;
+            surface_row     = half_row;
+            surface_columns = {first, last};
+          }
+      }
+    if (surface_row % 2 == 0)
+      for (int i = surface_columns.first - 1; i <= surface_columns.second + 1;
+           ++i)
+        {
+          const unsigned int vertex = i * n_rows + surface_row / 2;
+          on_surface[vertex]        = true;
+          if (!on_contour[vertex])
+            vertices[vertex].z = surface_level;
+        }
+  }
+
+
   void
   ArchDamCrossSection::make_quads()
   {
@@ -181,6 +251,9 @@ namespace Voussoir
         centre.s += vertices[around[i]].s / n;
         centre.z += vertices[around[i]].z / n;
       }
+    on_surface.push_back(n == 4 && inside && 2 * int(row) + 1 == surface_row);
+    if (on_surface.back())
+      centre.z = surface_level;
     vertices.push_back(centre);
     on_contour.push_back(false);
 
@@ -203,7 +276,10 @@ namespace Voussoir
         std::rotate(quad.begin(),
                     std::min_element(quad.begin(), quad.end(), is_further_down),
                     quad.end());
-        quads.push_back({quad, column, inside, cell_width, cell_height});
+        // the corners of a cell in the canyon are one or two at its foot
+        const int half_row = 2 * row + (i < n - 2 ? 0 : 1);
+        quads.push_back(
+          {quad, column, half_row, inside, cell_width, cell_height});
       }
   }
 
@@ -223,6 +299,14 @@ namespace Voussoir
         on_contour.push_back(!along_column && on_contour[a] && on_contour[b]);
         if (on_contour.back())
           vertex.z = sections.contour(vertex.s);
+        on_surface.push_back(
+          (on_surface[a] && on_surface[b]) ||
+          (along_column &&
+           2 * int(std::min(a, b) % rows.size()) + 1 == surface_row &&
+           u.column >= surface_columns.first &&
+           u.column <= surface_columns.second));
+        if (on_surface.back() && along_column)
+          vertex.z = surface_level;
         vertices.push_back(vertex);
       }
     return entry->second;
@@ -279,7 +363,7 @@ namespace Voussoir
                        column > 0 && column < last_column);
     };
     const auto may_move_up = [&](const unsigned int v) {
-      return !on_contour[v] && vertices[v].z < height &&
+      return !on_contour[v] && !on_surface[v] && vertices[v].z < height &&
              vertices[v].z > rows.front();
     };
 
@@ -323,7 +407,7 @@ namespace Voussoir
               return Vertex{vertex.s, vertex.z + dz, vertex.column};
             };
 
-            if (may_move_along(vertex))
+            if (may_move_along(vertex) && !(on_contour[v] && on_surface[v]))
               moved[v] = along(newton_step(v, cell_width, along));
             if (may_move_up(v))
               moved[v].z += newton_step(v, cell_height, up);

@@ -60,6 +60,18 @@ namespace Voussoir
                           "Size ratio of successive rows of rock away from the "
                           "dam [-].",
                           Patterns::Double(1., 2.));
+        prm.add_parameter(
+          "Reservoir level",
+          water_level,
+          "Water upstream of the dam up to the row of cells nearest to this "
+          "level, cell set \"reservoir\" [m above the base]; 0: no water.",
+          Patterns::Double(0.));
+        prm.add_parameter(
+          "Reservoir length",
+          water_length,
+          "Length of the water [m], with rock rounded to its cells; 0: to the "
+          "end of the rock.",
+          Patterns::Double(0.));
       }
 
       void
@@ -72,6 +84,18 @@ namespace Voussoir
           throw UserError("\"Cells\" in section \"Mesh/gravity section\" must "
                           "be at least 2 over the height: one below and one "
                           "above the neck.");
+        if (water_level > height)
+          throw UserError("\"Reservoir level\" in section \"Mesh/gravity "
+                          "section\" is above the crest; choose a lower one.");
+        if (water_level > 0. && rock_extent > 0. && water_length > rock_extent)
+          throw UserError("\"Reservoir length\" in section \"Mesh/gravity "
+                          "section\" is more than the \"Rock extent\"; shorten "
+                          "the reservoir or add rock.");
+        if (water_level > 0. && rock_extent == 0. && water_length == 0.)
+          throw UserError(
+            "\"Reservoir length\" in section \"Mesh/gravity "
+            "section\" is 0, to the end of the rock, but there is "
+            "no rock; give a length.");
       }
 
       CoarseMesh
@@ -84,13 +108,36 @@ namespace Voussoir
         std::vector<double> base;
         for (unsigned int j = 0; j <= cells[1]; ++j)
           base.push_back(base_width * (double(j) / cells[1] - 1.));
-        const std::vector<double> rock = rock_distances(base_width / cells[1]);
+        const std::vector<double> rock =
+          distances(rock_extent, base_width / cells[1]);
         const unsigned int heel = rock.size() + cells[1], toe = rock.size();
         for (const double distance : rock)
-          {
-            base.insert(base.begin(), -base_width - distance);
-            base.push_back(distance);
-          }
+          base.insert(base.begin(), -base_width - distance);
+        const std::vector<double> upstream =
+          rock_extent > 0. || water_level == 0. ?
+            rock :
+            distances(water_length, base_width / cells[1]);
+        base.insert(base.end(), upstream.begin(), upstream.end());
+
+        // where the water ends, by rows and by points of the base
+        const auto nearest = [](const std::vector<double> &values,
+                                const unsigned int         first,
+                                const double               value) {
+          return std::min_element(values.begin() + first,
+                                  values.end(),
+                                  [&](const double a, const double b) {
+                                    return std::abs(a - value) <
+                                           std::abs(b - value);
+                                  }) -
+                 values.begin();
+        };
+        const bool         has_water = water_level > 0.;
+        const unsigned int surface =
+          has_water ? nearest(elevations, base_row + 1, water_level) : 0;
+        const unsigned int end =
+          !has_water        ? heel :
+          water_length > 0. ? nearest(base, heel + 1, water_length) :
+                              base.size() - 1;
 
         CoarseMesh         mesh;
         const unsigned int n_x = cells[0], n_y = base.size() - 1,
@@ -104,11 +151,12 @@ namespace Voussoir
           if (number == numbers::invalid_unsigned_int)
             {
               const double z = elevations[k];
+              const double y = base[j];
               number         = mesh.vertices.size();
               mesh.vertices.emplace_back(thickness * (double(i) / n_x - 0.5),
-                                         z > 0. ?
-                                                          base[j] * width(z) / base_width :
-                                                          base[j],
+                                         z > 0. && y < 0. ?
+                                                          y * width(z) / base_width :
+                                                          y,
                                          z);
             }
           return number;
@@ -119,7 +167,9 @@ namespace Voussoir
             for (unsigned int i = 0; i < n_x; ++i)
               {
                 const bool above = k >= base_row, in_dam = j >= toe && j < heel;
-                if (above && !in_dam)
+                const bool in_water =
+                  above && j >= heel && j < end && k < surface;
+                if (above && !in_dam && !in_water)
                   continue;
                 const unsigned int          cell = mesh.cells.size();
                 std::array<unsigned int, 8> corners;
@@ -127,7 +177,10 @@ namespace Voussoir
                   corners[v] =
                     vertex(i + (v & 1), j + ((v >> 1) & 1), k + (v >> 2));
                 mesh.cells.push_back(corners);
-                mesh.cell_sets[above ? "dam" : "rock"].push_back(cell);
+                mesh.cell_sets[in_water ? "reservoir" :
+                               above    ? "dam" :
+                                          "rock"]
+                  .push_back(cell);
 
                 const auto side = [&](const bool         is_there,
                                       const std::string &name,
@@ -139,8 +192,10 @@ namespace Voussoir
                 side(i == n_x - 1, "side plus", 1);
                 side(above && j == toe, "downstream face", 2);
                 side(above && j == heel - 1, "upstream face", 3);
-                side(k == n_z - 1, "crest", 5);
-                side(k == base_row, "base", 4);
+                side(in_dam && k == n_z - 1, "crest", 5);
+                side(in_dam && k == base_row, "base", 4);
+                side(in_water && k == surface - 1, "water surface", 5);
+                side(in_water && j == end - 1, "reservoir end", 3);
                 side(!above && j == 0, "downstream end", 2);
                 side(!above && j == n_y - 1, "upstream end", 3);
                 side(!above && k == 0, "bottom", 4);
@@ -160,17 +215,18 @@ namespace Voussoir
                                 (height - neck_elevation);
       }
 
-      /** Distances from the dam of the rows of rock that begin with a size. */
+      /** Distances from the dam, up to @p extent, of the rows of rock or water
+       *  that begin with a size. */
       std::vector<double>
-      rock_distances(const double size) const
+      distances(const double extent, const double size) const
       {
-        std::vector<double> distances;
-        if (rock_extent > 0.)
+        std::vector<double> result;
+        if (extent > 0.)
           for (const double point : graded_points(
-                 rock_extent, size, growth, std::numeric_limits<double>::max()))
+                 extent, size, growth, std::numeric_limits<double>::max()))
             if (point > 0.)
-              distances.push_back(rock_extent * point);
-        return distances;
+              result.push_back(extent * point);
+        return result;
       }
 
       /** Elevations of the rows, one of them at the neck, from below. */
@@ -183,7 +239,8 @@ namespace Voussoir
                         std::lround(cells[2] * neck_elevation / height)));
         const int           above = cells[2] - below;
         std::vector<double> result;
-        for (const double depth : rock_distances(neck_elevation / below))
+        for (const double depth :
+             distances(rock_extent, neck_elevation / below))
           result.insert(result.begin(), -depth);
         for (int k = 0; k < below; ++k)
           result.push_back(k * neck_elevation / below);
@@ -202,8 +259,10 @@ namespace Voussoir
       double                    crest_width    = 14.8;
       double                    thickness      = 1.;
       std::vector<unsigned int> cells{1, 10, 40};
-      double                    rock_extent = 0.;
-      double                    growth      = 1.2;
+      double                    rock_extent  = 0.;
+      double                    growth       = 1.2;
+      double                    water_level  = 0.;
+      double                    water_length = 0.;
     };
 
     const Registry<MeshGenerator>::Add<GravitySection> registered(

@@ -26,6 +26,14 @@ namespace Voussoir
     {
       return slot + "/rank-" + std::to_string(rank) + ".bin";
     }
+    nlohmann::json
+    names_and_widths(const std::map<std::string, KeyedValues> &values)
+    {
+      nlohmann::json result = nlohmann::json::object();
+      for (const auto &[name, group] : values)
+        result[name] = group.width;
+      return result;
+    }
   } // namespace
 
 
@@ -71,8 +79,9 @@ namespace Voussoir
 
 
   void
-  Checkpoint::write(const std::map<std::string, Vector *> &vectors,
-                    const nlohmann::json                  &header)
+  Checkpoint::write(const std::map<std::string, Vector *>    &vectors,
+                    const std::map<std::string, KeyedValues> &values,
+                    const nlohmann::json                     &header)
   {
     const MPI_Comm     communicator = discretization.grid.communicator();
     const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
@@ -91,6 +100,16 @@ namespace Voussoir
     put(keys.data(), n_nodes);
     for (const auto &item : vectors)
       put(item.second->begin(), 3 * n_nodes);
+    for (const auto &item : values)
+      {
+        const std::uint64_t n_items = item.second.items.size();
+        put(&n_items, 1);
+        for (const auto &[key, numbers] : item.second.items)
+          {
+            put(&key, 1);
+            put(numbers, item.second.width);
+          }
+      }
     out.close();
     const bool good = Utilities::MPI::min(out.good() ? 1 : 0, communicator);
     if (rank == 0 && good)
@@ -99,6 +118,7 @@ namespace Voussoir
         full["ranks"]       = Utilities::MPI::n_mpi_processes(communicator);
         for (const auto &item : vectors)
           full["vectors"].push_back(item.first);
+        full["values"] = names_and_widths(values);
         std::ofstream text(path + "/header.json");
         text << full.dump(1) << std::endl;
         // only now is the slot complete
@@ -115,14 +135,16 @@ namespace Voussoir
 
 
   void
-  Checkpoint::read(const std::map<std::string, Vector *> &vectors) const
+  Checkpoint::read(const std::map<std::string, Vector *>    &vectors,
+                   const std::map<std::string, KeyedValues> &values) const
   {
     const std::string        slot   = complete_slot(folder);
     const nlohmann::json     header = read_header(folder);
     std::vector<std::string> names;
     for (const auto &item : vectors)
       names.push_back(item.first);
-    if (header.at("vectors").get<std::vector<std::string>>() != names)
+    if (header.at("vectors").get<std::vector<std::string>>() != names ||
+        header.at("values") != names_and_widths(values))
       throw UserError("The checkpoint \"" + slot +
                       "\" was written with other damping or other output "
                       "quantities; restart with the same parameters.");
@@ -130,6 +152,11 @@ namespace Voussoir
     std::unordered_map<std::uint64_t, unsigned int> node_of_key;
     for (unsigned int node = 0; node < keys.size(); ++node)
       node_of_key[keys[node]] = node;
+    // several places may share a number
+    std::map<std::string, std::unordered_multimap<std::uint64_t, double *>>
+      values_of_key;
+    for (const auto &[name, group] : values)
+      values_of_key[name].insert(group.items.begin(), group.items.end());
     std::size_t found = 0;
     for (unsigned int rank = 0; rank < header.at("ranks"); ++rank)
       {
@@ -141,17 +168,32 @@ namespace Voussoir
         get(&n_nodes, 1);
         std::vector<std::uint64_t> their_keys(n_nodes);
         get(their_keys.data(), n_nodes);
-        std::vector<double> values(3 * n_nodes);
+        std::vector<double> numbers(3 * n_nodes);
         for (const auto &item : vectors)
           {
-            get(values.data(), values.size());
+            get(numbers.data(), numbers.size());
             for (std::size_t i = 0; i < n_nodes; ++i)
               {
                 const auto mine = node_of_key.find(their_keys[i]);
                 if (mine != node_of_key.end())
                   for (unsigned int d = 0; d < 3; ++d)
                     item.second->local_element(3 * mine->second + d) =
-                      values[3 * i + d];
+                      numbers[3 * i + d];
+              }
+          }
+        for (const auto &[name, group] : values)
+          {
+            std::uint64_t n_items = 0;
+            get(&n_items, 1);
+            numbers.resize(group.width);
+            for (std::uint64_t i = 0; i < n_items && in; ++i)
+              {
+                std::uint64_t key = 0;
+                get(&key, 1);
+                get(numbers.data(), group.width);
+                const auto range = values_of_key.at(name).equal_range(key);
+                for (auto mine = range.first; mine != range.second; ++mine)
+                  std::copy(numbers.begin(), numbers.end(), mine->second);
               }
           }
         for (const std::uint64_t key : their_keys)

@@ -12,15 +12,23 @@ namespace Voussoir
                                const LumpedMass        &mass,
                                const Damping           &damping,
                                const NodalTerms        &terms,
+                               const InitialState      &initial_state,
                                const CentralDifference &scheme)
     : discretization(discretization)
     , internal_force(internal_force)
     , mass(mass)
     , damping(damping)
     , terms(terms)
+    , initial_state(initial_state)
     , scheme(scheme)
-    , work_vector(discretization.create_vector())
-  {}
+    , moved(discretization.create_vector())
+    , moved_before(moved)
+  {
+    // what round-off makes of the static energy is no motion
+    if (initial_state.force.size() > 0)
+      round_off =
+        1e-12 * std::abs(initial_state.displacement * initial_state.force);
+  }
 
 
   void
@@ -56,18 +64,21 @@ namespace Voussoir
   {
     const double dt = scheme.time_step;
 
+    moved = state.displacement;
+    if (initial_state.displacement.size() > 0)
+      moved -= initial_state.displacement;
+
     // local sums first, then one reduction
     double kinetic = 0.;
     for (unsigned int i = 0; i < state.velocity.locally_owned_size(); ++i)
       {
         const double v = state.velocity.local_element(i);
         kinetic += 0.5 * mass.mass.local_element(i) * v * v;
-        work_vector.local_element(i) =
-          state.displacement.local_element(i) - dt * v;
+        moved_before.local_element(i) = moved.local_element(i) - dt * v;
       }
+    kinetic += terms.kinetic_energy(state.velocity);
     std::vector<double> sums{kinetic,
-                             terms.spring_energy(state.displacement,
-                                                 state.velocity),
+                             terms.spring_energy(moved, state.velocity),
                              terms.loss_in_dashpots,
                              terms.work_of_forces + scheme.work_of_base,
                              scheme.work_of_projections,
@@ -75,11 +86,15 @@ namespace Voussoir
     sums = sum_over_ranks(sums, discretization.grid.communicator());
 
     terms_now.kinetic = sums[0];
-    terms_now.strain =
-      0.5 * internal_force.work(state.displacement, work_vector) + sums[1];
+    terms_now.strain = 0.5 * internal_force.work(moved, moved_before) + sums[1];
     terms_now.boundary    = sums[2];
     terms_now.input       = sums[3];
     terms_now.constraints = sums[4];
+    // of the work of contact, what its static forces do on the way
+    if (initial_state.contact_force.size() > 0)
+      terms_now.constraints -=
+        0.5 * (initial_state.contact_force * moved +
+               initial_state.contact_force * moved_before);
 
     // branch i is a spring D_i s K with a dashpot: stored w^T K w / (2 D_i /
     // s), lost w^T K w / (D_i tau_i) per time
@@ -115,7 +130,8 @@ namespace Voussoir
       std::max({largest_turnover,
                 std::abs(terms_now.input + terms_now.constraints),
                 terms_now.boundary,
-                initial});
+                initial,
+                round_off});
     if (largest_turnover > 0.)
       largest_error =
         std::max(largest_error,

@@ -1,5 +1,8 @@
 #include <voussoir/output/field_writer.h>
+#include <voussoir/output/principal_stress.h>
 
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
 #include <deal.II/numerics/data_out.h>
 #include <deal.II/numerics/data_postprocessor.h>
 
@@ -9,12 +12,64 @@ namespace Voussoir
 
   namespace
   {
+    /** With values at the nodes of other ranks and at hanging nodes. */
+    Vector
+    with_ghosts(const Discretization &discretization, const Vector &vector)
+    {
+      Vector full(discretization.owned_dofs,
+                  discretization.relevant_dofs,
+                  discretization.grid.communicator());
+      for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
+        full.local_element(i) = vector.local_element(i);
+      full.update_ghost_values();
+      discretization.hanging_nodes.distribute(full);
+      full.update_ghost_values();
+      return full;
+    }
+
+
+    /** What the static stage left, at the points of a cell that are drawn. */
+    struct InitialPoints
+    {
+      explicit InitialPoints(const ObservedModel &model)
+        : discretization(model.discretization)
+        , displacement(with_ghosts(discretization, model.initial.displacement))
+        , temperature(with_ghosts(discretization, model.initial.temperature))
+        , values(discretization.mapping,
+                 discretization.fe,
+                 QIterated<3>(QTrapezoid<1>(), discretization.degree),
+                 update_values | update_gradients)
+        , strains(values.n_quadrature_points)
+        , temperatures(values.n_quadrature_points)
+      {}
+
+      void
+      reinit(const Discretization::Cell &cell)
+      {
+        values.reinit(cell);
+        values[FEValuesExtractors::Vector(0)].get_function_symmetric_gradients(
+          displacement, strains);
+        values[FEValuesExtractors::Scalar(0)].get_function_values(temperature,
+                                                                  temperatures);
+      }
+
+      const Discretization              &discretization;
+      const Vector                       displacement, temperature;
+      FEValues<3>                        values;
+      std::vector<SymmetricTensor<2, 3>> strains;
+      std::vector<double>                temperatures; // change [K]
+    };
+
+
     /** Principal stresses in MPa from the displacement gradient. */
     class PrincipalStresses : public DataPostprocessor<3>
     {
     public:
       explicit PrincipalStresses(const ObservedModel &model)
         : model(model)
+        , initial(model.initial.displacement.size() > 0 ?
+                    std::make_unique<InitialPoints>(model) :
+                    nullptr)
       {}
 
       void
@@ -22,17 +77,23 @@ namespace Voussoir
         const DataPostprocessorInputs::Vector<3> &inputs,
         std::vector<dealii::Vector<double>>      &values) const override
       {
-        const auto &material =
-          *model.materials[model.material_of_cell(inputs.get_cell<3>())];
+        const auto  cell     = inputs.get_cell<3>();
+        const auto &material = *model.materials[model.material_of_cell(cell)];
+        if (initial)
+          initial->reinit(cell);
         for (unsigned int q = 0; q < values.size(); ++q)
           {
             Tensor<2, 3> gradient;
             for (unsigned int d = 0; d < 3; ++d)
               gradient[d] = inputs.solution_gradients[q][d];
-            const auto principal =
-              eigenvalues(material.stress(symmetrize(gradient)));
-            values[q](0) = 1e-6 * principal[0];
-            values[q](1) = 1e-6 * principal[2];
+            const SymmetricTensor<2, 3> strain = symmetrize(gradient);
+            const auto [largest, smallest]     = largest_and_smallest_principal(
+              initial ? material.total_stress(strain,
+                                              initial->strains[q],
+                                              initial->temperatures[q]) :
+                        material.stress(strain));
+            values[q](0) = 1e-6 * largest;
+            values[q](1) = 1e-6 * smallest;
           }
       }
 
@@ -56,7 +117,8 @@ namespace Voussoir
       }
 
     private:
-      const ObservedModel &model;
+      const ObservedModel                 &model;
+      const std::unique_ptr<InitialPoints> initial; // null: no static stage
     };
   } // namespace
 
@@ -66,20 +128,10 @@ namespace Voussoir
                const std::vector<NodalField> &fields,
                const Vector                  *stress_of,
                const std::string             &name,
-               const double                   time)
+               const double                   time,
+               const std::vector<CellField>  &cell_fields)
   {
     const Discretization &discretization = model.discretization;
-    const auto            with_ghosts    = [&](const Vector &vector) {
-      Vector full(discretization.owned_dofs,
-                  discretization.relevant_dofs,
-                  discretization.grid.communicator());
-      for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
-        full.local_element(i) = vector.local_element(i);
-      full.update_ghost_values();
-      discretization.hanging_nodes.distribute(full);
-      full.update_ghost_values();
-      return full;
-    };
 
     DataOut<3> data_out;
     data_out.attach_dof_handler(discretization.dof_handler);
@@ -87,7 +139,7 @@ namespace Voussoir
     vectors.reserve(fields.size() + 1);
     for (const NodalField &field : fields)
       {
-        vectors.push_back(with_ghosts(*field.vector));
+        vectors.push_back(with_ghosts(discretization, *field.vector));
         const bool one = field.names.size() == 1;
         data_out.add_data_vector(
           discretization.dof_handler,
@@ -101,7 +153,7 @@ namespace Voussoir
     PrincipalStresses stresses(model);
     if (stress_of != nullptr)
       {
-        vectors.push_back(with_ghosts(*stress_of));
+        vectors.push_back(with_ghosts(discretization, *stress_of));
         data_out.add_data_vector(vectors.back(), stresses);
       }
 
@@ -111,6 +163,8 @@ namespace Voussoir
       if (cell->is_locally_owned())
         material[cell->active_cell_index()] = model.material_of_cell(cell);
     data_out.add_data_vector(material, "material");
+    for (const CellField &field : cell_fields)
+      data_out.add_data_vector(*field.values, field.name);
 
     DataOutBase::VtkFlags flags;
     flags.time                     = time;

@@ -1,12 +1,6 @@
-#include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/output/field_writer.h>
-
-#include <deal.II/base/data_out_base.h>
-
-#include <filesystem>
-#include <fstream>
-#include <iomanip>
+#include <voussoir/output/picture_series.h>
 
 namespace Voussoir
 {
@@ -27,31 +21,13 @@ namespace Voussoir
                           "principal stress [MPa].",
                           Patterns::MultipleSelection(
                             "displacement|velocity|principal stress"));
-        prm.add_parameter("Interval",
-                          interval,
-                          "Time between two pictures [s]; 0 for none but those "
-                          "under \"Times\".",
-                          Patterns::Double(0.));
-        prm.add_parameter("Times",
-                          times,
-                          "Further times of pictures [s].",
-                          Patterns::List(Patterns::Double(0.)));
+        pictures.declare_parameters(prm);
       }
 
       void
-      check(const ObservedModel &model_to_check) const override
+      check(const ObservedModel &observed) const override
       {
-        for (const double time : times)
-          if (time > model_to_check.end_time)
-            {
-              std::ostringstream text;
-              text << "\"Times\" in section \"Output/fields\" names " << time
-                   << " s, which lies after the \"End time\" of section "
-                      "\"Time\", "
-                   << model_to_check.end_time
-                   << " s; leave it out or compute longer.";
-              throw UserError(text.str());
-            }
+        pictures.check(observed);
       }
 
       void
@@ -59,33 +35,15 @@ namespace Voussoir
               const double         start_time,
               const bool           restarted) override
       {
-        check(observed);
         model = std::make_unique<ObservedModel>(observed);
-        if (restarted)
-          {
-            // continue the list of pictures
-            std::ifstream list(model->folder + "/fields.txt");
-            double        time;
-            std::string   file;
-            while (list >> time >> file)
-              if (time < start_time - 0.5 * model->time_step)
-                pictures.emplace_back(time, file);
-          }
+        pictures.prepare(observed, start_time, restarted);
       }
 
       void
       observe(const State &state) override
       {
-        bool due =
-          interval > 0. && Schedule(interval, model->time_step).due(state.step);
-        for (const double time : times)
-          due = due || std::abs(state.time - time) <= 0.5 * model->time_step;
-        if (!due)
+        if (!pictures.due(state))
           return;
-        std::ostringstream name;
-        name << "fields/fields-" << std::setw(8) << std::setfill('0')
-             << state.step;
-
         const auto list  = split_list(quantities);
         const auto wants = [&](const std::string &quantity) {
           return std::find(list.begin(), list.end(), quantity) != list.end();
@@ -95,28 +53,14 @@ namespace Voussoir
           nodal.push_back({&state.displacement, {"displacement"}});
         if (wants("velocity"))
           nodal.push_back({&state.velocity, {"velocity"}});
-        const bool first = Utilities::MPI::this_mpi_process(
-                             model->discretization.grid.communicator()) == 0;
-        if (first)
-          std::filesystem::create_directories(model->folder + "/fields");
-        MPI_Barrier(model->discretization.grid.communicator());
-        pictures.emplace_back(state.time,
-                              write_fields(*model,
-                                           nodal,
-                                           wants("principal stress") ?
-                                             &state.displacement :
-                                             nullptr,
-                                           name.str(),
-                                           state.time));
-        if (first)
-          {
-            std::ofstream pvd(model->folder + "/fields.pvd");
-            DataOutBase::write_pvd_record(pvd, pictures);
-            std::ofstream text(model->folder + "/fields.txt");
-            text << std::setprecision(17);
-            for (const auto &[time, file] : pictures)
-              text << time << ' ' << file << '\n';
-          }
+        pictures.add(state.time,
+                     write_fields(*model,
+                                  nodal,
+                                  wants("principal stress") ?
+                                    &state.displacement :
+                                    nullptr,
+                                  pictures.next_name(state),
+                                  state.time));
       }
 
       void
@@ -126,12 +70,10 @@ namespace Voussoir
       }
 
     private:
-      std::string         quantities = "displacement, principal stress";
-      double              interval   = 0.;
-      std::vector<double> times;
+      std::string   quantities = "displacement, principal stress";
+      PictureSeries pictures{"fields", "Output/fields"};
 
-      std::unique_ptr<ObservedModel>              model;
-      std::vector<std::pair<double, std::string>> pictures;
+      std::unique_ptr<ObservedModel> model;
     };
 
     const Registry<Observer>::Add<Fields> registered(

@@ -1,8 +1,23 @@
 #include <voussoir/time/central_difference.h>
 
+#include <set>
+
 namespace Voussoir
 {
   using namespace dealii;
+
+  namespace
+  {
+    Tensor<1, 3>
+    velocity_at(const State &state, const unsigned int node)
+    {
+      Tensor<1, 3> velocity;
+      for (unsigned int d = 0; d < 3; ++d)
+        velocity[d] = state.velocity.local_element(3 * node + d);
+      return velocity;
+    }
+  } // namespace
+
 
   CentralDifference::CentralDifference(
     const Discretization                            &discretization,
@@ -10,8 +25,10 @@ namespace Voussoir
     const LumpedMass                                &mass,
     const Damping                                   &damping,
     NodalTerms                                      &terms,
+    const InitialState                              &initial,
     const std::vector<Projection *>                 &projections,
     const std::function<void(const double)>         &evaluate_loads,
+    const std::function<void(const State &)>        &after_step,
     const std::function<Tensor<1, 3>(const double)> &base_acceleration,
     const bool                                       paper_scheme,
     const double                                     time_step)
@@ -20,8 +37,10 @@ namespace Voussoir
     , internal_force(internal_force)
     , mass(mass)
     , terms(terms)
+    , initial(initial)
     , projections(projections)
     , evaluate_loads(evaluate_loads)
+    , after_step(after_step)
     , base_acceleration(base_acceleration)
     , n_branches(damping.n_branches())
     , mass_coefficient(damping.mass_coefficient)
@@ -43,6 +62,31 @@ namespace Voussoir
         gain.push_back(damping.coefficients[i] * (1. - decay[i]) * tau);
       }
     terms.prepare(mass, mass_coefficient, time_step, central);
+
+    std::set<unsigned int> projected, prescribed;
+    for (const Projection *projection : projections)
+      {
+        const auto &nodes = projection->nodes();
+        projected.insert(nodes.begin(), nodes.end());
+        if (projection->prescribes())
+          prescribed.insert(nodes.begin(), nodes.end());
+      }
+    projected_nodes.assign(projected.begin(), projected.end());
+    predicted_velocity.resize(projected_nodes.size());
+    last_velocity.resize(projected_nodes.size());
+    const auto inverse_mass = [&](const unsigned int node) {
+      Tensor<2, 3> result;
+      if (prescribed.count(node) > 0)
+        return result;
+      if (const auto with_terms = terms.inverse_at(node))
+        return *with_terms;
+      for (unsigned int d = 0; d < 3; ++d)
+        result[d][d] = mass.inverse.local_element(3 * node + d) /
+                       (central ? 1. + 0.5 * time_step * mass_coefficient : 1.);
+      return result;
+    };
+    for (Projection *projection : projections)
+      projection->prepare_step(inverse_mass, time_step);
   }
 
 
@@ -50,9 +94,10 @@ namespace Voussoir
   CentralDifference::state_at_rest() const
   {
     State state;
-    state.displacement = discretization.create_vector();
-    state.velocity     = state.displacement;
-    state.memory.assign(n_branches, state.displacement);
+    state.velocity = discretization.create_vector();
+    state.memory.assign(n_branches, state.velocity);
+    state.displacement =
+      initial.displacement.size() > 0 ? initial.displacement : state.velocity;
     return state;
   }
 
@@ -63,7 +108,9 @@ namespace Voussoir
     const Tensor<1, 3> base =
       base_acceleration ? base_acceleration(state.time) : Tensor<1, 3>();
     evaluate_loads(state.time);
-    terms.before_step(state.displacement, state.velocity);
+    terms.before_step(state.displacement, state.velocity, base);
+    for (unsigned int i = 0; i < projected_nodes.size(); ++i)
+      last_velocity[i] = velocity_at(state, projected_nodes[i]);
 
     // f(u_n) with the damping memory, and the motion it alone would cause
     internal_force.sweep(
@@ -79,8 +126,43 @@ namespace Voussoir
 
     terms.correct(state.displacement, state.velocity);
     state.time = ++state.step * time_step;
+    project(state, base);
+    if (after_step)
+      after_step(state);
+  }
+
+
+  void
+  CentralDifference::project(State &state, const Tensor<1, 3> &base)
+  {
+    for (unsigned int i = 0; i < projected_nodes.size(); ++i)
+      predicted_velocity[i] = velocity_at(state, projected_nodes[i]);
     for (Projection *projection : projections)
       work_of_projections += projection->project(state, time_step).work;
+
+    // loads and damping did their work on the predicted motion
+    for (unsigned int i = 0; i < projected_nodes.size(); ++i)
+      {
+        const unsigned int node     = projected_nodes[i];
+        const Tensor<1, 3> velocity = velocity_at(state, node);
+        const Tensor<1, 3> change   = velocity - predicted_velocity[i];
+        if (change.norm_square() == 0.)
+          continue;
+        terms.account_for(node, velocity, change);
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            const double last = last_velocity[i][d],
+                         mean = 0.5 * (velocity[d] + last),
+                         was  = mean - 0.5 * change[d];
+            work_of_base -= time_step *
+                            mass.driven.local_element(3 * node + d) * base[d] *
+                            (mean - was);
+            loss_by_mass +=
+              time_step * mass_coefficient *
+              mass.mass.local_element(3 * node + d) *
+              (mean * (central ? mean : last) - was * (central ? was : last));
+          }
+      }
   }
 
 
@@ -138,10 +220,18 @@ namespace Voussoir
 
 #pragma GCC ivdep
     for (unsigned int i = begin; i < end; ++i)
+      e[i] = uniform ? e[i] + u[i] : u[i];
+
+    // the internal force is added to minus the steady one
+    if (initial.force.size() > 0)
       {
-        e[i] = uniform ? e[i] + u[i] : u[i];
-        f[i] = 0.;
+        const double *steady = initial.force.begin();
+#pragma GCC ivdep
+        for (unsigned int i = begin; i < end; ++i)
+          f[i] = -steady[i];
       }
+    else
+      std::fill(f + begin, f + end, 0.);
   }
 
 

@@ -86,7 +86,7 @@ namespace Voussoir
         for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
           source.local_element(i) = u.local_element(i);
         source.update_ghost_values();
-        discretization.constraints.distribute(source);
+        discretization.hanging_nodes.distribute(source);
         source.update_ghost_values();
         Vector result(discretization.owned_dofs,
                       discretization.relevant_dofs,
@@ -120,9 +120,9 @@ namespace Voussoir
                                 values.JxW(q);
                 }
               cell->get_dof_indices(dofs);
-              discretization.constraints.distribute_local_to_global(force,
-                                                                    dofs,
-                                                                    result);
+              discretization.hanging_nodes.distribute_local_to_global(force,
+                                                                      dofs,
+                                                                      result);
             }
         result.compress(VectorOperation::add);
         Vector sorted = discretization.create_vector();

@@ -101,6 +101,20 @@ namespace Voussoir
               same(*vector,
                    *continued->observers[i].second->checkpoint_vectors().at(
                      name)));
+        for (unsigned int i = 0; i < straight->observers.size(); ++i)
+          for (const auto &[name, values] :
+               straight->observers[i].second->checkpoint_values())
+            verdicts.is_true(
+              "same " + straight->observers[i].first + " of " + name +
+                ", bit for bit",
+              same(values,
+                   continued->observers[i].second->checkpoint_values().at(name),
+                   communicator));
+        if (uninterrupted.contact)
+          compare_contact(*uninterrupted.contact,
+                          *going_on.contact,
+                          communicator,
+                          verdicts);
         verdicts.is_true("same list of pictures",
                          text("straight/fields.txt") ==
                              text("together/fields.txt") &&
@@ -126,6 +140,10 @@ namespace Voussoir
                                   shared_run.state.displacement),
                        1e-10);
         compare_tables("straight", "alone", verdicts);
+        if (uninterrupted.contact)
+          compare_energies(*uninterrupted.contact,
+                           *shared_run.contact,
+                           verdicts);
 
         refuse(
           folder(file, "together", false).with({"Discretization/Degree=3"}),
@@ -205,6 +223,63 @@ namespace Voussoir
       }
 
 
+      static bool
+      same(const KeyedValues &a,
+           const KeyedValues &b,
+           const MPI_Comm     communicator)
+      {
+        bool here = a.items.size() == b.items.size();
+        for (std::size_t i = 0; here && i < a.items.size(); ++i)
+          here = a.items[i].first == b.items[i].first &&
+                 std::equal(a.items[i].second,
+                            a.items[i].second + a.width,
+                            b.items[i].second);
+        return Utilities::MPI::min(here ? 1 : 0, communicator) == 1;
+      }
+
+
+      static void
+      compare_contact(Contact       &a,
+                      Contact       &b,
+                      const MPI_Comm communicator,
+                      Verdicts      &verdicts)
+      {
+        unsigned int slid = 0, open = 0;
+        for (const ContactPoint &point : a.points())
+          {
+            slid += point.largest_slip > 0.;
+            open += point.history.opening > 0.;
+          }
+        verdicts.is_true("points have slid and opened",
+                         Utilities::MPI::sum(slid, communicator) > 0 &&
+                           Utilities::MPI::sum(open, communicator) > 0);
+        verdicts.is_true("same forces and history of contact, bit for bit",
+                         same(a.checkpoint_values(),
+                              b.checkpoint_values(),
+                              communicator));
+        compare_energies(a, b, verdicts);
+      }
+
+
+      static void
+      compare_energies(const Contact &a, const Contact &b, Verdicts &verdicts)
+      {
+        const nlohmann::json saved = a.save(), saved_too = b.save();
+        double               change = 0., size = 0.;
+        for (std::size_t s = 0; s < a.surfaces().size(); ++s)
+          for (unsigned int part = 0; part < 5; ++part)
+            {
+              const double energy = saved["energies"][s][part],
+                           too    = saved_too["energies"][s][part];
+              change              = std::max(change, std::abs(energy - too));
+              size                = std::max(size, std::abs(energy));
+            }
+        verdicts.below("change of the energies of contact over the largest",
+                       change / size,
+                       1e-8);
+      }
+
+
       static double
       difference(const Vector &a, const Vector &b)
       {
@@ -237,15 +312,19 @@ namespace Voussoir
       }
 
 
-      // histories.csv and energy.csv have nine digits; sums over other ranks
-      // round differently
+      // the tables have nine digits; sums over other ranks round differently
       static void
       compare_tables(const std::string &reference,
                      const std::string &folder,
                      Verdicts          &verdicts)
       {
-        for (const std::string table : {"/histories.csv", "/energy.csv"})
+        for (const std::string table : {"/histories.csv",
+                                        "/energy.csv",
+                                        "/section_forces.csv",
+                                        "/response_spectra.csv"})
           {
+            if (!std::filesystem::exists(reference + table))
+              continue;
             const auto a = numbers(reference + table);
             const auto b = numbers(folder + table);
             verdicts.is_true("as many numbers in" + (" " + folder + table),
@@ -268,6 +347,19 @@ namespace Voussoir
                         b.at("histories").at("top").at(quantity),
                         a.at("histories").at("top").at(quantity),
                         1e-8);
+        if (!a.contains("face stresses"))
+          return;
+        for (const std::string quantity :
+             {"largest arch stress [MPa]", "smallest principal stress [MPa]"})
+          verdicts.near("  " + quantity,
+                        b.at("face stresses").at(quantity),
+                        a.at("face stresses").at(quantity),
+                        1e-8);
+        const std::string quantity = "smallest arch moment [MNm/m]";
+        verdicts.near("  " + quantity,
+                      b.at("section forces").at("middle").at(quantity),
+                      a.at("section forces").at("middle").at(quantity),
+                      1e-8);
       }
     };
 

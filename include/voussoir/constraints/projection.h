@@ -30,14 +30,44 @@ namespace Voussoir
       double violation = 0.;
     };
 
+    /** The entries of a registered class, and how it takes them. */
     virtual void
-    declare_parameters(dealii::ParameterHandler &prm) = 0;
+    declare_parameters(dealii::ParameterHandler &)
+    {}
 
     virtual void
-    prepare(const Discretization &discretization,
-            const LumpedMass     &mass,
-            const ParameterFile  &file,
-            const std::string    &place) = 0;
+    prepare(const Discretization &,
+            const LumpedMass &,
+            const ParameterFile &,
+            const std::string &)
+    {}
+
+    /** Inverse of the mass that the update divides by, of an owned node: a
+     *  momentum p changes its velocity by H p; zero where held. */
+    using InverseMass =
+      std::function<dealii::Tensor<2, 3>(const unsigned int node)>;
+
+    /** Called before the first step and when masses or time step change. */
+    virtual void
+    prepare_step(const InverseMass &, const double)
+    {}
+
+    /** Called with the state that the first step starts from, also after a
+     *  restart. */
+    virtual void
+    start(const State &)
+    {}
+
+    /** Owned nodes whose motion it may change, in ascending order. */
+    virtual const std::vector<unsigned int> &
+    nodes() const = 0;
+
+    /** Whether its nodes follow it whatever else acts on them. */
+    virtual bool
+    prescribes() const
+    {
+      return false;
+    }
 
     /** Corrects @p state at the end of a step of length @p time_step [s]; its
      *  time is already that end. The result is of this rank. */

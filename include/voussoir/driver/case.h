@@ -1,13 +1,17 @@
 #ifndef voussoir_driver_case_h
 #define voussoir_driver_case_h
 
+#include <voussoir/analysis/modes.h>
+#include <voussoir/analysis/static_state.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/constraints/interface_parameters.h>
 #include <voussoir/constraints/projection.h>
 #include <voussoir/fem/damping.h>
 #include <voussoir/fem/discretization.h>
 #include <voussoir/loads/absorbing_boundary.h>
 #include <voussoir/loads/ground_motion.h>
 #include <voussoir/loads/load.h>
+#include <voussoir/loads/reservoir_parameters.h>
 #include <voussoir/materials/material.h>
 #include <voussoir/mesh/generator.h>
 #include <voussoir/mesh/reader.h>
@@ -85,9 +89,13 @@ namespace Voussoir
     GridParameters                 grid;
     std::unique_ptr<MeshGenerator> generator; // null for an imported mesh
     MeshReader                     reader;
+    InterfacesParameters           interfaces;
     DiscretizationParameters       discretization;
     NamedObjects<Material>         materials;
     NamedObjects<Load>             loads;
+    ReservoirParameters            reservoir;
+    StaticParameters               static_state;
+    ModeParameters                 modes;
     NamedObjects<Projection>       projections;
     BoundaryParameters             boundaries;
     GroundMotion                   ground_motion;
@@ -97,9 +105,10 @@ namespace Voussoir
     OutputParameters               output;
     std::vector<std::pair<std::string, std::unique_ptr<Observer>>> observers;
 
-    /** The mesh that the case asks for, checked; a report goes to @p log. */
+    /** The mesh that the case asks for, checked, and split along the
+     * interfaces; a report goes to @p log. */
     CoarseMesh
-    make_mesh(std::ostream &log) const;
+    make_mesh(std::ostream &log);
 
     /**
      * Material index of each coarse cell; refuses unknown sets, cells without
@@ -110,6 +119,12 @@ namespace Voussoir
 
     std::vector<const Material *>
     material_list() const;
+
+    std::vector<std::string>
+    material_names() const;
+
+    NamedLoads
+    load_list() const;
 
   private:
     void

@@ -2,8 +2,10 @@
 #define voussoir_driver_simulation_h
 
 #include <voussoir/base/log.h>
+#include <voussoir/constraints/contact.h>
 #include <voussoir/driver/case.h>
 #include <voussoir/fem/stable_step.h>
+#include <voussoir/loads/reservoir.h>
 #include <voussoir/output/checkpoint.h>
 #include <voussoir/output/energy.h>
 #include <voussoir/time/central_difference.h>
@@ -21,6 +23,9 @@ namespace Voussoir
 
     /** No output folder: for tests that look at the state themselves. */
     bool no_output = false;
+
+    /** Set up for checks only: no static state, no modes. */
+    bool validate = false;
   };
 
   /**
@@ -44,8 +49,9 @@ namespace Voussoir
     dealii::TimerOutput                 timer;
     const std::string                   folder;      // empty: no output
     CoarseMesh                          coarse_mesh; // until the grid is made
+    CoarseMesh                          water_mesh;  // split off the other
     const std::vector<unsigned int>     coarse_materials;
-    const Damping                       damping;
+    Damping                             damping;
     const std::vector<const Material *> materials;
     const Grid                          grid;
     const Discretization                discretization;
@@ -53,8 +59,14 @@ namespace Voussoir
     const InternalForce                 internal_force;
     NodalTerms                          terms;
     AbsorbingBoundary                   boundary;
+    std::unique_ptr<Reservoir>          reservoir;    // compressible, or null
     GroundMotionSignals                 base_signals; // of a rigid base
+    nlohmann::json                      static_summary;
     std::vector<Projection *>           projections;
+    std::unique_ptr<Contact>            contact;       // null: no interfaces
+    std::vector<const Load *>           running_loads; // in no static stage
+    const InitialState                  initial;
+    const Modes                         modes;
     double                              undamped_step = 0.;
     const double                        largest_step;
     const double                        time_step;
@@ -101,8 +113,20 @@ namespace Voussoir
     double
     choose_time_step();
 
+    InitialState
+    find_initial_state();
+
+    Modes
+    find_natural_modes();
+
+    void
+    write_modes();
+
     void
     prepare_loads();
+
+    void
+    prepare_reservoir();
 
     void
     report_mesh();
@@ -129,6 +153,9 @@ namespace Voussoir
 
     std::map<std::string, Vector *>
     checkpoint_vectors();
+
+    std::map<std::string, KeyedValues>
+    checkpoint_values();
 
     /** All entries that must agree between a checkpoint and its restart. */
     nlohmann::json

@@ -11,18 +11,20 @@ namespace Voussoir
   /** The entries of the section "Damping". */
   struct DampingParameters
   {
-    std::string  model             = "Maxwell";
-    double       ratio             = 0.05;
-    double       lowest_frequency  = 1.;
-    double       highest_frequency = 20.;
-    unsigned int branches          = 3;
-    double       reference         = 3.;
+    std::string               model             = "Maxwell";
+    double                    ratio             = 0.05;
+    double                    lowest_frequency  = 1.;
+    double                    highest_frequency = 20.;
+    unsigned int              branches          = 3;
+    double                    reference         = 3.;
+    std::vector<unsigned int> modes;
 
     void
     declare(dealii::ParameterHandler &prm);
 
+    /** @p n_modes: how many modes the case computes */
     void
-    check() const;
+    check(const unsigned int n_modes) const;
   };
 
   /**
@@ -37,6 +39,11 @@ namespace Voussoir
   {
   public:
     explicit Damping(const DampingParameters &parameters);
+
+    /** Gives Rayleigh damping its ratio at the natural frequencies [Hz] of the
+     *  two modes that the parameters name, if they do. */
+    void
+    adapt_to_modes(const std::vector<double> &natural_frequencies);
 
     /** Mass-proportional coefficient alpha [1/s]. */
     double mass_coefficient = 0.;
@@ -78,6 +85,9 @@ namespace Voussoir
   private:
     void
     fit_maxwell();
+
+    void
+    fit_rayleigh(const double first_frequency, const double second_frequency);
 
     DampingParameters parameters;
   };

@@ -67,13 +67,25 @@ namespace Voussoir
     const dealii::MappingQ1<3>        mapping;
     dealii::DoFHandler<3>             dof_handler;
     dealii::AffineConstraints<double> hanging_nodes;
-    /** Hanging nodes and supports. */
+    /** Hanging nodes and supports. The matrix-free data know the hanging nodes
+     *  only: at a held node the internal force is the reaction, and the mass
+     *  is zero. */
     dealii::AffineConstraints<double> constraints;
     dealii::IndexSet                  owned_dofs, relevant_dofs;
     MatrixFree                        matrix_free;
 
     /** Material index of each cell batch of the matrix-free data. */
     std::vector<unsigned int> material_of_batch;
+
+    /**
+     * Hanging nodes, these supports, and all nodes of the cells for which
+     * @p held_cell is true. The supports of the case are not among them unless
+     * they are given.
+     */
+    dealii::AffineConstraints<double>
+    make_constraints(
+      const std::vector<Support>                    &supports,
+      const std::function<bool(const Grid::Cell &)> &held_cell = {}) const;
 
     /** Position of each owned node [m]. */
     std::vector<dealii::Point<3>> node_positions;
@@ -131,9 +143,6 @@ namespace Voussoir
   private:
     void
     number_by_nodes();
-
-    void
-    make_constraints(const std::vector<Support> &supports);
 
     std::vector<dealii::types::global_dof_index> first_dof_of_rank;
   };

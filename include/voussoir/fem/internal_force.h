@@ -33,6 +33,18 @@ namespace Voussoir
               const unsigned int begin,
               const unsigned int end) const = 0;
 
+    /**
+     * Adds the force that a free expansion needs to be held back [N],
+     *   f = sum B^T sigma(alpha T I),
+     * with the temperature T [K] of each node in all three components.
+     */
+    virtual void
+    add_thermal_force(const MatrixFree  &matrix_free,
+                      Vector            &force,
+                      const Vector      &temperature,
+                      const unsigned int begin,
+                      const unsigned int end) const = 0;
+
     /** Integral of sigma(u) : epsilon(v) over the batches [begin, end) [J]. */
     virtual double
     work(const MatrixFree  &matrix_free,
@@ -96,6 +108,11 @@ namespace Voussoir
     /** force = f(displacement). */
     void
     apply(Vector &force, const Vector &displacement) const;
+
+    /** force += what holds back the free expansion at this temperature (in all
+     *  three components of each node) [N]. */
+    void
+    add_thermal_force(Vector &force, const Vector &temperature) const;
 
     /**
      * The stored work u^T K v [J]; with @p with_damping_factors each material

@@ -3,13 +3,28 @@
 
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/base/registry.h>
+#include <voussoir/fem/initial_state.h>
 #include <voussoir/fem/nodal_terms.h>
+#include <voussoir/materials/material.h>
 
 #include <deal.II/base/parameter_handler.h>
 
 namespace Voussoir
 {
-  /** A load of a case: a named section of the parameter file. */
+  /** What loads see of a case. */
+  struct LoadedModel
+  {
+    const Discretization                           &discretization;
+    const std::vector<const Material *>            &materials;
+    std::function<unsigned int(const Grid::Cell &)> material_of_cell;
+    const ParameterFile                            &file;
+  };
+
+  /**
+   * A load of a case: a named section of the parameter file. It belongs to the
+   * static stage that names it and stays as it is afterwards, or else acts from
+   * the beginning of the earthquake.
+   */
   class Load
   {
   public:
@@ -20,14 +35,32 @@ namespace Voussoir
 
     /** Finds the nodes it acts on; @p place names its section in messages. */
     virtual void
-    prepare(const Discretization &discretization,
-            NodalTerms           &terms,
-            const ParameterFile  &file,
-            const std::string    &place) = 0;
+    prepare(const LoadedModel &model,
+            NodalTerms        &terms,
+            const std::string &place) = 0;
 
-    /** Adds its nodal forces at @p time [s] to `terms.forces`. */
+    /** Whether it only makes sense in a static stage, because it would be a
+     *  blow if it came on at once. */
+    virtual bool
+    steady() const
+    {
+      return false;
+    }
+
+    /** Adds its nodal forces at @p time [s] to `terms.forces` [N]. */
     virtual void
-    add_forces(const double time, NodalTerms &terms) const = 0;
+    add_forces(const double, NodalTerms &) const
+    {}
+
+    /** Adds its steady nodal forces, of held nodes too [N]. */
+    virtual void
+    add_steady_force(Vector &) const
+    {}
+
+    /** Adds its change of temperature in all three components of a node [K]. */
+    virtual void
+    add_temperature(Vector &) const
+    {}
   };
 } // namespace Voussoir
 

@@ -87,6 +87,15 @@ namespace Voussoir
     virtual SymmetricTensor3<double>
     stress(const SymmetricTensor3<double> &strain) const = 0;
 
+    /**
+     * Stress under the total strain, of which @p initial_strain and the change
+     * of temperature [K] were there before the earthquake [Pa].
+     */
+    SymmetricTensor3<double>
+    total_stress(const SymmetricTensor3<double> &strain,
+                 const SymmetricTensor3<double> &initial_strain,
+                 const double                    temperature) const;
+
     /** Cost of a cell relative to a linear elastic one, to balance the ranks.
      */
     virtual double
@@ -96,9 +105,12 @@ namespace Voussoir
     double      density        = 2400.;
     double      inertia_factor = 1.;
     double      damping        = 1.;
+    double      static_factor  = 1.;
+    double      expansion      = 1e-5; // [1/K]
 
-    /** Factor on the stress under dynamic load, by which the moduli hold at
-     *  the reference frequency of the damping model. */
+    /** Factor on the stress: the static factor in the static stage; under
+     *  dynamic load what lets the moduli hold at the reference frequency of
+     *  the damping model. */
     double stiffness_scale = 1.;
   };
 
@@ -155,6 +167,31 @@ namespace Voussoir
               stiffness_scale * law.stress(cell.get_symmetric_gradient(q)), q);
           cell.integrate(dealii::EvaluationFlags::gradients);
           cell.distribute_local_to_global(force);
+        }
+    }
+
+    void
+    add_thermal_force(const MatrixFree  &matrix_free,
+                      Vector            &force,
+                      const Vector      &temperature,
+                      const unsigned int begin,
+                      const unsigned int end) const override
+    {
+      Evaluation cell(matrix_free);
+      for (unsigned int batch = begin; batch < end; ++batch)
+        {
+          cell.reinit(batch);
+          cell.gather_evaluate(temperature, dealii::EvaluationFlags::values);
+          for (const unsigned int q : cell.quadrature_point_indices())
+            {
+              SymmetricTensor3<Lanes> strain;
+              for (unsigned int d = 0; d < 3; ++d)
+                strain[d][d] = expansion * cell.get_value(q)[d];
+              cell.submit_symmetric_gradient(stiffness_scale *
+                                               law.stress(strain),
+                                             q);
+            }
+          cell.integrate_scatter(dealii::EvaluationFlags::gradients, force);
         }
     }
 

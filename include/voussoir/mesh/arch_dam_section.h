@@ -16,7 +16,8 @@ namespace Voussoir
    *
    * They come from a grid of columns and rows in which the contour of the
    * canyon runs along the rows or diagonally through cells, so that these fall
-   * into triangles; all are then halved in both directions.
+   * into triangles; all are then halved in both directions. One row can be
+   * laid level, to be the surface of a reservoir.
    */
   class ArchDamCrossSection
   {
@@ -27,6 +28,8 @@ namespace Voussoir
      * @param rock_extent       rock beside and below over the height
      * @param growth            size ratio of successive columns and rows
      * @param largest_cell      at which their halves stop growing [m]
+     * @param water_level       wanted for the surface of a reservoir [m]; 0
+     *                          for no reservoir
      */
     ArchDamCrossSection(const ArchDamSections &sections,
                         const double           height,
@@ -34,7 +37,8 @@ namespace Voussoir
                         const unsigned int     columns_per_block,
                         const double           rock_extent,
                         const double           growth,
-                        const double           largest_cell);
+                        const double           largest_cell,
+                        const double           water_level);
 
     struct Vertex
     {
@@ -46,6 +50,7 @@ namespace Voussoir
     {
       std::array<unsigned int, 4> vertices;      // counterclockwise for s, z
       unsigned int                column;        // on its right-bank side
+      int                         half_row;      // from below; inside only
       bool                        inside;        // of the canyon
       double                      width, height; // before the grid was fitted
     };
@@ -55,6 +60,10 @@ namespace Voussoir
 
     /** Columns of the crest's two ends, and the last one; the first is 0. */
     int first_dam_column, last_dam_column, last_column;
+
+    /** The surface of the reservoir: it covers the quadrilaterals inside the
+     * canyon with a lower half_row; -1 without reservoir. */
+    int surface_row = -1;
 
   private:
     void
@@ -70,6 +79,9 @@ namespace Voussoir
 
     void
     follow_contour();
+
+    void
+    lay_surface(const double water_level);
 
     void
     make_quads();
@@ -96,8 +108,12 @@ namespace Voussoir
     // The row of each column that lies on the contour.
     std::vector<int> contour_rows;
 
+    // Of the reservoir's surface: elevation, and columns at which it is level.
+    double              surface_level = 0.;
+    std::pair<int, int> surface_columns;
+
     std::map<std::pair<unsigned int, unsigned int>, unsigned int> middles;
-    std::vector<bool>                                             on_contour;
+    std::vector<bool> on_contour, on_surface;
   };
 } // namespace Voussoir
 

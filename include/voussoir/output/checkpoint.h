@@ -1,7 +1,7 @@
 #ifndef voussoir_output_checkpoint_h
 #define voussoir_output_checkpoint_h
 
-#include <voussoir/fem/discretization.h>
+#include <voussoir/output/observer.h>
 
 #include <nlohmann/json.hpp>
 
@@ -9,18 +9,20 @@ namespace Voussoir
 {
   /**
    * Writes and reads nodal vectors by a number of each node that does not
-   * depend on the ranks, so that a run can go on with another number of them.
-   * Two slots are written in turn; a pointer file names the last complete one.
+   * depend on the ranks, and other values by keys of their own, so that a run
+   * can go on with another number of them. Two slots are written in turn; a
+   * pointer file names the last complete one.
    */
   class Checkpoint
   {
   public:
     Checkpoint(const Discretization &discretization, const std::string &folder);
 
-    /** Writes the vectors (by name) and @p header. */
+    /** Writes the vectors and values (by name) and @p header. */
     void
-    write(const std::map<std::string, Vector *> &vectors,
-          const nlohmann::json                  &header);
+    write(const std::map<std::string, Vector *>    &vectors,
+          const std::map<std::string, KeyedValues> &values,
+          const nlohmann::json                     &header);
 
     /** Whether the folder holds a complete checkpoint. */
     static bool
@@ -30,10 +32,11 @@ namespace Voussoir
     static nlohmann::json
     read_header(const std::string &folder);
 
-    /** Reads the vectors; refuses a checkpoint of another mesh or with other
-     *  vectors. */
+    /** Reads the vectors and values; refuses a checkpoint of another mesh or
+     *  with others. */
     void
-    read(const std::map<std::string, Vector *> &vectors) const;
+    read(const std::map<std::string, Vector *>    &vectors,
+         const std::map<std::string, KeyedValues> &values) const;
 
   private:
     const Discretization      &discretization;

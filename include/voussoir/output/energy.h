@@ -13,7 +13,9 @@ namespace Voussoir
    * Where the energy is and where it went, all in J and half a step before the
    * time of the state. With kinetic energy v^T M v / 2 of the half step and
    * strain energy u_n^T K u_(n-1) / 2 the balance of the undamped scheme is
-   * exact, not only to the order of the time step.
+   * exact, not only to the order of the time step. After a static stage u is
+   * the displacement since then: what the static loads do is left out on both
+   * sides.
    */
   struct EnergyTerms
   {
@@ -51,6 +53,7 @@ namespace Voussoir
                   const LumpedMass        &mass,
                   const Damping           &damping,
                   const NodalTerms        &terms,
+                  const InitialState      &initial_state,
                   const CentralDifference &scheme);
 
     /** Writes to energy.csv in this folder from now on. @p restarted: continue
@@ -92,13 +95,15 @@ namespace Voussoir
     const LumpedMass        &mass;
     const Damping           &damping;
     const NodalTerms        &terms;
+    const InitialState      &initial_state;
     const CentralDifference &scheme;
 
     EnergyTerms   terms_now;
     double        initial = 0., largest_turnover = 0., largest_error = 0.;
     double        last_time = 0., last_loss_rate = 0., mass_loss = 0.;
-    bool          first = true;
-    Vector        work_vector;
+    double        round_off = 0.;
+    bool          first     = true;
+    Vector        moved, moved_before; // at the step and the one before
     std::ofstream file;
   };
 } // namespace Voussoir

@@ -13,8 +13,16 @@ namespace Voussoir
     std::vector<std::string> names; // one or three
   };
 
+  /** One number for each active cell to write; others than the owned ones are
+   *  not looked at. */
+  struct CellField
+  {
+    const dealii::Vector<float> *values;
+    std::string                  name;
+  };
+
   /**
-   * Writes nodal fields, and by choice the principal stresses [MPa] of the
+   * Writes nodal fields, and by choice the principal stresses [MPa] under the
    * displacement @p stress_of, as one grouped VTU file.
    *
    * @return the name of the file without its folder
@@ -24,7 +32,8 @@ namespace Voussoir
                const std::vector<NodalField> &fields,
                const Vector                  *stress_of,
                const std::string             &name,
-               const double                   time);
+               const double                   time,
+               const std::vector<CellField>  &cell_fields = {});
 } // namespace Voussoir
 
 #endif

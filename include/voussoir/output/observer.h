@@ -1,7 +1,9 @@
 #ifndef voussoir_output_observer_h
 #define voussoir_output_observer_h
 
+#include <voussoir/base/keyed_values.h>
 #include <voussoir/base/registry.h>
+#include <voussoir/fem/initial_state.h>
 #include <voussoir/fem/internal_force.h>
 #include <voussoir/fem/state.h>
 #include <voussoir/materials/material.h>
@@ -10,12 +12,18 @@
 
 namespace Voussoir
 {
+  class Contact;
+  class Reservoir;
+
   /** What observers may see of a case besides its state. */
   struct ObservedModel
   {
     const Discretization                           &discretization;
     const std::vector<const Material *>            &materials;
     std::function<unsigned int(const Grid::Cell &)> material_of_cell;
+    const InitialState                             &initial;
+    const Reservoir                                *reservoir; // or null
+    const Contact                                  *contact;   // or null
     std::string                                     folder;
     double                                          time_step; // [s]
     double                                          end_time;  // [s]
@@ -73,6 +81,13 @@ namespace Voussoir
     /** Own vectors that a checkpoint must hold, by name. */
     virtual std::map<std::string, Vector *>
     checkpoint_vectors()
+    {
+      return {};
+    }
+
+    /** Own numbers of cells that a checkpoint must hold, by name. */
+    virtual std::map<std::string, KeyedValues>
+    checkpoint_values()
     {
       return {};
     }

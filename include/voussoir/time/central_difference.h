@@ -3,6 +3,7 @@
 
 #include <voussoir/constraints/projection.h>
 #include <voussoir/fem/damping.h>
+#include <voussoir/fem/initial_state.h>
 #include <voussoir/fem/internal_force.h>
 #include <voussoir/fem/lumped_mass.h>
 #include <voussoir/fem/nodal_terms.h>
@@ -12,7 +13,9 @@ namespace Voussoir
 {
   /**
    * Explicit central differences in leap-frog form,
-   *   M (v+ - v-)/dt + C v + f(u_n) = F_n,   u_(n+1) = u_n + dt v+ .
+   *   M (v+ - v-)/dt + C v + f(u_n) = F_0 + F_n,   u_(n+1) = u_n + dt v+ ,
+   *
+   * with the force F_0 that holds the static state and is always there.
    *
    * All diagonal damping (mass-proportional, dashpots) is treated centrally,
    * with v = (v+ + v-)/2, which costs no time step; with the paper's scheme
@@ -22,16 +25,21 @@ namespace Voussoir
   {
   public:
     /**
+     * @param initial         where the motion starts
      * @param evaluate_loads  sets `terms.forces` for a time
+     * @param after_step      called at the end of each step, for what marches
+     *   beside the solid
      * @param base_acceleration acceleration of a rigid base [m/s2], or empty
      */
-    CentralDifference(const Discretization                    &discretization,
-                      const InternalForce                     &internal_force,
-                      const LumpedMass                        &mass,
-                      const Damping                           &damping,
-                      NodalTerms                              &terms,
-                      const std::vector<Projection *>         &projections,
-                      const std::function<void(const double)> &evaluate_loads,
+    CentralDifference(const Discretization                     &discretization,
+                      const InternalForce                      &internal_force,
+                      const LumpedMass                         &mass,
+                      const Damping                            &damping,
+                      NodalTerms                               &terms,
+                      const InitialState                       &initial,
+                      const std::vector<Projection *>          &projections,
+                      const std::function<void(const double)>  &evaluate_loads,
+                      const std::function<void(const State &)> &after_step,
                       const std::function<dealii::Tensor<1, 3>(const double)>
                                   &base_acceleration,
                       const bool   paper_scheme,
@@ -41,7 +49,7 @@ namespace Voussoir
     void
     step(State &state);
 
-    /** A state at rest. */
+    /** The static state, at rest. */
     State
     state_at_rest() const;
 
@@ -63,12 +71,18 @@ namespace Voussoir
                   const unsigned int          begin,
                   const unsigned int          end);
 
+    /** Lets the projections correct the motion, and the energies know it. */
+    void
+    project(State &state, const dealii::Tensor<1, 3> &base);
+
     const Discretization                             &discretization;
     const InternalForce                              &internal_force;
     const LumpedMass                                 &mass;
     NodalTerms                                       &terms;
+    const InitialState                               &initial;
     const std::vector<Projection *>                   projections;
     const std::function<void(const double)>           evaluate_loads;
+    const std::function<void(const State &)>          after_step;
     const std::function<dealii::Tensor<1, 3>(double)> base_acceleration;
 
     const unsigned int  n_branches;
@@ -77,6 +91,10 @@ namespace Voussoir
     bool                central;
     bool                uniform;
     double              uniform_factor;
+
+    // nodes of the projections, and their velocity before them
+    std::vector<unsigned int>         projected_nodes;
+    std::vector<dealii::Tensor<1, 3>> predicted_velocity, last_velocity;
 
     Vector force;
     Vector effective; // u plus damping memory, or u where factors differ

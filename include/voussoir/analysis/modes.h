@@ -1,0 +1,84 @@
+#ifndef voussoir_analysis_modes_h
+#define voussoir_analysis_modes_h
+
+#include <voussoir/base/log.h>
+#include <voussoir/base/parameter_file.h>
+#include <voussoir/loads/absorbing_boundary.h>
+#include <voussoir/materials/material.h>
+
+#include <nlohmann/json.hpp>
+
+namespace Voussoir
+{
+  /** The entries of the section "Modes". */
+  struct ModeParameters
+  {
+    unsigned int number = 0;
+    std::string  held_materials, massless_materials;
+    bool         water     = true;
+    double       tolerance = 1e-5;
+
+    void
+    declare(dealii::ParameterHandler &prm);
+
+    /** Refuses unknown materials and a model that nothing holds. */
+    void
+    check(const std::vector<std::string> &materials,
+          const BoundaryParameters       &boundaries) const;
+  };
+
+  /** What the modes are computed from. */
+  struct ModalModel
+  {
+    const Discretization                           &discretization;
+    const InternalForce                            &internal_force;
+    std::vector<std::string>                        material_names;
+    std::vector<Material *>                         materials;
+    std::function<unsigned int(const Grid::Cell &)> material_of_cell;
+    const BoundaryParameters                       &boundaries;
+    const NodalTerms                               &terms;
+  };
+
+  /** A natural mode. */
+  struct Mode
+  {
+    double frequency; // [Hz]
+    Vector shape;     // largest displacement 1
+    double mass;      // phi^T (M + M_a) phi [kg]
+    double residual;  // |K phi - omega^2 (M + M_a) phi| / |K phi|
+
+    /** phi^T (M + M_a) r / mass, with r = 1 in one direction. */
+    dealii::Tensor<1, 3> participation;
+
+    /** participation^2 mass, by direction [kg]. */
+    dealii::Tensor<1, 3> effective_mass;
+  };
+
+  struct Modes
+  {
+    std::vector<Mode> list; // from the lowest frequency upwards
+
+    /** Mass of the structure that can move in each direction, the water that
+     *  moves with it not included [kg]. */
+    dealii::Tensor<1, 3> moving_mass;
+
+    /** [Hz] */
+    std::vector<double>
+    frequencies() const;
+
+    nlohmann::json
+    summary() const;
+  };
+
+  /**
+   * The lowest natural modes, K phi = omega^2 (M + M_a) phi, with the moduli as
+   * given, absorbing faces held. Leaves the materials at the `stiffness_scale`
+   * they had.
+   */
+  Modes
+  find_modes(const ModalModel     &model,
+             const ModeParameters &parameters,
+             Log                  &log);
+} // namespace Voussoir
+
+#endif

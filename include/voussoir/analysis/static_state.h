@@ -1,0 +1,71 @@
+#ifndef voussoir_analysis_static_state_h
+#define voussoir_analysis_static_state_h
+
+#include <voussoir/base/log.h>
+#include <voussoir/constraints/contact.h>
+#include <voussoir/fem/initial_state.h>
+#include <voussoir/loads/absorbing_boundary.h>
+#include <voussoir/loads/load.h>
+
+#include <nlohmann/json.hpp>
+
+namespace Voussoir
+{
+  /** The loads of a case by their names. */
+  using NamedLoads = std::vector<std::pair<std::string, Load *>>;
+
+  /** The entries of the section "Static state". */
+  struct StaticParameters
+  {
+    std::string stages;
+    std::string supports  = "fixed";
+    double      tolerance = 1e-8;
+    double      rest      = 1e-6;
+
+    void
+    declare(dealii::ParameterHandler &prm);
+
+    /** Names of the loads of each stage. */
+    std::vector<std::vector<std::string>>
+    stage_names() const;
+
+    /** Refuses stages of unknown loads, loads named twice, and loads that need
+     *  a stage and have none. */
+    void
+    check(const NamedLoads &loads) const;
+  };
+
+  /** What the static stage is computed from. */
+  struct StaticModel
+  {
+    const Discretization                           &discretization;
+    const InternalForce                            &internal_force;
+    const std::vector<Material *>                  &materials;
+    std::function<unsigned int(const Grid::Cell &)> material_of_cell;
+    const BoundaryParameters                       &boundaries;
+    const LumpedMass                               &mass;
+    NodalTerms                                     &terms;
+    Contact                                        *contact; // or null
+  };
+
+  /**
+   * The state under the loads that are there before the earthquake: stages one
+   * after the other, each with the loads it names. Leaves the materials at the
+   * `stiffness_scale` they had; the force that it returns holds the state in
+   * the dynamic model, reactions of supports that are held here only included,
+   * so that without an earthquake nothing moves. Forces of contact are no part
+   * of it, as the run finds them by itself.
+   *
+   * Without interfaces by multigrid, with them by damped motion.
+   *
+   * @param summary resultants of loads and reactions, iterations, by stage
+   */
+  InitialState
+  find_static_state(const StaticModel      &model,
+                    const StaticParameters &parameters,
+                    const NamedLoads       &loads,
+                    Log                    &log,
+                    nlohmann::json         &summary);
+} // namespace Voussoir
+
+#endif

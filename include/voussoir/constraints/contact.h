@@ -1,0 +1,130 @@
+#ifndef voussoir_constraints_contact_h
+#define voussoir_constraints_contact_h
+
+#include <voussoir/base/keyed_values.h>
+#include <voussoir/constraints/contact_exchange.h>
+#include <voussoir/constraints/contact_solver.h>
+#include <voussoir/constraints/interface_parameters.h>
+#include <voussoir/constraints/projection.h>
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+
+namespace Voussoir
+{
+  /**
+   * Contact between the two sides of all interfaces of a case: after each step
+   * no point of them has penetrated the other side, and they have opened and
+   * slipped only where their law lets them.
+   */
+  class Contact : public Projection
+  {
+  public:
+    /** @param interfaces of the mesh, which is split along them */
+    Contact(const Discretization       &discretization,
+            const InterfacesParameters &interfaces);
+
+    void
+    prepare_step(const InverseMass &inverse_mass,
+                 const double       time_step) override;
+
+    void
+    start(const State &state) override;
+
+    Result
+    project(State &state, const double time_step) override;
+
+    const std::vector<unsigned int> &
+    nodes() const override;
+
+    /** Adds @p factor times the forces of the last step, of uplift and bars too
+     *  [N]. */
+    void
+    add_forces(const double factor, Vector &force) const;
+
+    /** What a checkpoint must hold of each point; `load` takes what has been
+     *  read into these numbers. */
+    KeyedValues
+    checkpoint_values();
+
+    /** What else a checkpoint must hold. Called on all ranks. */
+    nlohmann::json
+    save() const;
+
+    /** Called after the numbers of `checkpoint_values` have been read. */
+    void
+    load(const nlohmann::json &saved);
+
+    /** Lets the history begin where the points are now: on the way to the
+     *  static state they swing, which opens joints that end closed. */
+    void
+    forget_approach();
+
+    /** What the steps took; the largest values and sums since the start. */
+    const ContactSolver::Effort &
+    effort() const;
+
+    /** Wall time of this rank in the steps so far [s]. */
+    double
+    seconds() const;
+
+    /** Names of the surfaces (face sets of all interfaces). */
+    const std::vector<std::string> &
+    surface_names() const;
+
+    /** Energies of each surface, of this rank [J]. */
+    const std::vector<ContactSurface> &
+    surfaces() const;
+
+    /** The points of this rank and their positions. */
+    const std::vector<ContactPoint> &
+    points() const;
+
+    const std::vector<dealii::Point<3>> &
+    positions() const;
+
+    /** Numbers of the points that are the same on all partitions. */
+    const std::vector<std::uint64_t> &
+    keys() const;
+
+    /** Global node on the first side of each point. */
+    const std::vector<dealii::types::global_dof_index> &
+    first_nodes() const;
+
+    /** Smallest side of a cell at the interfaces [m]. */
+    double cell_size = 0.;
+
+  private:
+    static constexpr unsigned int memory_width = 10;
+    using PointMemory = std::array<double, memory_width>;
+
+    void
+    add_uplift(const Discretization       &discretization,
+               const InterfacesParameters &interfaces);
+
+    std::vector<std::string>                     names;
+    std::vector<unsigned int>                    interface_of_surface;
+    std::unique_ptr<ContactSolver>               solver;
+    std::unique_ptr<ContactExchange>             exchange;
+    std::vector<dealii::Point<3>>                point_positions;
+    std::vector<dealii::types::global_dof_index> first_node;
+    std::vector<std::uint64_t>                   point_keys;
+    std::vector<PointMemory>                     point_memory;
+    MPI_Comm                                     communicator;
+
+    // at the nodes of the clusters
+    std::vector<dealii::Tensor<1, 3>> displacement, force;
+
+    // at the owned nodes
+    std::vector<double>               flexibility; // -1: full
+    std::vector<dealii::Tensor<2, 3>> full_flexibility;
+    std::vector<dealii::Tensor<1, 3>> applied, last_velocity;
+
+    ContactSolver::Effort total;
+
+    std::chrono::duration<double> wall_time{0.};
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,60 @@
+#ifndef voussoir_constraints_contact_exchange_h
+#define voussoir_constraints_contact_exchange_h
+
+#include <voussoir/constraints/contact_clusters.h>
+
+namespace Voussoir
+{
+  /**
+   * Brings the motion of nodes to the ranks that own the contact clusters these
+   * belong to, and the forces back: a message to each neighbour that shares
+   * clusters, none to others.
+   */
+  class ContactExchange
+  {
+  public:
+    /** @param cluster_nodes global nodes of all clusters of this rank */
+    ContactExchange(
+      const Discretization                               &discretization,
+      const std::vector<dealii::types::global_dof_index> &cluster_nodes);
+
+    /** Owned nodes that are in a cluster of any rank, in ascending order. */
+    const std::vector<unsigned int> &
+    owned_nodes() const;
+
+    /** Values at the nodes of the clusters. */
+    void
+    to_clusters(const Vector                      &values,
+                std::vector<dealii::Tensor<1, 3>> &at_cluster_nodes);
+
+    void
+    to_clusters(const std::vector<dealii::Tensor<1, 3>> &at_owned_nodes,
+                std::vector<dealii::Tensor<1, 3>>       &at_cluster_nodes);
+
+    /** Values at the owned nodes from those at the nodes of the clusters. */
+    void
+    to_owners(const std::vector<dealii::Tensor<1, 3>> &at_cluster_nodes,
+              std::vector<dealii::Tensor<1, 3>>       &at_owned_nodes);
+
+  private:
+    template <typename Value>
+    void
+    bring(const Value                       &value_at_owned,
+          std::vector<dealii::Tensor<1, 3>> &at_cluster_nodes);
+
+    std::vector<unsigned int> owned;
+
+    // Each owned node is in a cluster of this rank or of another one.
+    struct Place
+    {
+      unsigned int cluster_node, place;
+    };
+    std::vector<Place>        here;   // place in the owned nodes
+    std::vector<Place>        remote; // entry of its x in the vector
+    std::vector<unsigned int> lent;   // owned nodes that are elsewhere
+
+    Vector shared; // only the nodes that are lent are used, and its ghosts
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,192 @@
+#ifndef voussoir_constraints_contact_solver_h
+#define voussoir_constraints_contact_solver_h
+
+#include <voussoir/constraints/contact_point.h>
+
+#include <deal.II/base/point.h>
+
+#include <vector>
+
+namespace Voussoir
+{
+  /** Where the energy of a surface went since the start [J]; what the contact
+   *  did on the bodies is minus the sum. */
+  struct ContactEnergy
+  {
+    double impact = 0., friction = 0., bond = 0., bars = 0., uplift = 0.;
+  };
+
+  /** What the points of a surface (one joint, one plane) have in common. */
+  struct ContactSurface
+  {
+    const InterfaceLaw *law = nullptr;
+
+    double key_depth = 0.; // no slip while the opening is below [m]
+
+    // bars across the surface, elastic and perfectly plastic, per area
+    double bar_stiffness = 0.; // [Pa/m]
+    double bar_strength  = 0.; // [Pa]
+
+    ContactEnergy energy;
+  };
+
+  /** A pair of coincident nodes on the two sides of a surface. */
+  struct ContactPoint
+  {
+    unsigned int         surface = 0;
+    unsigned int         first = 0, second = 0; // nodes of the solver
+    dealii::Tensor<2, 3> frame;            // rows n (first to second), t1, t2
+    double               area        = 0.; // [m2]
+    double               initial_gap = 0.; // [m]
+    double               uplift      = 0.; // pressure inside [Pa]
+
+    // what a checkpoint must hold, all in the frame
+    dealii::Tensor<1, 3> force; // on the second node, without the given one [N]
+    dealii::Tensor<1, 2> stick_point; // slip at the last stick [m]
+    InterfaceHistory     history;
+    double               bar_extension = 0.; // plastic [m]
+    double               largest_slip  = 0.; // distance from the start [m]
+
+    // these follow from the motion
+    dealii::Tensor<1, 3> gap;      // opening and slip now [m]
+    dealii::Tensor<1, 3> velocity; // of the last half step [m/s]
+    ContactStatus        status = ContactStatus::sticking;
+    ContactLimits        limits;
+    double given_force = 0.; // uplift and bars, apart is positive [N]
+  };
+
+  /**
+   * Contact of clusters of coincident nodes at the end of a step: finds the
+   * forces that keep the predicted motion from penetration and from slip and
+   * opening that the interfaces resist. Exact, without penalty: a cluster of
+   * two nodes in closed form, others by their dense system if nothing slips or
+   * opens, else by projected Gauss-Seidel over their points.
+   *
+   * Knows neither mesh nor ranks: its nodes are those of the clusters of one
+   * rank.
+   */
+  class ContactSolver
+  {
+  public:
+    explicit ContactSolver(const std::vector<ContactSurface> &surfaces);
+
+    /** Adds the points of a cluster, whose nodes are the next @p n_nodes ones.
+     *  Clusters of one point come first. */
+    void
+    add_cluster(const unsigned int               n_nodes,
+                const std::vector<ContactPoint> &points);
+
+    unsigned int
+    n_nodes() const;
+
+    /**
+     * @param inverse_mass of each node: a momentum p changes its velocity by
+     *   H p; zero where held
+     */
+    void
+    prepare_step(const std::vector<dealii::Tensor<2, 3>> &inverse_mass,
+                 const double                             time_step);
+
+    /** Sets gaps and velocities to those of a state. */
+    void
+    start(const std::vector<dealii::Tensor<1, 3>> &displacement,
+          const std::vector<dealii::Tensor<1, 3>> &velocity);
+
+    /** What a solve took. */
+    struct Effort
+    {
+      double       penetration = 0.; // largest after the step [m]
+      double       residual    = 0.; // change of force in the last sweep, rel.
+      unsigned int sweeps      = 0;  // largest
+      unsigned long long all_sweeps = 0, clusters = 0; // with sweeps
+    };
+
+    /**
+     * @param displacement predicted motion of the nodes; corrected
+     * @param force        on the nodes [N]
+     */
+    Effort
+    solve(std::vector<dealii::Tensor<1, 3>> &displacement,
+          std::vector<dealii::Tensor<1, 3>> &force);
+
+    std::vector<ContactSurface> surfaces;
+    std::vector<ContactPoint>   points;
+
+    /** Evaluates the strengths and bars after the history of a point has been
+     *  set. */
+    void
+    update_limits(ContactPoint &point) const;
+
+    /** Part that the bars at a point may take of dt^2 lambda / 4, which must
+     *  stay below one for stability. */
+    double
+    bar_share_of_stable_step(const unsigned int point) const;
+
+    static constexpr unsigned int max_sweeps = 200;
+
+  private:
+    struct Cluster
+    {
+      unsigned int first_node, n_nodes, first_point, n_points;
+      // motion of the points under their forces; the forces that hold all
+      // points are minus the stiffness times the gaps
+      std::vector<double> flexibility, stiffness;
+    };
+
+    /** Finds the contact force of a point from the gap without it. */
+    void
+    solve_point(const unsigned int number, const dealii::Tensor<1, 3> &gap);
+
+    /** Finds the contact forces of a cluster. */
+    void
+    solve_cluster(const Cluster                           &cluster,
+                  const std::vector<dealii::Tensor<1, 3>> &displacement,
+                  Effort                                  &effort);
+
+    /** Tries the forces that hold all points of a cluster. */
+    bool
+    hold_all(const Cluster &cluster);
+
+    /** Flexibility of a point times a force in its frame. */
+    dealii::Tensor<1, 3>
+    relative_motion(const unsigned int          number,
+                    const dealii::Tensor<1, 3> &force) const;
+
+    /** Flexibility of a node times a force. */
+    dealii::Tensor<1, 3>
+    motion(const unsigned int node, const dealii::Tensor<1, 3> &force) const;
+
+    /** Improves the forces as if no point changed its status. */
+    void
+    solve_as_they_stand(const Cluster &cluster);
+
+    void
+    make_matrices(Cluster &cluster) const;
+
+    /** Takes the motion after the step into the history; returns the
+     *  penetration. */
+    double
+    update(ContactPoint                            &point,
+           const std::vector<dealii::Tensor<1, 3>> &displacement);
+
+    unsigned int         n_single = 0; // points that are a cluster of their own
+    unsigned int         number_of_nodes = 0;
+    std::vector<Cluster> clusters; // of several points
+
+    double time_step = 0.;
+    // inverse mass times the time step squared [m/N]; where it is no multiple
+    // of the identity, minus one and in the full matrix
+    std::vector<double>               node_flexibility, point_flexibility;
+    std::vector<dealii::Tensor<2, 3>> node_matrix;
+    std::vector<Flexibility>          point_matrix;
+    std::vector<unsigned int>         matrix_of_point;
+
+    // of the cluster at hand: gaps without contact forces, forces that hold its
+    // points, motion of its nodes
+    std::vector<dealii::Tensor<1, 3>> gaps, holding, moves;
+    std::vector<double>               system, unknowns;
+    std::vector<unsigned int>         column_of_row;
+  };
+} // namespace Voussoir
+
+#endif

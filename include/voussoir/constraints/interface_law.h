@@ -1,0 +1,56 @@
+#ifndef voussoir_constraints_interface_law_h
+#define voussoir_constraints_interface_law_h
+
+#include <voussoir/base/registry.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+namespace Voussoir
+{
+  /** What a point of an interface has been through. */
+  struct InterfaceHistory
+  {
+    double opening = 0.; // largest so far, with the initial gap [m]
+    double slip    = 0.; // length of the way it has slipped [m]
+  };
+
+  /** What a point of an interface bears now. */
+  struct InterfaceStrength
+  {
+    double tension  = 0.; // of the bond [Pa]
+    double bond     = 0.; // cohesion of the bond, across an opening too [Pa]
+    double cohesion = 0.; // while the interface is closed [Pa]
+    double friction = 0.; // coefficient
+  };
+
+  /**
+   * The strength of an interface (joint, slip plane, dam-rock contact). Closed,
+   * it bears any pressure p, tension up to `tension`, and shear up to
+   *   bond + cohesion + friction <p> ;
+   * open, tension up to `tension` and shear up to `bond`. An opened bond
+   * unloads along the secant to zero opening.
+   *
+   * A law is a class with its entries and this function; one file and one line
+   * of registration add one.
+   */
+  class InterfaceLaw
+  {
+  public:
+    virtual ~InterfaceLaw() = default;
+
+    virtual void
+    declare_parameters(dealii::ParameterHandler &prm) = 0;
+
+    /** Refuses entries that do not fit each other; @p place names their
+     *  section. */
+    virtual void
+    check(const std::string &) const
+    {}
+
+    /** Strength in the step that follows this history. */
+    virtual InterfaceStrength
+    strength(const InterfaceHistory &history) const = 0;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,32 @@
+#ifndef voussoir_fem_initial_state_h
+#define voussoir_fem_initial_state_h
+
+#include <voussoir/fem/discretization.h>
+
+namespace Voussoir
+{
+  /**
+   * What the loads before the earthquake have done. Displacements in a run are
+   * totals, which begin with these; stresses begin with
+   *   k D : (epsilon(u) - alpha T I)
+   * for the static factor k of the material (see Material::total_stress).
+   */
+  struct InitialState
+  {
+    /** Displacement of the static stage [m]; zero without one. */
+    Vector displacement;
+
+    /** Change of temperature since the joints were closed, of each node in all
+     *  three components [K]. */
+    Vector temperature;
+
+    /** Loads and reactions of the static stage, which stay as they are [N]. */
+    Vector force;
+
+    /** Forces of contact in the static state, which are no part of `force` as
+     *  the run finds them by itself [N]; empty without interfaces. */
+    Vector contact_force;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,26 @@
+#ifndef voussoir_fem_lanczos_h
+#define voussoir_fem_lanczos_h
+
+#include <voussoir/fem/discretization.h>
+
+#include <functional>
+
+namespace Voussoir
+{
+  /**
+   * Largest eigenvalue of M^-1 A for a symmetric A, from Lanczos iterations on
+   * M^-1/2 A M^-1/2, which approach it from below and fast, as it lies at the
+   * end of the spectrum.
+   *
+   * @param start        with a part in every mode
+   * @param inverse_mass diagonal of M^-1, zero where held
+   * @param apply        first argument = A times the second
+   */
+  double
+  largest_eigenvalue(
+    const Vector                                        &start,
+    const Vector                                        &inverse_mass,
+    const std::function<void(Vector &, const Vector &)> &apply);
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,40 @@
+#ifndef voussoir_loads_added_mass_h
+#define voussoir_loads_added_mass_h
+
+#include <voussoir/fem/nodal_terms.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+namespace Voussoir
+{
+  /** The entries of the section "Reservoir/added mass". */
+  struct AddedMassParameters
+  {
+    std::string face_sets = "upstream face";
+    double      level     = 0.;
+    double      reduction = 1.;
+    std::string direction = "normal";
+
+    void
+    declare(dealii::ParameterHandler &prm);
+  };
+
+  /**
+   * The generalised added mass of Westergaard (Kuo 1982): at depth h below the
+   * level, where the water is H deep in the same section across the valley, a
+   * facet with normal n and area A carries
+   *   M_a = 7/8 rho sqrt(H h) A n n^T .
+   * By nodal quadrature, so that all parts are positive. It stands for
+   * incompressible water, which is good below c/4H.
+   *
+   * @param density of the water [kg/m3]
+   * @return sum of 7/8 rho sqrt(H h) A over all facets [kg]
+   */
+  double
+  add_westergaard_mass(const Discretization      &discretization,
+                       const AddedMassParameters &parameters,
+                       const double               density,
+                       NodalTerms                &terms);
+} // namespace Voussoir
+
+#endif

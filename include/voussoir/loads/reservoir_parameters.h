@@ -1,0 +1,34 @@
+#ifndef voussoir_loads_reservoir_parameters_h
+#define voussoir_loads_reservoir_parameters_h
+
+#include <voussoir/loads/added_mass.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <string>
+
+namespace Voussoir
+{
+  /** The entries of the section "Reservoir": how the water moves with the dam
+   *  (its weight is a load of its own). */
+  struct ReservoirParameters
+  {
+    std::string model   = "none";
+    double      density = 1000.; // [kg/m3]
+
+    AddedMassParameters added_mass;
+
+    // compressible water
+    std::string cell_sets         = "reservoir";
+    double      sound_speed       = 1440.; // [m/s]
+    std::string surface           = "water surface";
+    std::string end               = "reservoir end";
+    std::string dam               = "upstream face";
+    double      bottom_reflection = 1.;
+
+    void
+    declare(dealii::ParameterHandler &prm);
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,102 @@
+#ifndef voussoir_mesh_abutment_wedge_h
+#define voussoir_mesh_abutment_wedge_h
+
+#include <voussoir/mesh/arch_dam_section.h>
+#include <voussoir/mesh/coarse_mesh.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <functional>
+
+namespace Voussoir
+{
+  /** The entries about a wedge of rock in one bank of an arch dam. */
+  struct AbutmentWedgeParameters
+  {
+    double elevation = 0.; // of the bottom; 0: no wedge
+    double width     = 100.;
+    double length    = 150.;
+    double cut       = 100.;
+
+    void
+    declare(dealii::ParameterHandler &prm);
+  };
+
+  /**
+   * A wedge of rock that can slide out of the bank of an arch dam.
+   *
+   * In the cross-section it has the rock above a level row and on the river's
+   * side of an upright column; along the river it reaches from the dam's
+   * upstream face to where the rock before it is cut away. So it is held by
+   * three surfaces, bottom, side and back, and shows on the canyon's wall and
+   * in the cut.
+   */
+  class AbutmentWedge
+  {
+  public:
+    /** The sweep that makes the mesh from the cross-section. */
+    struct Layers
+    {
+      unsigned int dam_begin, dam_end, n;
+
+      /** Layers that come nearest to a length away from the dam. */
+      std::function<unsigned int(const double length)> along;
+    };
+
+    /**
+     * Lays the row and the column straight in @p section. Throws UserError
+     * that names the @p place of the parameters.
+     *
+     * @param bank -1 for the right one, 1 for the left
+     */
+    AbutmentWedge(const AbutmentWedgeParameters &parameters,
+                  const int                      bank,
+                  const Layers                  &layers,
+                  ArchDamCrossSection           &section,
+                  const std::string             &place);
+
+    bool
+    contains(const ArchDamCrossSection::Quad &quad,
+             const unsigned int               layer) const;
+
+    /** Whether the rock is cut away there. */
+    bool
+    is_cut(const ArchDamCrossSection::Quad &quad,
+           const unsigned int               layer) const;
+
+    /**
+     * Adds the cell set "left wedge" or "right wedge", face sets of that name
+     * with " bottom", " side" and " back", all named from the wedge, and the
+     * faces of the cut to "ground".
+     *
+     * @param cell_number of each quadrilateral and layer, the layers of one
+     *   quadrilateral together; invalid_unsigned_int for none
+     */
+    void
+    add_sets(const ArchDamCrossSection       &section,
+             const std::vector<unsigned int> &cell_number,
+             CoarseMesh                      &mesh) const;
+
+  private:
+    bool
+    is_in_columns(const ArchDamCrossSection::Quad &quad) const;
+
+    void
+    find_row(const AbutmentWedgeParameters &parameters,
+             const ArchDamCrossSection     &section,
+             const std::string             &place);
+
+    void
+    straighten(ArchDamCrossSection &section) const;
+
+    const int          bank;
+    const unsigned int n_layers, end; // the back
+    unsigned int       begin, cut_begin;
+
+    // columns of the grid from the contour, where it meets the row, to the side
+    int    foot_column, side_column, bottom_row;
+    double level; // of the bottom [m]
+  };
+} // namespace Voussoir
+
+#endif

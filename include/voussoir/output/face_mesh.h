@@ -1,0 +1,113 @@
+#ifndef voussoir_output_face_mesh_h
+#define voussoir_output_face_mesh_h
+
+#include <voussoir/output/stress_points.h>
+
+#include <map>
+
+namespace Voussoir
+{
+  /**
+   * The surface mesh of some face sets, with the stress at its nodes.
+   *
+   * The stress of a node is the mean over the cells with a face of the set
+   * there, each evaluated at the node itself. For trilinear cells the strain
+   * along the face is constant in each cell, so that the mean is the central
+   * difference, of second order; extrapolation from the 2x2x2 Gauss points
+   * would give the same values. Across the face the cell's own strain is kept:
+   * with it the stresses balance the loads.
+   */
+  class FaceMesh
+  {
+  public:
+    /** @param sets face sets, each checked; @p place names the entry. */
+    FaceMesh(const ObservedModel            &model,
+             const std::vector<std::string> &sets,
+             const std::string              &place);
+
+    MPI_Comm
+    communicator() const;
+
+    /** Nodes of the owned faces; a node of two sets counts twice. */
+    unsigned int
+    n_nodes() const;
+
+    /** Outward normal at a node, the mean of its faces. */
+    const dealii::Tensor<1, 3> &
+    normal(const unsigned int node) const;
+
+    /** Total stress at each node [Pa]; all ranks must call this together. */
+    const std::vector<dealii::SymmetricTensor<2, 3>> &
+    stress(const Vector &displacement);
+
+    /** A place in an owned cell, by a key that does not depend on the ranks,
+     *  and its node; for checkpoints. */
+    struct Key
+    {
+      unsigned int  set;
+      std::uint64_t key;
+      unsigned int  node;
+    };
+
+    const std::vector<Key> &
+    keys() const;
+
+    using SetAndNode = std::pair<unsigned int, dealii::types::global_dof_index>;
+
+    /** Set and global node of each node. */
+    const std::vector<SetAndNode> &
+    sets_and_nodes() const;
+
+    /**
+     * Writes values of the nodes as one VTU file.
+     *
+     * @param values @p names.size() numbers for each node
+     * @return the name of the file without its folder
+     */
+    std::string
+    write(const std::vector<std::string> &names,
+          const std::vector<double>      &values,
+          const std::string              &name,
+          const double                    time) const;
+
+  private:
+    /** A vector of @p width numbers for each node, with ghosts. */
+    Vector
+    make_vector(const unsigned int width) const;
+
+    /** Sums @p width numbers of each visited place over the places of a node,
+     *  on all ranks that hold the node. */
+    void
+    sum_at_nodes(Vector                    &sums,
+                 const unsigned int         width,
+                 const std::vector<double> &values_of_places) const;
+
+    /** Agrees with the other ranks on numbers for the nodes. */
+    void
+    number_nodes(
+      const std::map<std::pair<unsigned int, dealii::types::global_dof_index>,
+                     unsigned int> &nodes,
+      const unsigned int            n_sets);
+
+    const std::string                          folder;
+    const Discretization                      &discretization;
+    std::vector<dealii::Point<3>>              positions;
+    std::vector<dealii::Tensor<1, 3>>          normals;
+    std::vector<unsigned int>                  n_places_of_node;
+    std::vector<unsigned int>                  node_of_place;
+    std::vector<Key>                           place_keys;
+    std::vector<SetAndNode>                    set_and_node;
+    std::vector<unsigned int>                  set_of_face;
+    std::unique_ptr<StressPoints>              points;
+    std::vector<dealii::SymmetricTensor<2, 3>> mean_stress;
+
+    // numbers of the nodes that do not depend on who looks at them
+    std::vector<dealii::types::global_dof_index> numbers;
+    dealii::types::global_dof_index n_numbers, first_owned, n_owned;
+
+    std::vector<unsigned int> entries; // of the nodes in a vector
+    Vector                    stress_sums;
+  };
+} // namespace Voussoir
+
+#endif

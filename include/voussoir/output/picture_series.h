@@ -1,0 +1,59 @@
+#ifndef voussoir_output_picture_series_h
+#define voussoir_output_picture_series_h
+
+#include <voussoir/output/observer.h>
+
+namespace Voussoir
+{
+  /** When an observer draws its pictures, and the list of them for ParaView. */
+  class PictureSeries
+  {
+  public:
+    /**
+     * @param name    of the folder of the pictures and of the list
+     * @param section of the parameter file
+     */
+    PictureSeries(const std::string &name, const std::string &section);
+
+    /** Adds the entries "Interval" and "Times". */
+    void
+    declare_parameters(dealii::ParameterHandler &prm);
+
+    /** Refuses times after the end of the run. */
+    void
+    check(const ObservedModel &model) const;
+
+    /** @p restarted: continue the list of a run that was interrupted. */
+    void
+    prepare(const ObservedModel &model,
+            const double         start_time,
+            const bool           restarted);
+
+    bool
+    due(const State &state) const;
+
+    /** Name for the picture of this state, without ending; its folder is
+     *  there once all ranks have called this. */
+    std::string
+    next_name(const State &state) const;
+
+    /** Adds a picture to the list. */
+    void
+    add(const double time, const std::string &file);
+
+    std::size_t
+    size() const;
+
+  private:
+    const std::string   name, section;
+    double              interval = 0.;
+    std::vector<double> times;
+
+    std::string                                 folder;
+    double                                      time_step = 1.;
+    MPI_Comm                                    communicator;
+    std::vector<std::pair<double, std::string>> pictures;
+  };
+} // namespace Voussoir
+
+#endif

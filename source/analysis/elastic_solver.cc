@@ -1,0 +1,319 @@
+#include <voussoir/analysis/elastic_solver.h>
+#include <voussoir/base/error.h>
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+#include <Epetra_MultiVector.h>
+#include <Teuchos_ParameterList.hpp>
+#include <ml_MultiLevelPreconditioner.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // Stress of the six unit strains: xx, yy, zz, xy, xz, yz with the tensor
+    // component 1/2 in the last three.
+    using Elasticity = std::array<SymmetricTensor<2, 3>, 6>;
+
+    Elasticity
+    elasticity_of(const Material &material)
+    {
+      Elasticity result;
+      for (unsigned int i = 0; i < 6; ++i)
+        {
+          SymmetricTensor<2, 3> strain;
+          strain.access_raw_entry(i) = i < 3 ? 1. : 0.5;
+          result[i] = material.stiffness_scale * material.stress(strain);
+        }
+      return result;
+    }
+
+
+    /** Stiffness of one trilinear cell from the positions of its corners. */
+    class TrilinearCell
+    {
+    public:
+      TrilinearCell()
+      {
+        const FE_Q<3>   fe(1);
+        const QGauss<3> quadrature(2);
+        for (unsigned int q = 0; q < 8; ++q)
+          {
+            weight[q] = quadrature.weight(q);
+            for (unsigned int i = 0; i < 8; ++i)
+              gradient[q][i] = fe.shape_grad(i, quadrature.point(q));
+          }
+      }
+
+      void
+      stiffness(const std::array<Point<3>, 8> &corners,
+                const Elasticity              &elasticity,
+                FullMatrix<double>            &matrix) const
+      {
+        matrix = 0.;
+        for (unsigned int q = 0; q < 8; ++q)
+          {
+            Tensor<2, 3> jacobian;
+            for (unsigned int i = 0; i < 8; ++i)
+              jacobian +=
+                outer_product(Tensor<1, 3>(corners[i]), gradient[q][i]);
+            const double       volume  = weight[q] * determinant(jacobian);
+            const Tensor<2, 3> inverse = invert(jacobian);
+            std::array<std::array<SymmetricTensor<2, 3>, 3>, 8> strain, stress;
+            for (unsigned int i = 0; i < 8; ++i)
+              {
+                const Tensor<1, 3> g = gradient[q][i] * inverse;
+                for (unsigned int d = 0; d < 3; ++d)
+                  {
+                    Tensor<2, 3> displacement_gradient;
+                    displacement_gradient[d] = g;
+                    strain[i][d] = symmetrize(displacement_gradient);
+                    for (unsigned int c = 0; c < 6; ++c)
+                      stress[i][d] += (c < 3 ? 1. : 2.) * volume *
+                                      strain[i][d].access_raw_entry(c) *
+                                      elasticity[c];
+                  }
+              }
+            for (unsigned int i = 0; i < 8; ++i)
+              for (unsigned int j = 0; j <= i; ++j)
+                for (unsigned int d = 0; d < 3; ++d)
+                  for (unsigned int e = 0; e < 3; ++e)
+                    matrix(3 * i + d, 3 * j + e) += strain[i][d] * stress[j][e];
+          }
+        for (unsigned int i = 0; i < 24; ++i)
+          for (unsigned int j = i / 3 * 3 + 3; j < 24; ++j)
+            matrix(i, j) = matrix(j, i);
+      }
+
+    private:
+      std::array<double, 8>                      weight;
+      std::array<std::array<Tensor<1, 3>, 8>, 8> gradient;
+    };
+
+
+    /** Calls visit(cell material, corner positions, degrees of freedom) for the
+     *  trilinear cells between the nodes of each owned cell. */
+    template <typename Visit>
+    void
+    for_each_trilinear_cell(const Discretization &discretization,
+                            const Visit          &visit)
+    {
+      const auto &scalar =
+        dynamic_cast<const FE_Q<3> &>(discretization.fe.base_element(0));
+      const auto         numbering = scalar.get_poly_space_numbering_inverse();
+      const auto        &points    = scalar.get_unit_support_points();
+      const unsigned int degree = discretization.degree, n = degree + 1;
+      std::vector<types::global_dof_index> dofs(24);
+      std::array<Point<3>, 8>              corners;
+      for (const auto &cell :
+           discretization.dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const auto nodes = discretization.cell_nodes(cell);
+            for (unsigned int k = 0; k < degree; ++k)
+              for (unsigned int j = 0; j < degree; ++j)
+                for (unsigned int i = 0; i < degree; ++i)
+                  {
+                    for (unsigned int v = 0; v < 8; ++v)
+                      {
+                        const unsigned int node =
+                          numbering[(i + (v & 1)) + n * (j + ((v >> 1) & 1)) +
+                                    n * n * (k + (v >> 2))];
+                        corners[v] =
+                          discretization.mapping.transform_unit_to_real_cell(
+                            cell, points[node]);
+                        for (unsigned int d = 0; d < 3; ++d)
+                          dofs[3 * v + d] = 3 * nodes[node] + d;
+                      }
+                    visit(cell, corners, dofs);
+                  }
+          }
+    }
+  } // namespace
+
+
+  ElasticSolver::ElasticSolver(
+    const Discretization                                  &discretization,
+    const InternalForce                                   &internal_force,
+    const std::vector<const Material *>                   &materials,
+    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
+    const AffineConstraints<double>                       &constraints,
+    const NodalTerms                                      *springs)
+    : discretization(discretization)
+    , internal_force(internal_force)
+    , springs(springs)
+    , constraints(constraints)
+  {
+    for (unsigned int i = 0; i < 3 * discretization.n_owned_nodes(); ++i)
+      if (constraints.is_constrained(
+            discretization.owned_dofs.nth_index_in_set(i)))
+        held.push_back(i);
+    assemble(materials, material_of_cell);
+    set_up_multigrid();
+  }
+
+
+  void
+  ElasticSolver::assemble(
+    const std::vector<const Material *>                   &materials,
+    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell)
+  {
+    TrilinosWrappers::SparsityPattern pattern(
+      discretization.owned_dofs,
+      discretization.owned_dofs,
+      discretization.relevant_dofs,
+      discretization.grid.communicator(),
+      81);
+    for_each_trilinear_cell(
+      discretization, [&](const auto &, const auto &, const auto &dofs) {
+        constraints.add_entries_local_to_global(dofs, pattern, true);
+      });
+    pattern.compress();
+    matrix.reinit(pattern);
+
+    std::vector<Elasticity> elasticities;
+    for (const Material *material : materials)
+      elasticities.push_back(elasticity_of(*material));
+    const TrilinearCell trilinear;
+    FullMatrix<double>  cell_matrix(24);
+    for_each_trilinear_cell(
+      discretization,
+      [&](const auto &cell, const auto &corners, const auto &dofs) {
+        trilinear.stiffness(corners,
+                            elasticities[material_of_cell(cell)],
+                            cell_matrix);
+        constraints.distribute_local_to_global(cell_matrix, dofs, matrix);
+      });
+    if (springs != nullptr)
+      for (unsigned int slot = 0; slot < springs->nodes.size(); ++slot)
+        {
+          const auto first = discretization.owned_dofs.nth_index_in_set(
+            3 * springs->nodes[slot]);
+          for (unsigned int d = 0; d < 3; ++d)
+            for (unsigned int e = 0; e < 3; ++e)
+              if (!constraints.is_constrained(first + d) &&
+                  !constraints.is_constrained(first + e))
+                matrix.add(first + d, first + e, springs->springs[slot][d][e]);
+        }
+    matrix.compress(VectorOperation::add);
+  }
+
+
+  void
+  ElasticSolver::set_up_multigrid()
+  {
+    // translations, and rotations about the origin
+    const auto        &map = matrix.trilinos_matrix().OperatorDomainMap();
+    Epetra_MultiVector rigid_modes(map, 6);
+    for (unsigned int node = 0; node < discretization.n_owned_nodes(); ++node)
+      {
+        const Point<3> &x = discretization.node_positions[node];
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            const unsigned int e = (d + 1) % 3, f = (d + 2) % 3;
+            rigid_modes[d][3 * node + d]     = 1.;
+            rigid_modes[3 + d][3 * node + e] = -x[f];
+            rigid_modes[3 + d][3 * node + f] = x[e];
+          }
+      }
+
+    Teuchos::ParameterList list;
+    ML_Epetra::SetDefaults("SA", list);
+    list.set("ML output", 0);
+    list.set("PDE equations", 3);
+    list.set("aggregation: type", "Uncoupled");
+    list.set("aggregation: threshold", 0.02);
+    list.set("smoother: type", "Chebyshev");
+    list.set("smoother: sweeps", 3);
+    list.set("coarse: type", "Amesos-KLU");
+    list.set("null space: type", "pre-computed");
+    list.set("null space: dimension", 6);
+    list.set("null space: vectors", rigid_modes.Values());
+    multigrid.initialize(matrix, list);
+  }
+
+
+  void
+  ElasticSolver::clear_held(Vector &vector) const
+  {
+    for (const unsigned int i : held)
+      vector.local_element(i) = 0.;
+  }
+
+
+  void
+  ElasticSolver::apply(Vector &force, const Vector &displacement) const
+  {
+    internal_force.apply(force, displacement);
+    if (springs != nullptr)
+      springs->add_to(force, displacement, 0.);
+  }
+
+
+  void
+  ElasticSolver::precondition(Vector &displacement, const Vector &force) const
+  {
+    multigrid.vmult(displacement, force);
+    clear_held(displacement);
+  }
+
+
+  unsigned int
+  ElasticSolver::solve(Vector       &displacement,
+                       const Vector &force,
+                       const double  tolerance) const
+  {
+    struct Operator
+    {
+      const ElasticSolver &solver;
+      void
+      vmult(Vector &dst, const Vector &src) const
+      {
+        solver.apply(dst, src);
+        solver.clear_held(dst);
+      }
+    };
+    struct Preconditioner
+    {
+      const ElasticSolver &solver;
+      void
+      vmult(Vector &dst, const Vector &src) const
+      {
+        solver.precondition(dst, src);
+      }
+    };
+    Vector right_side = force;
+    clear_held(right_side);
+    clear_held(displacement);
+    const double size = right_side.l2_norm();
+    if (size == 0.)
+      {
+        displacement = 0.;
+        return 0;
+      }
+    SolverControl    control(1000, tolerance * size);
+    SolverCG<Vector> solver(control);
+    try
+      {
+        solver.solve(Operator{*this},
+                     displacement,
+                     right_side,
+                     Preconditioner{*this});
+      }
+    catch (const SolverControl::NoConvergence &)
+      {
+        throw UserError(
+          "The static equations do not converge within 1000 iterations. Either "
+          "a part of the model can move freely: hold it with \"Fixed\" or "
+          "\"Roller\" in section \"Boundaries\"; or its cells are very flat: "
+          "make them no more than about five times as long as thick.");
+      }
+    return control.last_step();
+  }
+} // namespace Voussoir

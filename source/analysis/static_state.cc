@@ -1,0 +1,268 @@
+#include <voussoir/analysis/elastic_solver.h>
+#include <voussoir/analysis/relaxation.h>
+#include <voussoir/analysis/static_state.h>
+#include <voussoir/base/mpi.h>
+
+#include <deal.II/base/timer.h>
+
+#include <iomanip>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  void
+  StaticParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter(
+      "Stages",
+      stages,
+      "Loads that are there before the earthquake: stages separated by "
+      "semicolons, in their order, with the names of loads separated by "
+      "commas, as in \"weight; water, silt; temperature\". They stay as they "
+      "are at t = 0. Empty: no static stage.");
+    prm.add_parameter(
+      "Supports",
+      supports,
+      "How the absorbing faces stand in the static stage: fixed, held at right "
+      "angles to themselves (roller), or on the springs of the boundary. Their "
+      "reactions stay when the faces begin to absorb.",
+      Patterns::Selection("fixed|roller|springs"));
+    prm.add_parameter("Relative tolerance",
+                      tolerance,
+                      "Residual of the static equations over the load.",
+                      Patterns::Double(1e-14, 1e-2));
+    prm.add_parameter("Rest tolerance",
+                      rest,
+                      "With interfaces: motion in a natural period over the "
+                      "largest displacement at which the state is at rest.",
+                      Patterns::Double(1e-12, 1e-2));
+  }
+
+
+  std::vector<std::vector<std::string>>
+  StaticParameters::stage_names() const
+  {
+    std::vector<std::vector<std::string>> names;
+    for (const std::string &stage : split_list(stages, ';'))
+      names.push_back(split_list(stage));
+    return names;
+  }
+
+
+  void
+  StaticParameters::check(const NamedLoads &loads) const
+  {
+    std::vector<std::string> known;
+    for (const auto &load : loads)
+      known.push_back(load.first);
+    std::set<std::string> staged;
+    for (const auto &stage : stage_names())
+      for (const std::string &name : stage)
+        {
+          if (std::find(known.begin(), known.end(), name) == known.end())
+            throw UserError("\"Stages\" in section \"Static state\" names \"" +
+                            name +
+                            "\", which is not among the \"Names\" of "
+                            "section \"Loads\"" +
+                            known_names(name, known) + ".");
+          if (!staged.insert(name).second)
+            throw UserError("\"Stages\" in section \"Static state\" names \"" +
+                            name + "\" twice; keep one of them.");
+        }
+    for (const auto &[name, load] : loads)
+      if (load->steady() && staged.count(name) == 0)
+        throw UserError("The load \"" + name +
+                        "\" is there before the earthquake, but \"Stages\" in "
+                        "section \"Static state\" does not name it; add it "
+                        "there.");
+  }
+
+
+  namespace
+  {
+    Tensor<1, 3>
+    resultant(const Vector &force)
+    {
+      std::vector<double> sums(3);
+      for (unsigned int i = 0; i < force.locally_owned_size(); ++i)
+        sums[i % 3] += force.local_element(i);
+      sums = sum_over_ranks(sums, force.get_mpi_communicator());
+      return Tensor<1, 3>({sums[0], sums[1], sums[2]});
+    }
+
+
+    std::string
+    meganewtons(const Tensor<1, 3> &force)
+    {
+      std::ostringstream text;
+      text << std::setprecision(5) << "(" << 1e-6 * force[0] << ", "
+           << 1e-6 * force[1] << ", " << 1e-6 * force[2] << ") MN";
+      return text.str();
+    }
+
+
+    nlohmann::json
+    to_json(const Tensor<1, 3> &force)
+    {
+      return {force[0], force[1], force[2]};
+    }
+
+
+    double
+    largest_displacement(const Vector &displacement)
+    {
+      double largest = 0.;
+      for (unsigned int i = 0; i < displacement.locally_owned_size(); i += 3)
+        largest = std::max(largest,
+                           std::hypot(displacement.local_element(i),
+                                      displacement.local_element(i + 1),
+                                      displacement.local_element(i + 2)));
+      return Utilities::MPI::max(largest, displacement.get_mpi_communicator());
+    }
+
+
+    // What a load does before the earthquake, on held nodes too.
+    Vector
+    force_of(const Load           &load,
+             const Discretization &discretization,
+             NodalTerms           &terms)
+    {
+      Vector force = discretization.create_vector();
+      std::fill(terms.forces.begin(), terms.forces.end(), Tensor<1, 3>());
+      load.add_forces(0., terms);
+      for (unsigned int slot = 0; slot < terms.nodes.size(); ++slot)
+        for (unsigned int d = 0; d < 3; ++d)
+          force.local_element(3 * terms.nodes[slot] + d) =
+            terms.forces[slot][d];
+      load.add_steady_force(force);
+      return force;
+    }
+
+
+    std::vector<Support>
+    static_supports(const BoundaryParameters &boundaries,
+                    const std::string        &kind)
+    {
+      std::vector<Support> supports = boundaries.supports();
+      if (kind != "springs")
+        for (const std::string &set : split_list(boundaries.absorbing))
+          supports.push_back({set, kind == "roller"});
+      return supports;
+    }
+  } // namespace
+
+
+  InitialState
+  find_static_state(const StaticModel      &model,
+                    const StaticParameters &parameters,
+                    const NamedLoads       &loads,
+                    Log                    &log,
+                    nlohmann::json         &summary)
+  {
+    const Discretization               &discretization = model.discretization;
+    const std::map<std::string, Load *> load_of(loads.begin(), loads.end());
+
+    std::vector<double> dynamic_scale;
+    for (Material *material : model.materials)
+      {
+        dynamic_scale.push_back(material->stiffness_scale);
+        material->stiffness_scale = material->static_factor;
+      }
+
+    const Timer                     clock;
+    const AffineConstraints<double> constraints =
+      discretization.make_constraints(
+        static_supports(model.boundaries, parameters.supports));
+    const bool                     springs = parameters.supports == "springs";
+    std::unique_ptr<ElasticSolver> solver;
+    std::unique_ptr<Relaxation>    relaxation;
+    if (model.contact == nullptr)
+      solver = std::make_unique<ElasticSolver>(
+        discretization,
+        model.internal_force,
+        std::vector<const Material *>(model.materials.begin(),
+                                      model.materials.end()),
+        model.material_of_cell,
+        constraints,
+        springs ? &model.terms : nullptr);
+    else
+      relaxation = std::make_unique<Relaxation>(discretization,
+                                                model.internal_force,
+                                                model.mass,
+                                                model.terms,
+                                                constraints,
+                                                springs,
+                                                *model.contact);
+    log.line("Static state by ",
+             solver ? "multigrid" : "damped motion with contact",
+             ", set up in ",
+             duration_text(clock.wall_time()));
+
+    InitialState state;
+    state.displacement = discretization.create_vector();
+    state.temperature  = state.displacement;
+    state.force        = state.displacement;
+    Vector applied     = state.displacement; // loads so far
+    for (const auto &stage : parameters.stage_names())
+      {
+        const Timer    stage_clock;
+        nlohmann::json report;
+        for (const std::string &name : stage)
+          {
+            const Vector force =
+              force_of(*load_of.at(name), discretization, model.terms);
+            load_of.at(name)->add_temperature(state.temperature);
+            const Tensor<1, 3> sum = resultant(force);
+            log.line("  load ", name, ": resultant ", meganewtons(sum));
+            report["loads"][name]["resultant [N]"] = to_json(sum);
+            applied += force;
+          }
+        Vector right_side = applied;
+        model.internal_force.add_thermal_force(right_side, state.temperature);
+        const unsigned int iterations =
+          solver ? solver->solve(state.displacement,
+                                 right_side,
+                                 parameters.tolerance) :
+                   relaxation->find_equilibrium(state.displacement,
+                                                right_side,
+                                                parameters.rest,
+                                                log);
+
+        // f(u) minus loads and contact is what the supports bring
+        model.internal_force.apply(state.force, state.displacement);
+        state.force -= right_side;
+        if (model.contact != nullptr)
+          model.contact->add_forces(-1., state.force);
+        const Tensor<1, 3> sum       = resultant(applied);
+        const Tensor<1, 3> reactions = resultant(state.force);
+        const double       largest   = largest_displacement(state.displacement);
+        std::ostringstream text;
+        text << std::setprecision(4) << "  stage \"" << join(stage, ", ")
+             << "\": " << iterations << (solver ? " iterations, " : " steps, ")
+             << duration_text(stage_clock.wall_time()) << "; reactions "
+             << meganewtons(reactions) << ", largest displacement "
+             << 1e3 * largest << " mm";
+        log.line(text.str());
+        report["iterations"]               = iterations;
+        report["sum of loads so far [N]"]  = to_json(sum);
+        report["sum of reactions [N]"]     = to_json(reactions);
+        report["largest displacement [m]"] = largest;
+        report["names"]                    = stage;
+        summary["stages"].push_back(report);
+      }
+    summary["seconds"] = clock.wall_time();
+
+    for (unsigned int m = 0; m < dynamic_scale.size(); ++m)
+      model.materials[m]->stiffness_scale = dynamic_scale[m];
+    model.internal_force.apply(state.force, state.displacement);
+    model.terms.add_to(state.force, state.displacement, 0.);
+    if (model.contact != nullptr)
+      {
+        state.contact_force = discretization.create_vector();
+        model.contact->add_forces(1., state.contact_force);
+        state.force -= state.contact_force;
+      }
+    return state;
+  }
+} // namespace Voussoir

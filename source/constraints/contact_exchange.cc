@@ -1,0 +1,120 @@
+#include <voussoir/constraints/contact_exchange.h>
+
+#include <algorithm>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  ContactExchange::ContactExchange(
+    const Discretization                       &discretization,
+    const std::vector<types::global_dof_index> &cluster_nodes)
+  {
+    const IndexSet &mine = discretization.owned_dofs;
+    IndexSet        ghosts(mine.size());
+    for (const auto node : cluster_nodes)
+      if (!mine.is_element(3 * node))
+        ghosts.add_range(3 * node, 3 * node + 3);
+    ghosts.compress();
+    const auto partitioner = std::make_shared<Utilities::MPI::Partitioner>(
+      mine, ghosts, discretization.grid.communicator());
+    shared.reinit(partitioner);
+    std::vector<unsigned int> nodes_lent;
+    for (const auto &[begin, end] : partitioner->import_indices())
+      for (unsigned int i = begin; i < end; ++i)
+        if (i % 3 == 0)
+          nodes_lent.push_back(i / 3);
+    owned = nodes_lent;
+    for (const auto node : cluster_nodes)
+      if (mine.is_element(3 * node))
+        owned.push_back(partitioner->global_to_local(3 * node) / 3);
+    std::sort(owned.begin(), owned.end());
+    owned.erase(std::unique(owned.begin(), owned.end()), owned.end());
+
+    const auto place_of = [&](const unsigned int node) -> unsigned int {
+      return std::lower_bound(owned.begin(), owned.end(), node) - owned.begin();
+    };
+    for (const unsigned int node : nodes_lent)
+      lent.push_back(place_of(node));
+    for (unsigned int i = 0; i < cluster_nodes.size(); ++i)
+      {
+        const unsigned int entry =
+          partitioner->global_to_local(3 * cluster_nodes[i]);
+        if (mine.is_element(3 * cluster_nodes[i]))
+          here.push_back({i, place_of(entry / 3)});
+        else
+          remote.push_back({i, entry});
+      }
+  }
+
+
+  const std::vector<unsigned int> &
+  ContactExchange::owned_nodes() const
+  {
+    return owned;
+  }
+
+
+  template <typename Value>
+  void
+  ContactExchange::bring(const Value               &value_at_owned,
+                         std::vector<Tensor<1, 3>> &at_cluster_nodes)
+  {
+    for (const auto &[cluster_node, place] : here)
+      at_cluster_nodes[cluster_node] = value_at_owned(place);
+    for (const unsigned int place : lent)
+      {
+        const Tensor<1, 3> value = value_at_owned(place);
+        for (unsigned int d = 0; d < 3; ++d)
+          shared.local_element(3 * owned[place] + d) = value[d];
+      }
+    shared.update_ghost_values();
+    for (const auto &[cluster_node, entry] : remote)
+      for (unsigned int d = 0; d < 3; ++d)
+        at_cluster_nodes[cluster_node][d] = shared.local_element(entry + d);
+    shared.zero_out_ghost_values();
+  }
+
+
+  void
+  ContactExchange::to_clusters(const Vector              &values,
+                               std::vector<Tensor<1, 3>> &at_cluster_nodes)
+  {
+    const double *first = values.begin();
+    bring(
+      [&](const unsigned int place) {
+        const double *x = first + 3 * owned[place];
+        return Point<3>(x[0], x[1], x[2]);
+      },
+      at_cluster_nodes);
+  }
+
+
+  void
+  ContactExchange::to_clusters(const std::vector<Tensor<1, 3>> &at_owned_nodes,
+                               std::vector<Tensor<1, 3>> &at_cluster_nodes)
+  {
+    bring([&](const unsigned int place) { return at_owned_nodes[place]; },
+          at_cluster_nodes);
+  }
+
+
+  void
+  ContactExchange::to_owners(const std::vector<Tensor<1, 3>> &at_cluster_nodes,
+                             std::vector<Tensor<1, 3>>       &at_owned_nodes)
+  {
+    for (const auto &[cluster_node, place] : here)
+      at_owned_nodes[place] = at_cluster_nodes[cluster_node];
+    for (const unsigned int place : lent)
+      for (unsigned int d = 0; d < 3; ++d)
+        shared.local_element(3 * owned[place] + d) = 0.;
+    // each node is in one cluster
+    for (const auto &[cluster_node, entry] : remote)
+      for (unsigned int d = 0; d < 3; ++d)
+        shared.local_element(entry + d) = at_cluster_nodes[cluster_node][d];
+    shared.compress(VectorOperation::add);
+    for (const unsigned int place : lent)
+      for (unsigned int d = 0; d < 3; ++d)
+        at_owned_nodes[place][d] = shared.local_element(3 * owned[place] + d);
+  }
+} // namespace Voussoir

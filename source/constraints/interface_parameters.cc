@@ -1,0 +1,277 @@
+#include <voussoir/constraints/interface_parameters.h>
+#include <voussoir/mesh/interfaces.h>
+
+#include <algorithm>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    constexpr double gravity = 9.81; // [m/s2]
+
+    /** Whether @p name is @p pattern, in which "*" stands for anything. */
+    bool
+    matches(const std::string_view name, const std::string_view pattern)
+    {
+      if (pattern.empty())
+        return name.empty();
+      if (pattern[0] != '*')
+        return !name.empty() && name[0] == pattern[0] &&
+               matches(name.substr(1), pattern.substr(1));
+      for (std::size_t skipped = 0; skipped <= name.size(); ++skipped)
+        if (matches(name.substr(skipped), pattern.substr(1)))
+          return true;
+      return false;
+    }
+
+
+    std::string
+    section(const InterfaceParameters &interface)
+    {
+      return "Interfaces/" + interface.name;
+    }
+  } // namespace
+
+
+  void
+  UpliftParameters::declare(ParameterHandler &prm)
+  {
+    prm.enter_subsection("Uplift");
+    prm.add_parameter("Upstream faces",
+                      upstream_faces,
+                      "Face sets from which water enters the interface; empty "
+                      "for no pressure inside.");
+    prm.add_parameter("Downstream faces",
+                      downstream_faces,
+                      "Face sets at which it leaves.");
+    prm.add_parameter("Upstream level",
+                      upstream_level,
+                      "Elevation of the water at the upstream faces [m].");
+    prm.add_parameter("Downstream level",
+                      downstream_level,
+                      "Elevation of the water at the downstream faces [m].");
+    prm.add_parameter("Drain position",
+                      drain_position,
+                      "Of a line of drains, as a part of the way from the "
+                      "upstream to the downstream faces.",
+                      Patterns::Double(0., 1.));
+    prm.add_parameter(
+      "Drain factor",
+      drain_factor,
+      "Excess of the pressure at the drains over the downstream "
+      "pressure, as a part of that at the upstream faces; the "
+      "pressure is linear between. 1 at position 0 for no "
+      "drains.",
+      Patterns::Double(0., 1.));
+    prm.add_parameter("Density",
+                      density,
+                      "Density of the water [kg/m3].",
+                      Patterns::Double(0.));
+    prm.leave_subsection();
+  }
+
+
+  bool
+  UpliftParameters::given() const
+  {
+    return !split_list(upstream_faces).empty();
+  }
+
+
+  double
+  UpliftParameters::pressure(const double elevation, const double share) const
+  {
+    const auto head = [&](const double level) {
+      return density * gravity * std::max(0., level - elevation);
+    };
+    const double upstream   = head(upstream_level),
+                 downstream = head(downstream_level);
+    const double at_drain = downstream + drain_factor * (upstream - downstream);
+    if (share < drain_position)
+      return upstream + (at_drain - upstream) * share / drain_position;
+    if (share >= 1.)
+      return downstream;
+    return at_drain + (downstream - at_drain) * (share - drain_position) /
+                        (1. - drain_position);
+  }
+
+
+  void
+  InterfaceParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Face sets",
+                      face_sets,
+                      "Sets of inner faces along which the mesh is split, each "
+                      "a surface with its own results; \"*\" stands for any "
+                      "part of a name, as in \"joint *\".");
+    prm.add_parameter("Between",
+                      between,
+                      "Two cell sets instead: the faces between them are the "
+                      "surface, under the name of the interface.");
+    prm.add_parameter("Initial gap",
+                      initial_gap,
+                      "Opening at the start; such an interface has no bond "
+                      "[m].",
+                      Patterns::Double(0.));
+    prm.add_parameter("Key depth",
+                      key_depth,
+                      "Depth of shear keys, which do not let it slip while its "
+                      "opening is smaller; 0 for none [m].",
+                      Patterns::Double(0.));
+    prm.add_parameter("Steel ratio",
+                      steel_ratio,
+                      "Section of the bars across it over its area; 0 for "
+                      "none.",
+                      Patterns::Double(0., 1.));
+    prm.add_parameter("Steel modulus",
+                      steel_modulus,
+                      "Young's modulus of the bars [Pa].",
+                      Patterns::Double(0.));
+    prm.add_parameter("Free length",
+                      free_length,
+                      "Length over which the bars stretch [m].",
+                      Patterns::Double(1e-6));
+    prm.add_parameter("Yield stress",
+                      yield_stress,
+                      "Stress at which the bars yield, in tension and "
+                      "compression [Pa].",
+                      Patterns::Double(0.));
+    uplift.declare(prm);
+    law->declare_parameters(prm);
+  }
+
+
+  void
+  InterfaceParameters::check() const
+  {
+    const std::string place = section(*this);
+    if (split_list(face_sets).empty() == split_list(between).empty())
+      throw UserError("Section \"" + place +
+                      "\" needs either \"Face sets\" or \"Between\"; give one "
+                      "of the two.");
+    if (!between.empty() && split_list(between).size() != 2)
+      throw UserError("\"Between\" in section \"" + place +
+                      "\" needs two cell sets, separated by a comma.");
+    if (uplift.given() == split_list(uplift.downstream_faces).empty())
+      throw UserError("Section \"" + place +
+                      "/Uplift\" needs both \"Upstream faces\" and "
+                      "\"Downstream faces\", or none of them.");
+    law->check(place);
+  }
+
+
+  void
+  InterfacesParameters::declare(ParameterHandler    &prm,
+                                const ParameterFile &file)
+  {
+    const auto names  = Registry<InterfaceLaw>::names();
+    const auto chosen = split_list(file.given("Interfaces/Names"));
+    prm.enter_subsection("Interfaces");
+    prm.declare_entry("Names",
+                      "",
+                      Patterns::Anything(),
+                      "Names of the interfaces, separated by commas; each has "
+                      "a section of that name here.");
+    for (const std::string &name : chosen)
+      {
+        const std::string place = "Interfaces/" + name;
+        prm.enter_subsection(name);
+        prm.declare_entry("Law",
+                          "friction",
+                          Patterns::Selection(join(names, "|")),
+                          "Law of its strength; some entries depend on it.");
+        InterfaceParameters interface;
+        interface.name = name;
+        interface.law =
+          Registry<InterfaceLaw>::create(file.given(place + "/Law", "friction"),
+                                         "\"Law\" in section \"" + place +
+                                           "\"");
+        list.push_back(std::move(interface));
+        prm.leave_subsection();
+      }
+    // the entries refer to their places, which are final only now
+    for (InterfaceParameters &interface : list)
+      {
+        prm.enter_subsection(interface.name);
+        interface.declare(prm);
+        prm.leave_subsection();
+      }
+    prm.leave_subsection();
+  }
+
+
+  void
+  InterfacesParameters::check() const
+  {
+    for (auto one = list.begin(); one != list.end(); ++one)
+      {
+        for (auto other = list.begin(); other != one; ++other)
+          if (one->name == other->name)
+            throw UserError("\"Names\" in section \"Interfaces\" lists \"" +
+                            one->name + "\" twice; keep one of the two.");
+        one->check();
+      }
+  }
+
+
+  void
+  InterfacesParameters::split(CoarseMesh &mesh)
+  {
+    for (InterfaceParameters &interface : list)
+      {
+        const std::string place = "section \"" + section(interface) + "\"";
+        interface.surfaces.clear();
+        if (const auto sets = split_list(interface.between); !sets.empty())
+          {
+            if (mesh.face_sets.count(interface.name) > 0)
+              throw UserError("The mesh has a face set \"" + interface.name +
+                              "\" already; give the interface another name, or "
+                              "\"Face sets\" instead of \"Between\" in " +
+                              place + ".");
+            mesh.face_sets[interface.name] =
+              faces_between(mesh, sets[0], sets[1], "\"Between\" in " + place);
+            interface.surfaces.push_back(interface.name);
+          }
+        for (const std::string &pattern : split_list(interface.face_sets))
+          {
+            std::vector<std::string> known;
+            bool                     found = false;
+            for (const auto &set : mesh.face_sets)
+              {
+                known.push_back(set.first);
+                if (matches(set.first, pattern))
+                  {
+                    found = true;
+                    interface.surfaces.push_back(set.first);
+                  }
+              }
+            if (!found)
+              throw UserError("\"Face sets\" in " + place + " names \"" +
+                              pattern + "\", which the mesh does not have" +
+                              known_names(pattern, known) + ".");
+          }
+      }
+    const auto all = surfaces();
+    for (auto name = all.begin(); name != all.end(); ++name)
+      if (std::find(all.begin(), name, *name) != name)
+        throw UserError("The face set \"" + *name +
+                        "\" is in two interfaces of section \"Interfaces\"; "
+                        "name it in one only.");
+    if (!all.empty())
+      split_interfaces(mesh, all, "Section \"Interfaces\"");
+  }
+
+
+  std::vector<std::string>
+  InterfacesParameters::surfaces() const
+  {
+    std::vector<std::string> all;
+    for (const InterfaceParameters &interface : list)
+      all.insert(all.end(),
+                 interface.surfaces.begin(),
+                 interface.surfaces.end());
+    return all;
+  }
+} // namespace Voussoir

@@ -1,0 +1,91 @@
+#include <voussoir/constraints/interface_law.h>
+
+#include <algorithm>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * A bond that softens linearly: with w the largest opening and s the way
+     * slipped, what is left of it is
+     *   (1 - w ft / (2 GfI)) (1 - s (c - c_res) / (2 GfII)) ,
+     * which spends GfI per area in pure opening and GfII in pure slip.
+     */
+    class SofteningBond : public InterfaceLaw
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Tensile strength",
+                          intact.tension,
+                          "Normal stress at which the bond starts to open "
+                          "[Pa].",
+                          Patterns::Double(0.));
+        prm.add_parameter("Cohesion",
+                          intact.bond,
+                          "Shear strength of the bond without pressure [Pa].",
+                          Patterns::Double(0.));
+        prm.add_parameter("Friction coefficient",
+                          intact.friction,
+                          "Increase of the shear strength with the pressure.",
+                          Patterns::Double(0.));
+        prm.add_parameter("Fracture energy",
+                          opening_energy,
+                          "Work per area that opens the bond (GfI) [J/m2].",
+                          Patterns::Double(1e-3));
+        prm.add_parameter("Shear fracture energy",
+                          slip_energy,
+                          "Work per area beyond that of the residual strength "
+                          "that shears it off (GfII) [J/m2].",
+                          Patterns::Double(1e-3));
+        prm.add_parameter("Residual cohesion",
+                          broken.cohesion,
+                          "Shear strength without pressure once the bond is "
+                          "lost, while closed [Pa].",
+                          Patterns::Double(0.));
+        prm.add_parameter("Residual friction coefficient",
+                          broken.friction,
+                          "Friction once the bond is lost.",
+                          Patterns::Double(0.));
+      }
+
+      void
+      check(const std::string &place) const override
+      {
+        if (broken.cohesion > intact.bond)
+          throw UserError("\"Residual cohesion\" in section \"" + place +
+                          "\" is larger than \"Cohesion\"; choose a smaller "
+                          "one.");
+      }
+
+      InterfaceStrength
+      strength(const InterfaceHistory &history) const override
+      {
+        const double lost_cohesion = intact.bond - broken.cohesion;
+        const double whole =
+          std::max(0.,
+                   1. -
+                     0.5 * history.opening * intact.tension / opening_energy) *
+          std::max(0., 1. - 0.5 * history.slip * lost_cohesion / slip_energy);
+        // the residual strength is there from the start
+        return {intact.tension * whole,
+                lost_cohesion * whole,
+                broken.cohesion,
+                broken.friction + (intact.friction - broken.friction) * whole};
+      }
+
+    private:
+      InterfaceStrength intact{1e6, 1e6, 0., 1.}, broken{0., 0., 0., 0.7};
+      double            opening_energy = 200., slip_energy = 2000.;
+    };
+
+    const Registry<InterfaceLaw>::Add<SofteningBond> registered(
+      "softening bond",
+      "Tensile strength and cohesion that soften with opening and slip at given "
+      "fracture energies, then friction.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,61 @@
+#include <voussoir/fem/lanczos.h>
+
+#include <deal.II/lac/tridiagonal_matrix.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  double
+  largest_eigenvalue(const Vector &start,
+                     const Vector &inverse_mass,
+                     const std::function<void(Vector &, const Vector &)> &apply)
+  {
+    constexpr unsigned int max_iterations = 400;
+    Vector                 root(inverse_mass); // M^-1/2
+    for (double &entry : root)
+      entry = std::sqrt(entry);
+
+    Vector q(start), previous(start), w(start), scaled(start);
+    for (unsigned int i = 0; i < q.locally_owned_size(); ++i)
+      if (root.local_element(i) == 0.)
+        q.local_element(i) = 0.;
+    q /= q.l2_norm();
+
+    std::vector<double> alpha, beta;
+    double              value = 0., older = 0.;
+    for (unsigned int k = 0; k < max_iterations; ++k)
+      {
+        scaled = q;
+        scaled.scale(root);
+        apply(w, scaled);
+        w.scale(root);
+        alpha.push_back(w * q);
+        w.add(-alpha.back(), q);
+        if (k > 0)
+          w.add(-beta.back(), previous);
+        beta.push_back(w.l2_norm());
+
+        if (k % 5 == 4 || beta.back() < 1e-12 * alpha.back())
+          {
+            TridiagonalMatrix<double> tridiagonal(alpha.size(), true);
+            for (unsigned int i = 0; i < alpha.size(); ++i)
+              {
+                tridiagonal(i, i) = alpha[i];
+                if (i > 0)
+                  tridiagonal(i, i - 1) = beta[i - 1];
+              }
+            tridiagonal.compute_eigenvalues();
+            value = tridiagonal.eigenvalue(alpha.size() - 1);
+            if (k >= 29 && value - older < 1e-6 * value)
+              break;
+            if (beta.back() < 1e-12 * alpha.back())
+              break;
+            older = value;
+          }
+        previous.swap(q);
+        q.equ(1. / beta.back(), w);
+      }
+    return value;
+  }
+} // namespace Voussoir

@@ -1,0 +1,178 @@
+#include <voussoir/base/error.h>
+#include <voussoir/loads/face_forces.h>
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <algorithm>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Gauss points for the unit square in the two parts into which a bilinear
+     * function cuts it, given by its values at the corners: exact where the cut
+     * is straight, as on faces that are parallelograms.
+     */
+    Quadrature<2>
+    cut_quadrature(const std::array<double, 4> &corners,
+                   const unsigned int           n_points)
+    {
+      // h(s, t) = a + b s + c t + d s t, with t the direction of steeper change
+      const double a = corners[0], d = corners[3] - corners[1] - corners[2] + a;
+      double       b = corners[1] - a, c = corners[2] - a;
+      const bool   exchanged = std::abs(b + 0.5 * d) > std::abs(c + 0.5 * d);
+      if (exchanged)
+        std::swap(b, c);
+
+      // the cut leaves the square through t = 0 or t = 1 at these s
+      std::vector<double> ends{0., 1.};
+      for (const double s : {-a / b, -(a + c) / (b + d)})
+        if (s > 0. && s < 1.)
+          ends.push_back(s);
+      std::sort(ends.begin(), ends.end());
+
+      const QGauss<1>       gauss(n_points);
+      std::vector<Point<2>> points;
+      std::vector<double>   weights;
+      for (unsigned int i = 0; i + 1 < ends.size(); ++i)
+        for (unsigned int p = 0; p < n_points; ++p)
+          {
+            const double width = ends[i + 1] - ends[i];
+            const double s     = ends[i] + width * gauss.point(p)[0];
+            const double cut   = -(a + b * s) / (c + d * s);
+            const double split = cut > 0. && cut < 1. ? cut : 0.;
+            for (const auto &[begin, end] :
+                 {std::make_pair(0., split), std::make_pair(split, 1.)})
+              if (end > begin)
+                for (unsigned int q = 0; q < n_points; ++q)
+                  {
+                    const double t = begin + (end - begin) * gauss.point(q)[0];
+                    points.push_back(exchanged ? Point<2>(t, s) :
+                                                 Point<2>(s, t));
+                    weights.push_back(width * gauss.weight(p) * (end - begin) *
+                                      gauss.weight(q));
+                  }
+          }
+      return Quadrature<2>(points, weights);
+    }
+  } // namespace
+
+
+  std::vector<NodalForce>
+  face_forces(const Discretization           &discretization,
+              const std::vector<std::string> &sets,
+              const std::string              &place,
+              const std::function<Tensor<1, 3>(const Point<3> &,
+                                               const Tensor<1, 3> &)> &traction,
+              const double                                             kink)
+  {
+    if (sets.empty())
+      throw UserError(place + " is empty; name the face sets it acts on.");
+    const auto       &scalar = discretization.fe.base_element(0);
+    const UpdateFlags flags  = update_values | update_quadrature_points |
+                              update_normal_vectors | update_JxW_values;
+    FEFaceValues<3> whole_face(discretization.mapping,
+                               scalar,
+                               QGauss<2>(discretization.degree + 1),
+                               flags);
+    FEFaceValues<3> corners(discretization.mapping,
+                            scalar,
+                            QTrapezoid<2>(),
+                            update_quadrature_points);
+
+    struct Force
+    {
+      double components[3];
+    };
+    std::vector<std::pair<types::global_dof_index, Force>> forces;
+
+    const auto add_face = [&](const FEFaceValues<3> &values,
+                              const auto            &cell,
+                              const unsigned int     face) {
+      std::vector<Tensor<1, 3>> tractions;
+      for (const unsigned int q : values.quadrature_point_indices())
+        tractions.push_back(
+          traction(values.quadrature_point(q), values.normal_vector(q)));
+      const auto nodes =
+        discretization.cell_nodes(discretization.dof_cell(cell));
+      for (unsigned int j = 0; j < nodes.size(); ++j)
+        if (scalar.has_support_on_face(j, face))
+          {
+            Tensor<1, 3> sum;
+            for (const unsigned int q : values.quadrature_point_indices())
+              sum += values.shape_value(j, q) * values.JxW(q) * tractions[q];
+            for (const auto &share : discretization.carriers(nodes[j]))
+              forces.push_back({share.node,
+                                {{share.weight * sum[0],
+                                  share.weight * sum[1],
+                                  share.weight * sum[2]}}});
+          }
+    };
+
+    for (const std::string &set : sets)
+      {
+        discretization.grid.check_face_set(set, place);
+        discretization.grid.for_each_face(
+          set, [&](const auto &cell, const unsigned int face) {
+            corners.reinit(cell, face);
+            std::array<double, 4> above;
+            for (unsigned int v = 0; v < 4; ++v)
+              above[v] = corners.quadrature_point(v)[2] - kink;
+            const auto [lowest, highest] =
+              std::minmax_element(above.begin(), above.end());
+            // a level at the edge of a face, but for round-off, cuts nothing
+            const double round_off = 1e-10 * cell->face(face)->diameter();
+            if (*lowest<-round_off && * highest> round_off)
+              {
+                FEFaceValues<3> values(
+                  discretization.mapping,
+                  scalar,
+                  cut_quadrature(above, discretization.degree + 3),
+                  flags);
+                values.reinit(cell, face);
+                add_face(values, cell, face);
+              }
+            else
+              {
+                whole_face.reinit(cell, face);
+                add_face(whole_face, cell, face);
+              }
+          });
+      }
+    std::vector<NodalForce> result;
+    for (const auto &[node, force] : discretization.send_to_owners(forces))
+      result.push_back({node, Tensor<1, 3>(force.components)});
+    return result;
+  }
+
+
+  std::vector<NodalForce>
+  depth_pressure_forces(const Discretization           &discretization,
+                        const std::vector<std::string> &sets,
+                        const std::string              &place,
+                        const double                    level,
+                        const double                    gradient)
+  {
+    return face_forces(
+      discretization,
+      sets,
+      place,
+      [&](const Point<3> &x, const Tensor<1, 3> &normal) {
+        return -gradient * std::max(0., level - x[2]) * normal;
+      },
+      level);
+  }
+
+
+  void
+  add_to(Vector &vector, const std::vector<NodalForce> &forces)
+  {
+    for (const auto &[node, force] : forces)
+      for (unsigned int d = 0; d < 3; ++d)
+        vector.local_element(3 * node + d) += force[d];
+  }
+} // namespace Voussoir

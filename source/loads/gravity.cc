@@ -1,0 +1,86 @@
+#include <voussoir/fem/lumped_mass.h>
+#include <voussoir/loads/load.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** rho g at the nodes, lumped like the mass. */
+    class Gravity : public Load
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Cell sets",
+                          cell_sets,
+                          "Cell sets that have weight; empty for all cells. "
+                          "Without the rock, whose settlement is long past, "
+                          "only the dam weighs.");
+        prm.add_parameter("Acceleration",
+                          acceleration,
+                          "Acceleration of gravity, x, y, z [m/s2].");
+      }
+
+      bool
+      steady() const override
+      {
+        return true;
+      }
+
+      void
+      prepare(const LoadedModel &model,
+              NodalTerms &,
+              const std::string &place) override
+      {
+        const Discretization &discretization = model.discretization;
+        const auto            sets           = split_list(cell_sets);
+        for (const std::string &set : sets)
+          discretization.grid.check_cell_set(set,
+                                             "\"Cell sets\" in section \"" +
+                                               place + "\"");
+
+        NodalVolumes nodal_volumes(discretization);
+        std::vector<std::pair<types::global_dof_index, double>> records;
+        for (const auto &cell :
+             discretization.dof_handler.active_cell_iterators())
+          if (cell->is_locally_owned() &&
+              (sets.empty() ||
+               std::any_of(sets.begin(), sets.end(), [&](const auto &set) {
+                 return discretization.grid.in_cell_set(cell, set);
+               })))
+            {
+              const double density =
+                model.materials[model.material_of_cell(cell)]->density;
+              const auto &volumes = nodal_volumes.of(cell);
+              const auto  nodes   = discretization.cell_nodes(cell);
+              for (unsigned int j = 0; j < nodes.size(); ++j)
+                for (const auto &share : discretization.carriers(nodes[j]))
+                  records.emplace_back(share.node,
+                                       share.weight * density * volumes[j]);
+            }
+        mass.assign(discretization.n_owned_nodes(), 0.);
+        for (const auto &[node, part] : discretization.send_to_owners(records))
+          mass[node] += part;
+      }
+
+      void
+      add_steady_force(Vector &force) const override
+      {
+        for (unsigned int node = 0; node < mass.size(); ++node)
+          for (unsigned int d = 0; d < 3; ++d)
+            force.local_element(3 * node + d) += mass[node] * acceleration[d];
+      }
+
+    private:
+      std::string         cell_sets;
+      Tensor<1, 3>        acceleration{{0., 0., -9.81}};
+      std::vector<double> mass; // of each owned node [kg]
+    };
+
+    const Registry<Load>::Add<Gravity> registered("gravity",
+                                                  "Weight of the material.");
+  } // namespace
+} // namespace Voussoir

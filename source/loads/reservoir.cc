@@ -1,0 +1,434 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/parameter_file.h>
+#include <voussoir/fem/lanczos.h>
+#include <voussoir/loads/reservoir.h>
+#include <voussoir/mesh/reservoir_mesh.h>
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/numerics/data_out.h>
+#include <deal.II/numerics/rtree.h>
+
+#include <sstream>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // Nodes nearer than this part of the shortest edge on the wall meet.
+    constexpr double coincidence = 1e-4;
+
+    // The step that coupling is estimated for, at most, over the water's own.
+    constexpr double largest_relative_step = 0.95;
+
+
+    bool
+    in_any(const Grid                     &grid,
+           const std::vector<std::string> &sets,
+           const Grid::Cell               &cell,
+           const unsigned int              face)
+    {
+      return std::any_of(sets.begin(), sets.end(), [&](const auto &set) {
+        return grid.in_face_set(cell, face, set);
+      });
+    }
+
+
+    std::vector<std::string>
+    checked_sets(const Grid        &grid,
+                 const std::string &list,
+                 const std::string &entry)
+    {
+      const auto sets = split_list(list);
+      for (const std::string &set : sets)
+        grid.check_face_set(set, "\"" + entry + "\" in section \"Reservoir\"");
+      return sets;
+    }
+
+
+    /** The water's nodes on the wet wall, of all ranks. */
+    struct WetNodes
+    {
+      explicit WetNodes(const AcousticSpace &space)
+      {
+        FEFaceValues<3>                      values(space.mapping,
+                               space.fe,
+                               QGaussLobatto<2>(space.fe.degree + 1),
+                               update_values | update_quadrature_points);
+        std::vector<types::global_dof_index> dofs(space.fe.n_dofs_per_cell());
+        std::vector<double>                  mine;
+        double edge = std::numeric_limits<double>::max();
+        for (const auto &cell : space.dof_handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            for (const unsigned int face : cell->face_indices())
+              if (space.grid.in_face_set(cell, face, wet_wall))
+                {
+                  values.reinit(cell, face);
+                  cell->get_dof_indices(dofs);
+                  for (const unsigned int j : values.dof_indices())
+                    for (const unsigned int q :
+                         values.quadrature_point_indices())
+                      if (values.shape_value(j, q) > 0.5)
+                        {
+                          const Point<3> &x = values.quadrature_point(q);
+                          mine.insert(mine.end(),
+                                      {double(dofs[j]), x[0], x[1], x[2]});
+                        }
+                  for (unsigned int line = 0; line < 4; ++line)
+                    edge =
+                      std::min(edge, cell->face(face)->line(line)->diameter());
+                }
+        const MPI_Comm communicator = space.grid.communicator();
+        tolerance = coincidence * Utilities::MPI::min(edge, communicator);
+        for (const auto &part : Utilities::MPI::all_gather(communicator, mine))
+          for (std::size_t i = 0; i < part.size(); i += 4)
+            {
+              unknowns.push_back(part[i]);
+              positions.emplace_back(part[i + 1], part[i + 2], part[i + 3]);
+            }
+      }
+
+      double                               tolerance;
+      std::vector<types::global_dof_index> unknowns;
+      std::vector<Point<3>>                positions;
+    };
+  } // namespace
+
+
+  Reservoir::Reservoir(const CoarseMesh          &water,
+                       const GridParameters      &grid_parameters,
+                       const ReservoirParameters &parameters,
+                       const Discretization      &solid,
+                       NodalTerms                &terms)
+    : space(water, grid_parameters, solid.degree, solid.grid.communicator())
+    , pressure(space.create_vector())
+    , impulse(pressure)
+    , density(parameters.density)
+    , compressibility(1. / (parameters.density *
+                            Utilities::fixed_power<2>(parameters.sound_speed)))
+    , inverse_storage(pressure)
+    , dashpots(pressure)
+    , keep(pressure)
+    , push(pressure)
+    , stiffness(pressure)
+  {
+    const Grid &grid   = space.grid;
+    const auto surface = checked_sets(grid, parameters.surface, "Free surface");
+    const auto end     = checked_sets(grid, parameters.end, "Radiating end");
+    const double alpha = parameters.bottom_reflection;
+    const auto   dam = alpha < 1. ? checked_sets(grid, parameters.dam, "Dam") :
+                                    std::vector<std::string>();
+
+    const Vector surface_area =
+      space.areas([&](const Grid::Cell &cell, const unsigned int face) {
+        return in_any(grid, surface, cell, face);
+      });
+    const Vector end_area =
+      space.areas([&](const Grid::Cell &cell, const unsigned int face) {
+        return in_any(grid, end, cell, face);
+      });
+    const Vector bottom_area =
+      space.areas([&](const Grid::Cell &cell, const unsigned int face) {
+        return alpha < 1. && grid.in_face_set(cell, face, wet_wall) &&
+               !in_any(grid, dam, cell, face);
+      });
+    const double admittance = 1. / (density * parameters.sound_speed);
+    for (unsigned int i = 0; i < pressure.locally_owned_size(); ++i)
+      {
+        if (surface_area.local_element(i) > 0.)
+          continue;
+        inverse_storage.local_element(i) =
+          1. / (compressibility * space.volumes.local_element(i));
+        dashpots.local_element(i) =
+          admittance *
+          (end_area.local_element(i) +
+           (1. - alpha) / (1. + alpha) * bottom_area.local_element(i));
+        if (dashpots.local_element(i) > 0.)
+          lossy_nodes.push_back(i);
+      }
+    last_lossy_pressure.resize(lossy_nodes.size());
+    couple(solid, terms);
+
+    // a start vector that is the same on any number of ranks
+    Vector start(pressure);
+    for (unsigned int i = 0; i < start.locally_owned_size(); ++i)
+      {
+        const Point<3> &p      = space.node_positions[i];
+        start.local_element(i) = std::sin(1e3 * p[0] + 2e3 * p[1] + 3e3 * p[2]);
+      }
+    largest_step =
+      2. / std::sqrt(largest_eigenvalue(start,
+                                        inverse_storage,
+                                        [&](Vector &dst, const Vector &src) {
+                                          dst = 0.;
+                                          space.sweep(dst, src, {}, {});
+                                          dst /= density;
+                                        }));
+  }
+
+
+  void
+  Reservoir::couple(const Discretization &solid, NodalTerms &terms)
+  {
+    const WetNodes wet(space);
+    const auto     tree = pack_rtree_of_indices(wet.positions);
+
+    const auto     &scalar = solid.fe.base_element(0);
+    FEFaceValues<3> values(solid.mapping,
+                           scalar,
+                           QGaussLobatto<2>(solid.degree + 1),
+                           update_values | update_quadrature_points |
+                             update_normal_vectors | update_JxW_values);
+    struct Record
+    {
+      types::global_dof_index water;
+      double                  area[3];
+    };
+    std::vector<std::pair<types::global_dof_index, Record>> records;
+    std::vector<double>                                     lonely;
+    solid.grid.for_each_face(
+      wet_wall, [&](const auto &cell, const unsigned int face) {
+        values.reinit(cell, face);
+        const auto nodes = solid.cell_nodes(solid.dof_cell(cell));
+        for (unsigned int j = 0; j < nodes.size(); ++j)
+          if (scalar.has_support_on_face(j, face))
+            for (const unsigned int q : values.quadrature_point_indices())
+              if (values.shape_value(j, q) > 0.5)
+                {
+                  const Point<3>          &x = values.quadrature_point(q);
+                  std::vector<std::size_t> nearest;
+                  tree.query(boost::geometry::index::nearest(x, 1),
+                             std::back_inserter(nearest));
+                  if (x.distance(wet.positions[nearest[0]]) > wet.tolerance)
+                    {
+                      lonely.assign({x[0], x[1], x[2]});
+                      continue;
+                    }
+                  Record record;
+                  record.water = wet.unknowns[nearest[0]];
+                  for (unsigned int d = 0; d < 3; ++d)
+                    record.area[d] =
+                      -values.JxW(q) * values.normal_vector(q)[d];
+                  records.emplace_back(nodes[j], record);
+                }
+      });
+    for (const auto &x :
+         Utilities::MPI::all_gather(space.grid.communicator(), lonely))
+      if (!x.empty())
+        {
+          std::ostringstream text;
+          text << "At (" << Point<3>(x[0], x[1], x[2])
+               << ") m a node of the solid on the wall of the reservoir meets "
+                  "no node of the water; keep \"Local refinement\" in section "
+                  "\"Mesh\" away from the water.";
+          throw UserError(text.str());
+        }
+
+    std::map<std::pair<unsigned int, types::global_dof_index>, Tensor<1, 3>>
+             area_of_pair;
+    IndexSet unknowns(space.owned_dofs.size());
+    for (const auto &[node, record] : solid.send_to_owners(records))
+      {
+        area_of_pair[{node, record.water}] += Tensor<1, 3>(record.area);
+        unknowns.add_index(record.water);
+      }
+    flux.reinit(space.owned_dofs, unknowns, space.grid.communicator());
+    wall_pressure.reinit(flux);
+    for (const auto &[pair, area] : area_of_pair)
+      pairs.push_back({terms.add_node(pair.first),
+                       pair.first,
+                       flux.get_partitioner()->global_to_local(pair.second),
+                       area});
+
+    // the areas at the unknowns of this rank, whoever has their partners
+    std::array<Vector, 4> sums; // the last one says where there are any
+    for (unsigned int d = 0; d < 4; ++d)
+      {
+        sums[d].reinit(flux);
+        for (const Pair &pair : pairs)
+          sums[d].local_element(pair.water) +=
+            d < 3 ? pair.area[d] : pair.area.norm();
+        sums[d].compress(VectorOperation::add);
+      }
+    for (unsigned int i = 0; i < pressure.locally_owned_size(); ++i)
+      if (sums[3].local_element(i) > 0.)
+        wall_nodes.push_back({i,
+                              Tensor<1, 3>({sums[0].local_element(i),
+                                            sums[1].local_element(i),
+                                            sums[2].local_element(i)})});
+    last_wall_pressure.resize(wall_nodes.size());
+  }
+
+
+  double
+  Reservoir::stable_step() const
+  {
+    return largest_step;
+  }
+
+
+  void
+  Reservoir::add_coupling(Vector       &force,
+                          const Vector &displacement,
+                          const double  step) const
+  {
+    Vector wall(flux);
+    wall = 0.;
+    gather_flux(wall, displacement);
+    for (unsigned int i = 0; i < pressure.locally_owned_size(); ++i)
+      wall.local_element(i) *= inverse_storage.local_element(i);
+    wall.update_ghost_values();
+    const double ratio = std::min(step / largest_step, largest_relative_step);
+    for (const Pair &pair : pairs)
+      for (unsigned int d = 0; d < 3; ++d)
+        force.local_element(3 * pair.node + d) +=
+          pair.area[d] * wall.local_element(pair.water) / (1. - ratio * ratio);
+  }
+
+
+  void
+  Reservoir::prepare(const double step)
+  {
+    time_step = step;
+    for (unsigned int i = 0; i < pressure.locally_owned_size(); ++i)
+      {
+        const double gain     = time_step * inverse_storage.local_element(i);
+        const double damping  = 0.5 * gain * dashpots.local_element(i);
+        push.local_element(i) = gain / (1. + damping);
+        keep.local_element(i) = (1. - damping) / (1. + damping);
+      }
+  }
+
+
+  void
+  Reservoir::gather_flux(Vector &wall, const Vector &velocity) const
+  {
+    for (const Pair &pair : pairs)
+      for (unsigned int d = 0; d < 3; ++d)
+        wall.local_element(pair.water) +=
+          pair.area[d] * velocity.local_element(3 * pair.node + d);
+    wall.compress(VectorOperation::add);
+  }
+
+
+  void
+  Reservoir::add_forces(NodalTerms &terms)
+  {
+    for (const WallNode &node : wall_nodes)
+      wall_pressure.local_element(node.water) =
+        pressure.local_element(node.water);
+    wall_pressure.update_ghost_values();
+    for (const Pair &pair : pairs)
+      terms.forces[pair.slot] +=
+        wall_pressure.local_element(pair.water) * pair.area;
+  }
+
+
+  void
+  Reservoir::advance(const Vector &velocity, const Tensor<1, 3> &base_velocity)
+  {
+    for (unsigned int i = 0; i < wall_nodes.size(); ++i)
+      {
+        flux.local_element(wall_nodes[i].water) = 0.;
+        last_wall_pressure[i] = pressure.local_element(wall_nodes[i].water);
+      }
+    for (unsigned int i = 0; i < lossy_nodes.size(); ++i)
+      last_lossy_pressure[i] = pressure.local_element(lossy_nodes[i]);
+    gather_flux(flux, velocity);
+
+    // the work needs the flux without that of the base
+    std::vector<double> solid_flux(wall_nodes.size());
+    for (unsigned int i = 0; i < wall_nodes.size(); ++i)
+      {
+        solid_flux[i] = flux.local_element(wall_nodes[i].water);
+        flux.local_element(wall_nodes[i].water) +=
+          wall_nodes[i].area * base_velocity;
+      }
+
+    double       *p = pressure.begin(), *I = impulse.begin();
+    double       *f = stiffness.begin();
+    const double *q = flux.begin(), *a = keep.begin(), *b = push.begin();
+    space.sweep(
+      stiffness,
+      impulse,
+      [&](const unsigned int begin, const unsigned int end) {
+#pragma GCC ivdep
+        for (unsigned int i = begin; i < end; ++i)
+          {
+            I[i] += time_step * p[i];
+            f[i] = 0.;
+          }
+      },
+      [&](const unsigned int begin, const unsigned int end) {
+        const double mobility = 1. / density;
+#pragma GCC ivdep
+        for (unsigned int i = begin; i < end; ++i)
+          p[i] = a[i] * p[i] - b[i] * (mobility * f[i] + q[i]);
+      });
+
+    for (unsigned int i = 0; i < wall_nodes.size(); ++i)
+      {
+        const double mean =
+          0.5 * (last_wall_pressure[i] + p[wall_nodes[i].water]);
+        work_on_solid += time_step * mean * solid_flux[i];
+        work_on_base += time_step * mean * (wall_nodes[i].area * base_velocity);
+      }
+    for (unsigned int i = 0; i < lossy_nodes.size(); ++i)
+      {
+        const double mean = 0.5 * (last_lossy_pressure[i] + p[lossy_nodes[i]]);
+        loss +=
+          time_step * dashpots.local_element(lossy_nodes[i]) * mean * mean;
+      }
+  }
+
+
+  double
+  Reservoir::stored_energy() const
+  {
+    // p M p / (2 rho c^2) + I- K I+ / (2 rho)
+    Vector next(impulse), force(impulse);
+    next.add(time_step, pressure);
+    force = 0.;
+    space.sweep(force, next, {}, {});
+    Vector squares(pressure);
+    squares.scale(pressure);
+    return 0.5 * compressibility * (squares * space.volumes) +
+           0.5 / density * (impulse * force);
+  }
+
+
+  double
+  Reservoir::work_ahead(const Vector &velocity) const
+  {
+    Vector wall(flux);
+    wall = 0.;
+    gather_flux(wall, velocity);
+    double sum = 0.;
+    for (const WallNode &node : wall_nodes)
+      sum +=
+        pressure.local_element(node.water) * wall.local_element(node.water);
+    return 0.5 * time_step *
+           Utilities::MPI::sum(sum, space.grid.communicator());
+  }
+
+
+  void
+  Reservoir::write(const std::string &file, const double time) const
+  {
+    Vector full = space.create_ghosted_vector();
+    full.copy_locally_owned_data_from(pressure);
+    full *= 1e-6;
+    full.update_ghost_values();
+    DataOut<3> data_out;
+    data_out.attach_dof_handler(space.dof_handler);
+    data_out.add_data_vector(full, "pressure_MPa");
+    DataOutBase::VtkFlags flags;
+    flags.time              = time;
+    flags.compression_level = DataOutBase::VtkFlags::best_speed;
+    data_out.set_flags(flags);
+    data_out.build_patches(space.mapping, space.fe.degree);
+    data_out.write_vtu_in_parallel(file, space.grid.communicator());
+  }
+} // namespace Voussoir

@@ -1,0 +1,53 @@
+#include <voussoir/loads/reservoir_parameters.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  void
+  ReservoirParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter(
+      "Model",
+      model,
+      "How the water moves with the dam. Added mass: incompressible, for low "
+      "dams or first estimates. Compressible: cells of water in which sound "
+      "travels; it matters where the dam's frequencies come near to sound "
+      "speed / (4 depth), 1.25 Hz at 289 m.",
+      Patterns::Selection("none|added mass|compressible"));
+    prm.add_parameter("Density",
+                      density,
+                      "Density of the water [kg/m3].",
+                      Patterns::Double(1.));
+    prm.enter_subsection("added mass");
+    added_mass.declare(prm);
+    prm.leave_subsection();
+    prm.add_parameter("Cell sets",
+                      cell_sets,
+                      "Compressible: the cell sets of the water.");
+    prm.add_parameter("Sound speed",
+                      sound_speed,
+                      "Compressible: speed of sound in the water [m/s].",
+                      Patterns::Double(1.));
+    prm.add_parameter("Free surface",
+                      surface,
+                      "Compressible: face sets of the water's surface, without "
+                      "pressure.");
+    prm.add_parameter(
+      "Radiating end",
+      end,
+      "Compressible: face sets of the water through which sound "
+      "leaves upstream; other ends reflect.");
+    prm.add_parameter("Dam",
+                      dam,
+                      "Compressible: face sets of the dam. All other walls of "
+                      "the water are its bottom.");
+    prm.add_parameter("Bottom reflection coefficient",
+                      bottom_reflection,
+                      "Compressible: pressure of a wave thrown back by the "
+                      "sediment at the bottom over that of the wave, at normal "
+                      "incidence; 1 without sediment. The rock below takes its "
+                      "share by moving [-].",
+                      Patterns::Double(0., 1.));
+  }
+} // namespace Voussoir

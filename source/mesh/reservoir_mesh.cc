@@ -1,0 +1,137 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/text.h>
+#include <voussoir/mesh/mesh_geometry.h>
+#include <voussoir/mesh/reservoir_mesh.h>
+
+#include <deal.II/base/numbers.h>
+
+#include <set>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    constexpr unsigned int none = numbers::invalid_unsigned_int;
+
+
+    std::vector<bool>
+    water_cells(const CoarseMesh               &mesh,
+                const std::vector<std::string> &cell_sets,
+                const std::string              &place)
+    {
+      std::vector<std::string> known;
+      for (const auto &item : mesh.cell_sets)
+        known.push_back(item.first);
+      std::vector<bool> is_water(mesh.cells.size());
+      for (const std::string &name : cell_sets)
+        {
+          const auto set = mesh.cell_sets.find(name);
+          if (set == mesh.cell_sets.end())
+            throw UserError(place + " names the cell set \"" + name +
+                            "\", which the mesh does not have" +
+                            known_names(name, known) + ".");
+          for (const unsigned int cell : set->second)
+            is_water[cell] = true;
+        }
+      return is_water;
+    }
+
+
+    // The two sides of each face between water and the rest.
+    std::vector<std::array<CoarseMesh::Face, 2>>
+    shared_faces(const CoarseMesh &mesh, const std::vector<bool> &is_water)
+    {
+      std::vector<std::array<CoarseMesh::Face, 2>> result;
+      const std::vector<SortedFace>                faces = sorted_faces(mesh);
+      for (std::size_t i = 1; i < faces.size(); ++i)
+        if (faces[i].vertices == faces[i - 1].vertices &&
+            is_water[faces[i].face.cell] != is_water[faces[i - 1].face.cell])
+          result.push_back({{faces[i - 1].face, faces[i].face}});
+      return result;
+    }
+
+
+    // The cells of @p mesh for which @p kept is true, with their sets.
+    CoarseMesh
+    part(const CoarseMesh &mesh, const std::vector<bool> &kept)
+    {
+      CoarseMesh                result;
+      std::vector<unsigned int> vertex_number(mesh.vertices.size(), none),
+        cell_number(mesh.cells.size(), none);
+      for (unsigned int c = 0; c < mesh.cells.size(); ++c)
+        if (kept[c])
+          {
+            cell_number[c] = result.cells.size();
+            result.cells.push_back(mesh.cells[c]);
+            for (unsigned int &vertex : result.cells.back())
+              {
+                if (vertex_number[vertex] == none)
+                  {
+                    vertex_number[vertex] = result.vertices.size();
+                    result.vertices.push_back(mesh.vertices[vertex]);
+                  }
+                vertex = vertex_number[vertex];
+              }
+          }
+      for (const auto &[name, cells] : mesh.cell_sets)
+        for (const unsigned int cell : cells)
+          if (kept[cell])
+            result.cell_sets[name].push_back(cell_number[cell]);
+      for (const auto &[name, faces] : mesh.face_sets)
+        for (const CoarseMesh::Face &face : faces)
+          if (kept[face.cell])
+            result.face_sets[name].push_back(
+              {cell_number[face.cell], face.face});
+      for (const auto &[name, vertices] : mesh.vertex_sets)
+        for (const unsigned int vertex : vertices)
+          if (vertex_number[vertex] != none)
+            result.vertex_sets[name].push_back(vertex_number[vertex]);
+      return result;
+    }
+  } // namespace
+
+
+  CoarseMesh
+  split_off_reservoir(CoarseMesh                     &mesh,
+                      const std::vector<std::string> &cell_sets,
+                      const std::string              &place)
+  {
+    std::vector<bool> is_water = water_cells(mesh, cell_sets, place);
+    const auto        shared   = shared_faces(mesh, is_water);
+    if (shared.empty())
+      throw UserError(place + ": the water \"" + join(cell_sets, ", ") +
+                      "\" shares no face with the rest of the mesh; mesh water "
+                      "and dam together, so that they have common nodes.");
+
+    // each shared face, from both its sides
+    std::map<std::pair<unsigned int, unsigned int>, CoarseMesh::Face>
+      other_side;
+    for (const auto &[a, b] : shared)
+      {
+        other_side[{a.cell, a.face}] = b;
+        other_side[{b.cell, b.face}] = a;
+      }
+    for (auto &item : mesh.face_sets)
+      {
+        std::set<std::pair<unsigned int, unsigned int>> members;
+        for (const CoarseMesh::Face &face : item.second)
+          members.emplace(face.cell, face.face);
+        const std::vector<CoarseMesh::Face> named = item.second;
+        for (const CoarseMesh::Face &face : named)
+          if (const auto other = other_side.find({face.cell, face.face});
+              other != other_side.end() &&
+              members.emplace(other->second.cell, other->second.face).second)
+            item.second.push_back(other->second);
+      }
+    for (const auto &sides : shared)
+      for (const CoarseMesh::Face &face : sides)
+        mesh.face_sets[wet_wall].push_back(face);
+
+    CoarseMesh water = part(mesh, is_water);
+    is_water.flip();
+    mesh = part(mesh, is_water);
+    return water;
+  }
+} // namespace Voussoir

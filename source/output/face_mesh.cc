@@ -1,0 +1,297 @@
+#include <voussoir/base/error.h>
+#include <voussoir/output/face_mesh.h>
+
+#include <deal.II/base/data_out_base.h>
+#include <deal.II/fe/fe_tools.h>
+
+#include <set>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Patches of a surface, as deal.II's writers want them. */
+    class SurfaceOutput : public DataOutInterface<2, 3>
+    {
+    public:
+      SurfaceOutput(std::vector<DataOutBase::Patch<2, 3>> &&patches,
+                    const std::vector<std::string>         &names)
+        : patches(std::move(patches))
+        , names(names)
+      {}
+
+    private:
+      const std::vector<DataOutBase::Patch<2, 3>> &
+      get_patches() const override
+      {
+        return patches;
+      }
+
+      std::vector<std::string>
+      get_dataset_names() const override
+      {
+        return names;
+      }
+
+      const std::vector<DataOutBase::Patch<2, 3>> patches;
+      const std::vector<std::string>              names;
+    };
+  } // namespace
+
+
+  FaceMesh::FaceMesh(const ObservedModel            &model,
+                     const std::vector<std::string> &sets,
+                     const std::string              &place)
+    : folder(model.folder)
+    , discretization(model.discretization)
+  {
+    if (sets.empty())
+      throw UserError(place + " is empty; name the faces to look at.");
+    const auto        &scalar   = discretization.fe.base_element(0);
+    const unsigned int per_edge = discretization.degree + 1;
+    const auto         hierarchic =
+      FETools::lexicographic_to_hierarchic_numbering<3>(discretization.degree);
+
+    std::map<std::pair<unsigned int, types::global_dof_index>, unsigned int>
+                                     nodes;
+    std::vector<StressPoints::Place> places;
+    std::vector<double>              normals_of_places;
+    for (unsigned int s = 0; s < sets.size(); ++s)
+      {
+        discretization.grid.check_face_set(sets[s], place);
+        discretization.grid.for_each_face(
+          sets[s], [&](const auto &grid_cell, const unsigned int face) {
+            const auto         cell       = discretization.dof_cell(grid_cell);
+            const auto         cell_nodes = discretization.cell_nodes(cell);
+            const unsigned int across     = face / 2;
+            set_of_face.push_back(s);
+            for (unsigned int i = 0; i < per_edge * per_edge; ++i)
+              {
+                // the two directions along the face, the lower one faster
+                std::array<unsigned int, 3> at;
+                at[across]              = face % 2 * discretization.degree;
+                at[across == 0 ? 1 : 0] = i % per_edge;
+                at[across == 2 ? 1 : 2] = i / per_edge;
+                const unsigned int j =
+                  hierarchic[at[0] + per_edge * (at[1] + per_edge * at[2])];
+
+                const auto [item, is_new] =
+                  nodes.emplace(std::make_pair(s, cell_nodes[j]), nodes.size());
+                const Point<3> unit = scalar.unit_support_point(j);
+                if (is_new)
+                  positions.push_back(
+                    discretization.mapping.transform_unit_to_real_cell(
+                      grid_cell, unit));
+                places.push_back({cell, unit});
+                node_of_place.push_back(item->second);
+                place_keys.push_back(
+                  {s, Grid::global_key(cell) * 128 + j, item->second});
+
+                Tensor<1, 3> outward =
+                  inverse_jacobian(cell, unit)[across] * (face % 2 * 2. - 1.);
+                outward /= outward.norm();
+                normals_of_places.push_back(1.);
+                for (unsigned int d = 0; d < 3; ++d)
+                  normals_of_places.push_back(outward[d]);
+              }
+          });
+      }
+    set_and_node.resize(nodes.size());
+    for (const auto &[key, node] : nodes)
+      set_and_node[node] = key;
+    points = std::make_unique<StressPoints>(model, places);
+    number_nodes(nodes, sets.size());
+
+    Vector sums = make_vector(4);
+    sum_at_nodes(sums, 4, normals_of_places);
+    for (unsigned int node = 0; node < nodes.size(); ++node)
+      {
+        const unsigned int entry = 4 * entries[node];
+        n_places_of_node.push_back(std::lround(sums.local_element(entry)));
+        normals.push_back(Tensor<1, 3>({sums.local_element(entry + 1),
+                                        sums.local_element(entry + 2),
+                                        sums.local_element(entry + 3)}));
+        normals.back() /= normals.back().norm();
+      }
+    mean_stress.resize(nodes.size());
+    stress_sums = make_vector(6);
+  }
+
+
+  void
+  FaceMesh::number_nodes(
+    const std::map<std::pair<unsigned int, types::global_dof_index>,
+                   unsigned int> &nodes,
+    const unsigned int            n_sets)
+  {
+    // the owner of a node numbers it, in each set it lies in
+    std::vector<std::pair<types::global_dof_index, unsigned int>> records;
+    for (const auto &item : nodes)
+      records.emplace_back(item.first.second, item.first.first);
+    std::set<std::pair<unsigned int, unsigned int>> owned; // set and node
+    for (const auto &[node, set] : discretization.send_to_owners(records))
+      owned.insert({set, node});
+    n_owned     = owned.size();
+    n_numbers   = 0;
+    first_owned = 0;
+    const auto counts =
+      Utilities::MPI::all_gather(discretization.grid.communicator(), n_owned);
+    for (unsigned int rank = 0; rank < counts.size(); ++rank)
+      {
+        if (rank < Utilities::MPI::this_mpi_process(
+                     discretization.grid.communicator()))
+          first_owned += counts[rank];
+        n_numbers += counts[rank];
+      }
+
+    numbers.resize(nodes.size());
+    Vector known(discretization.owned_dofs,
+                 discretization.relevant_dofs,
+                 discretization.grid.communicator());
+    auto   next = first_owned;
+    for (unsigned int set = 0; set < n_sets; ++set)
+      {
+        known.zero_out_ghost_values();
+        for (const auto &item : owned)
+          if (item.first == set)
+            known.local_element(3 * item.second) = next++;
+        known.update_ghost_values();
+        for (const auto &[key, node] : nodes)
+          if (key.first == set)
+            numbers[node] = std::llround(known(3 * key.second));
+      }
+    const Vector one_each = make_vector(1);
+    for (const auto number : numbers)
+      entries.push_back(one_each.get_partitioner()->global_to_local(number));
+  }
+
+
+  Vector
+  FaceMesh::make_vector(const unsigned int width) const
+  {
+    IndexSet owned(width * n_numbers), held(width * n_numbers);
+    owned.add_range(width * first_owned, width * (first_owned + n_owned));
+    for (const auto number : numbers)
+      held.add_range(width * number, width * (number + 1));
+    return Vector(owned, held, communicator());
+  }
+
+
+  void
+  FaceMesh::sum_at_nodes(Vector                    &sums,
+                         const unsigned int         width,
+                         const std::vector<double> &values_of_places) const
+  {
+    sums.zero_out_ghost_values();
+    sums = 0.;
+    for (unsigned int i = 0; i < node_of_place.size(); ++i)
+      for (unsigned int c = 0; c < width; ++c)
+        sums.local_element(width * entries[node_of_place[i]] + c) +=
+          values_of_places[width * i + c];
+    sums.compress(VectorOperation::add);
+    sums.update_ghost_values();
+  }
+
+
+  MPI_Comm
+  FaceMesh::communicator() const
+  {
+    return discretization.grid.communicator();
+  }
+
+
+  unsigned int
+  FaceMesh::n_nodes() const
+  {
+    return numbers.size();
+  }
+
+
+  const Tensor<1, 3> &
+  FaceMesh::normal(const unsigned int node) const
+  {
+    return normals[node];
+  }
+
+
+  const std::vector<FaceMesh::Key> &
+  FaceMesh::keys() const
+  {
+    return place_keys;
+  }
+
+
+  const std::vector<FaceMesh::SetAndNode> &
+  FaceMesh::sets_and_nodes() const
+  {
+    return set_and_node;
+  }
+
+
+  const std::vector<SymmetricTensor<2, 3>> &
+  FaceMesh::stress(const Vector &displacement)
+  {
+    std::vector<double> components;
+    components.reserve(6 * node_of_place.size());
+    for (const auto &tensor : points->evaluate(displacement))
+      for (unsigned int c = 0; c < 6; ++c)
+        components.push_back(tensor.access_raw_entry(c));
+    sum_at_nodes(stress_sums, 6, components);
+    for (unsigned int node = 0; node < mean_stress.size(); ++node)
+      for (unsigned int c = 0; c < 6; ++c)
+        mean_stress[node].access_raw_entry(c) =
+          stress_sums.local_element(6 * entries[node] + c) /
+          n_places_of_node[node];
+    return mean_stress;
+  }
+
+
+  std::string
+  FaceMesh::write(const std::vector<std::string> &names,
+                  const std::vector<double>      &values,
+                  const std::string              &name,
+                  const double                    time) const
+  {
+    const unsigned int per_edge = discretization.degree + 1;
+    const unsigned int per_face = per_edge * per_edge;
+    const unsigned int width    = names.size();
+
+    std::vector<DataOutBase::Patch<2, 3>> patches(set_of_face.size());
+    for (unsigned int f = 0; f < patches.size(); ++f)
+      {
+        auto &patch                = patches[f];
+        patch.reference_cell       = ReferenceCells::Quadrilateral;
+        patch.patch_index          = f;
+        patch.n_subdivisions       = discretization.degree;
+        patch.points_are_available = true;
+        patch.data.reinit(width + 1 + 3, per_face);
+        for (unsigned int i = 0; i < per_face; ++i)
+          {
+            const unsigned int node = node_of_place[per_face * f + i];
+            for (unsigned int c = 0; c < width; ++c)
+              patch.data(c, i) = values[width * node + c];
+            patch.data(width, i) = set_of_face[f];
+            for (unsigned int d = 0; d < 3; ++d)
+              patch.data(width + 1 + d, i) = positions[node][d];
+          }
+        const std::array<unsigned int, 4> corners{
+          {0, per_edge - 1, per_face - per_edge, per_face - 1}};
+        for (unsigned int v = 0; v < 4; ++v)
+          patch.vertices[v] =
+            positions[node_of_place[per_face * f + corners[v]]];
+      }
+    std::vector<std::string> all_names = names;
+    all_names.push_back("face_set");
+    SurfaceOutput         output(std::move(patches), all_names);
+    DataOutBase::VtkFlags flags;
+    flags.time              = time;
+    flags.compression_level = DataOutBase::VtkFlags::best_speed;
+    output.set_flags(flags);
+    const std::string file = name + ".vtu";
+    output.write_vtu_in_parallel(folder + "/" + file,
+                                 discretization.grid.communicator());
+    return file;
+  }
+} // namespace Voussoir

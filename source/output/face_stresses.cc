@@ -1,0 +1,198 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/parameter_file.h>
+#include <voussoir/output/face_mesh.h>
+#include <voussoir/output/picture_series.h>
+#include <voussoir/output/principal_stress.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    const std::string place =
+      "\"Face sets\" in section \"Output/face stresses\"";
+
+    /** Stresses on the faces of the dam, in the directions of its arches and
+     *  cantilevers, at chosen times and as envelopes. */
+    class FaceStresses : public Observer
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter(
+          "Face sets",
+          sets,
+          "Faces to look at. On them arch stress is along the horizontal, "
+          "cantilever stress along the steepest line; tension is positive "
+          "[MPa].");
+        prm.add_parameter("Envelope interval",
+                          envelope_interval,
+                          "Time between two looks for the envelopes [s].",
+                          Patterns::Double(1e-6));
+        pictures.declare_parameters(prm);
+      }
+
+      void
+      check(const ObservedModel &model) const override
+      {
+        pictures.check(model);
+        const FaceMesh mesh(model, split_list(sets), place);
+        int            level = 0;
+        for (unsigned int node = 0; node < mesh.n_nodes(); ++node)
+          if (std::abs(mesh.normal(node)[2]) > 1. - 1e-6)
+            level = 1;
+        if (Utilities::MPI::max(level,
+                                model.discretization.grid.communicator()) == 1)
+          throw UserError(place +
+                          " names faces that are level somewhere, where arch "
+                          "and cantilever have no direction; name the upstream "
+                          "and downstream faces of the dam.");
+      }
+
+      void
+      prepare(const ObservedModel &model,
+              const double         start_time,
+              const bool           restarted) override
+      {
+        pictures.prepare(model, start_time, restarted);
+        schedule = Schedule(envelope_interval, model.time_step);
+        mesh     = std::make_unique<FaceMesh>(model, split_list(sets), place);
+        envelopes.assign(6 * mesh->n_nodes(), 0.);
+        for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
+          {
+            const Tensor<1, 3> n = mesh->normal(node);
+            Tensor<1, 3>       arch({-n[1], n[0], 0.}); // z x n
+            arch /= arch.norm();
+            arch_directions.push_back(arch);
+            cantilever_directions.push_back(cross_product_3d(n, arch));
+            for (unsigned int c = 0; c < 6; ++c)
+              envelopes[6 * node + c] =
+                (is_largest(c) ? -1. : 1.) * std::numeric_limits<double>::max();
+          }
+      }
+
+      void
+      observe(const State &state) override
+      {
+        const bool picture = pictures.due(state);
+        if (!picture && !schedule.due(state.step))
+          return;
+        const std::vector<double> now = stresses(state.displacement);
+        if (schedule.due(state.step))
+          for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
+            for (unsigned int c = 0; c < 6; ++c)
+              {
+                double      &envelope = envelopes[6 * node + c];
+                const double value    = now[4 * node + (c < 4 ? c / 2 : c - 2)];
+                envelope = is_largest(c) ? std::max(envelope, value) :
+                                           std::min(envelope, value);
+              }
+        if (picture)
+          pictures.add(state.time,
+                       mesh->write({"arch_stress_MPa",
+                                    "cantilever_stress_MPa",
+                                    "largest_principal_stress_MPa",
+                                    "smallest_principal_stress_MPa"},
+                                   now,
+                                   pictures.next_name(state),
+                                   state.time));
+      }
+
+      void
+      finish(const State &state, nlohmann::json &summary) override
+      {
+        mesh->write({"largest_arch_stress_MPa",
+                     "smallest_arch_stress_MPa",
+                     "largest_cantilever_stress_MPa",
+                     "smallest_cantilever_stress_MPa",
+                     "largest_principal_stress_MPa",
+                     "smallest_principal_stress_MPa"},
+                    envelopes,
+                    "face_stress_envelopes",
+                    state.time);
+        static const std::array<std::string, 6> names{
+          {"largest arch stress [MPa]",
+           "smallest arch stress [MPa]",
+           "largest cantilever stress [MPa]",
+           "smallest cantilever stress [MPa]",
+           "largest principal stress [MPa]",
+           "smallest principal stress [MPa]"}};
+        for (unsigned int c = 0; c < 6; ++c)
+          {
+            double extreme = -std::numeric_limits<double>::max();
+            for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
+              extreme =
+                std::max(extreme,
+                         (is_largest(c) ? 1. : -1.) * envelopes[6 * node + c]);
+            extreme = Utilities::MPI::max(extreme, mesh->communicator());
+            summary["face stresses"][names[c]] =
+              is_largest(c) ? extreme : -extreme;
+          }
+      }
+
+      std::map<std::string, KeyedValues>
+      checkpoint_values() override
+      {
+        const auto                         names = split_list(sets);
+        std::map<std::string, KeyedValues> values;
+        for (const std::string &name : names)
+          values[name].width = 6;
+        for (const auto &[set, key, node] : mesh->keys())
+          values[names[set]].items.emplace_back(key, &envelopes[6 * node]);
+        return values;
+      }
+
+    private:
+      /** Of the six envelopes every other one, from the first, is a largest
+       *  value. */
+      static bool
+      is_largest(const unsigned int c)
+      {
+        return c % 2 == 0;
+      }
+
+      /** Arch, cantilever, largest and smallest principal stress of each node
+       *  [MPa]. */
+      std::vector<double>
+      stresses(const Vector &displacement)
+      {
+        const auto         &tensors = mesh->stress(displacement);
+        std::vector<double> result;
+        result.reserve(4 * tensors.size());
+        for (unsigned int node = 0; node < tensors.size(); ++node)
+          {
+            const auto along = [&](const Tensor<1, 3> &direction) {
+              return 1e-6 * (direction * (tensors[node] * direction));
+            };
+            const auto [largest, smallest] =
+              largest_and_smallest_principal(tensors[node]);
+            for (const double value : {along(arch_directions[node]),
+                                       along(cantilever_directions[node]),
+                                       1e-6 * largest,
+                                       1e-6 * smallest})
+              result.push_back(value);
+          }
+        return result;
+      }
+
+      std::string   sets              = "upstream face, downstream face";
+      double        envelope_interval = 0.01;
+      PictureSeries pictures{"face_stresses", "Output/face stresses"};
+
+      Schedule                  schedule;
+      std::unique_ptr<FaceMesh> mesh;
+      std::vector<Tensor<1, 3>> arch_directions, cantilever_directions;
+
+      // of each node: largest and smallest arch stress, cantilever stress,
+      // largest principal stress at its largest, smallest at its smallest [MPa]
+      std::vector<double> envelopes;
+    };
+
+    const Registry<Observer>::Add<FaceStresses> registered(
+      "face stresses",
+      "Arch, cantilever and principal stresses on the faces of the dam: "
+      "pictures in face_stresses.pvd, extremes in face_stress_envelopes.vtu.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,115 @@
+#include <voussoir/base/error.h>
+#include <voussoir/output/picture_series.h>
+
+#include <deal.II/base/data_out_base.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  PictureSeries::PictureSeries(const std::string &name,
+                               const std::string &section)
+    : name(name)
+    , section(section)
+  {}
+
+
+  void
+  PictureSeries::declare_parameters(ParameterHandler &prm)
+  {
+    prm.add_parameter("Interval",
+                      interval,
+                      "Time between two pictures [s]; 0 for none but those "
+                      "under \"Times\".",
+                      Patterns::Double(0.));
+    prm.add_parameter("Times",
+                      times,
+                      "Further times of pictures [s].",
+                      Patterns::List(Patterns::Double(0.)));
+  }
+
+
+  void
+  PictureSeries::check(const ObservedModel &model) const
+  {
+    for (const double time : times)
+      if (time > model.end_time)
+        {
+          std::ostringstream text;
+          text << "\"Times\" in section \"" << section << "\" names " << time
+               << " s, which lies after the \"End time\" of section "
+                  "\"Time\", "
+               << model.end_time << " s; leave it out or compute longer.";
+          throw UserError(text.str());
+        }
+  }
+
+
+  void
+  PictureSeries::prepare(const ObservedModel &model,
+                         const double         start_time,
+                         const bool           restarted)
+  {
+    folder       = model.folder;
+    time_step    = model.time_step;
+    communicator = model.discretization.grid.communicator();
+    if (!restarted)
+      return;
+    std::ifstream list(folder + "/" + name + ".txt");
+    double        time;
+    std::string   file;
+    while (list >> time >> file)
+      if (time < start_time - 0.5 * time_step)
+        pictures.emplace_back(time, file);
+  }
+
+
+  bool
+  PictureSeries::due(const State &state) const
+  {
+    bool result =
+      interval > 0. && Schedule(interval, time_step).due(state.step);
+    for (const double time : times)
+      result = result || std::abs(state.time - time) <= 0.5 * time_step;
+    return result;
+  }
+
+
+  std::string
+  PictureSeries::next_name(const State &state) const
+  {
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      std::filesystem::create_directories(folder + "/" + name);
+    MPI_Barrier(communicator);
+    std::ostringstream text;
+    text << name << '/' << name << '-' << std::setw(8) << std::setfill('0')
+         << state.step;
+    return text.str();
+  }
+
+
+  void
+  PictureSeries::add(const double time, const std::string &file)
+  {
+    pictures.emplace_back(time, file);
+    if (Utilities::MPI::this_mpi_process(communicator) != 0)
+      return;
+    std::ofstream pvd(folder + "/" + name + ".pvd");
+    DataOutBase::write_pvd_record(pvd, pictures);
+    std::ofstream text(folder + "/" + name + ".txt");
+    text << std::setprecision(17);
+    for (const auto &picture : pictures)
+      text << picture.first << ' ' << picture.second << '\n';
+  }
+
+
+  std::size_t
+  PictureSeries::size() const
+  {
+    return pictures.size();
+  }
+} // namespace Voussoir

@@ -1,0 +1,130 @@
+#include <voussoir/base/mpi.h>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Newmark's block: a stiff block under its weight on a base that moves with
+     * A sin(wt), by choice pushed by a steady force along it, against the
+     * motion of a point mass with dry friction, and with cohesion that breaks.
+     */
+    class Newmark : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Push", push, "Steady acceleration [m/s2].");
+        prm.add_parameter("Friction", friction, "Coefficient.");
+        prm.add_parameter("Cohesion", cohesion, "Over mass per area [m/s2].");
+        prm.add_parameter("Cycles", cycles, "To compare.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto parameters = make_case(file);
+        const auto simulation = make_simulation(*parameters, communicator);
+        State     &state      = simulation->state;
+
+        double first_millimetre = 0., largest = 0.;
+        Mass   mass;
+        for (unsigned int cycle = 1; cycle <= cycles; ++cycle)
+          {
+            while (state.time < rest + cycle)
+              {
+                simulation->scheme.step(state);
+                const double now = slip(*simulation);
+                largest          = std::max(largest, std::abs(now));
+                if (first_millimetre == 0. && std::abs(now) > 1e-3)
+                  first_millimetre = state.time - rest;
+                advance(mass, state.time - rest);
+              }
+            const std::string name = "cycle " + std::to_string(cycle) + ": ";
+            if (cycle == 1)
+              verdicts.near("first millimetre of slip [s]",
+                            first_millimetre,
+                            mass.first_millimetre,
+                            0.005);
+            verdicts.near(name + "largest slip [mm]",
+                          1e3 * largest,
+                          1e3 * mass.largest,
+                          0.005);
+            verdicts.near(name + "slip at the end over the largest, plus one",
+                          1. + slip(*simulation) / mass.largest,
+                          1. + mass.x / mass.largest,
+                          0.005);
+          }
+        verdicts.below("penetration over cell size",
+                       simulation->contact->effort().penetration /
+                         simulation->contact->cell_size,
+                       1e-10);
+      }
+
+    private:
+      static constexpr double gravity = 9.81, amplitude = 0.5 * gravity,
+                              rest = 0.1; // before the shaking [s]
+
+      /** Slip of the block, mean over its base. */
+      static double
+      slip(const Simulation &simulation)
+      {
+        std::vector<double> sums(2);
+        for (const ContactPoint &point : simulation.contact->points())
+          {
+            sums[0] += point.area * (point.gap * point.frame)[0];
+            sums[1] += point.area;
+          }
+        sums = sum_over_ranks(sums, simulation.grid.communicator());
+        return sums[0] / sums[1];
+      }
+
+      /** A point mass on the plane. */
+      struct Mass
+      {
+        double t = 0., v = 0., x = 0., largest = 0., first_millimetre = 0.;
+        bool   broken = false;
+      };
+
+      /** Marches the mass in small steps. */
+      void
+      advance(Mass &mass, const double end) const
+      {
+        constexpr double dt = 2e-6, omega = 2. * numbers::PI;
+        for (; mass.t < end; mass.t += dt)
+          {
+            const double drive =
+              push - amplitude * std::sin(omega * (mass.t + 0.5 * dt));
+            const double limit =
+              friction * gravity + (mass.broken ? 0. : cohesion);
+            if (mass.v == 0. && std::abs(drive) <= limit)
+              continue;
+            mass.broken       = true;
+            const double sign = mass.v != 0. ? mass.v : drive;
+            double       next =
+              mass.v + dt * (drive - std::copysign(friction * gravity, sign));
+            if (mass.v * next < 0.)
+              next = 0.; // it stops within the step
+            mass.x += 0.5 * dt * (mass.v + next);
+            mass.v       = next;
+            mass.largest = std::max(mass.largest, std::abs(mass.x));
+            if (mass.first_millimetre == 0. && mass.largest > 1e-3)
+              mass.first_millimetre = mass.t;
+          }
+      }
+
+      double       push = 0., friction = 0.3, cohesion = 0.;
+      unsigned int cycles = 3;
+    };
+
+    const Registry<Check>::Add<Newmark>
+      registered("contact newmark", "A block that slides on a shaken plane.");
+  } // namespace
+} // namespace Voussoir

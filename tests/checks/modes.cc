@@ -1,0 +1,309 @@
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Largest entry of Phi^T M Phi - I and of Phi^T K Phi / omega^2 - I. */
+    std::pair<double, double>
+    orthogonality(const Simulation &simulation)
+    {
+      std::pair<double, double> error(0., 0.);
+      Vector force = simulation.discretization.create_vector(), momentum(force);
+      for (const Mode &a : simulation.modes.list)
+        {
+          simulation.internal_force.apply(force, a.shape);
+          momentum = a.shape;
+          momentum.scale(simulation.mass.mass);
+          const double omega = 2. * numbers::PI * a.frequency;
+          for (const Mode &b : simulation.modes.list)
+            {
+              const double size = std::sqrt(a.mass * b.mass);
+              const double unit = &a == &b ? 1. : 0.;
+              error.first =
+                std::max(error.first,
+                         std::abs(momentum * b.shape / size - unit));
+              error.second =
+                std::max(error.second,
+                         std::abs(force * b.shape / (size * omega * omega) -
+                                  unit));
+            }
+        }
+      return error;
+    }
+
+
+    /** Modes of a simulation that has been changed since it was made. */
+    Modes
+    compute_modes(const Simulation     &simulation,
+                  const Case           &parameters,
+                  const ModeParameters &mode_parameters)
+    {
+      std::vector<Material *> materials;
+      for (const auto &material : parameters.materials.objects)
+        materials.push_back(material.second.get());
+      Log log(simulation.grid.communicator(), true);
+      return find_modes({simulation.discretization,
+                         simulation.internal_force,
+                         parameters.material_names(),
+                         materials,
+                         [&](const Grid::Cell &cell) {
+                           return simulation.material_of(cell);
+                         },
+                         parameters.boundaries,
+                         simulation.terms},
+                        mode_parameters,
+                        log);
+    }
+
+
+    /** Natural frequencies against known ones, and the modes' properties. */
+    class NaturalModes : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Circular frequencies", expected, "[rad/s]");
+        prm.add_parameter("Tolerance", tolerance, "Relative.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto   parameters = make_case(file);
+        const auto   simulation = make_simulation(*parameters, communicator);
+        const Modes &modes      = simulation->modes;
+        double       residual   = 0.;
+        for (unsigned int j = 0; j < modes.list.size(); ++j)
+          {
+            if (j < expected.size())
+              verdicts.near("mode " + std::to_string(j + 1),
+                            2. * numbers::PI * modes.list[j].frequency,
+                            expected[j],
+                            tolerance,
+                            "rad/s");
+            residual = std::max(residual, modes.list[j].residual);
+          }
+        verdicts.below("largest residual",
+                       residual,
+                       parameters->modes.tolerance);
+        const auto [mass, stiffness] = orthogonality(*simulation);
+        verdicts.below("orthogonality in the mass", mass, 1e-8);
+        verdicts.below("orthogonality in the stiffness", stiffness, 1e-6);
+      }
+
+    private:
+      std::vector<double> expected;
+      double              tolerance = 0.01;
+    };
+
+    const Registry<Check>::Add<NaturalModes>
+      registered_modes("natural modes", "Against known frequencies.");
+
+
+    /**
+     * A rod along z, fixed below and free to move along itself only: modes and
+     * effective masses in closed form, also with water that weighs as much as
+     * the rod on its free end.
+     */
+    class RodModes : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Tolerance", tolerance, "Relative.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto   parameters = make_case(file);
+        const auto   simulation = make_simulation(*parameters, communicator);
+        const Modes &modes      = simulation->modes;
+        const double length     = 20.;
+        const auto   material   = simulation->materials[0]->elastic_constants();
+        const double base       = material.p_wave_speed() / length; // [rad/s]
+
+        // of the whole rod, held end included, as in the closed form
+        const double mass = simulation->mass.total[0];
+        double       sum  = 0.;
+        for (unsigned int j = 0; j < modes.list.size(); ++j)
+          {
+            const Mode  &mode  = modes.list[j];
+            const double k     = (j + 0.5) * numbers::PI;
+            const double share = mode.effective_mass[2] / mass;
+            sum += share;
+            if (j > 2)
+              continue;
+            const std::string name = "mode " + std::to_string(j + 1);
+            verdicts.near(name + " over c/L",
+                          2. * numbers::PI * mode.frequency / base,
+                          k,
+                          tolerance);
+            verdicts.near(name + ", effective mass",
+                          share,
+                          2. / (k * k),
+                          2. * tolerance);
+            verdicts.near(name + ", participation",
+                          std::abs(mode.participation[2]),
+                          2. / k,
+                          2. * tolerance);
+          }
+        verdicts.near("sum of the effective masses",
+                      sum,
+                      0.979736,
+                      tolerance); // sum of 2/k^2 of ten modes
+
+        std::vector<Mode> wet; // whole cross-sections move in these
+        for (const Mode &mode :
+             with_end_mass(*simulation, *parameters, mass).list)
+          if (mode.effective_mass[2] > 1e-6 * mass)
+            wet.push_back(mode);
+        const std::array<double, 3> roots{
+          {0.8603335890193798, 3.425618459481728, 6.437298179171947}};
+        for (unsigned int j = 0; j < 3; ++j) // k tan k = 1
+          verdicts.near("with added mass, mode " + std::to_string(j + 1) +
+                          " over c/L",
+                        2. * numbers::PI * wet.at(j).frequency / base,
+                        roots[j],
+                        tolerance);
+        // phi = sin(k z/L): (1 - cos k + sin k)^2 / (1/2 - sin 2k/4k + sin^2 k)
+        const double k = roots[0], s = std::sin(k), c = std::cos(k);
+        verdicts.near("with added mass, effective mass over that of the rod",
+                      wet[0].effective_mass[2] / mass,
+                      std::pow((1. - c) / k + s, 2) /
+                        (0.5 - s * c / (2. * k) + s * s),
+                      2. * tolerance);
+        ModeParameters without_water = parameters->modes;
+        without_water.water          = false;
+        const auto dry = compute_modes(*simulation, *parameters, without_water);
+        verdicts.near("without water, mode 1 over c/L",
+                      2. * numbers::PI * dry.list[0].frequency / base,
+                      0.5 * numbers::PI,
+                      tolerance);
+      }
+
+    private:
+      static Modes
+      with_end_mass(Simulation  &simulation,
+                    const Case  &parameters,
+                    const double mass)
+      {
+        // the nodes at the end carry the mass in the ratio of their own
+        const Discretization &discretization    = simulation.discretization;
+        double                sum               = 0.;
+        const auto            for_each_end_node = [&](const auto &visit) {
+          for (unsigned int node = 0; node < discretization.n_owned_nodes();
+               ++node)
+            if (discretization.node_positions[node][2] > 20. - 1e-9)
+              visit(node, simulation.mass.mass.local_element(3 * node + 2));
+        };
+        for_each_end_node(
+          [&](const unsigned int, const double m) { sum += m; });
+        sum = Utilities::MPI::sum(sum, discretization.grid.communicator());
+        for_each_end_node([&](const unsigned int node, const double m) {
+          const unsigned int slot = simulation.terms.add_node(node);
+          simulation.terms.added_mass[slot][2][2] = mass * m / sum;
+        });
+        return compute_modes(simulation, parameters, parameters.modes);
+      }
+
+      double tolerance = 0.001;
+    };
+
+    const Registry<Check>::Add<RodModes>
+      registered_rod("modes of a rod", "With and without added mass.");
+
+
+    /** Koyna's section on rock that is rigid, without mass, and with mass. */
+    class FoundationModes : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto with_rock = [&](const std::vector<std::string> &changes) {
+          const auto parameters = make_case(file.with(changes));
+          return make_simulation(*parameters, communicator)->modes;
+        };
+        const Modes without  = with_rock({}),
+                    held     = with_rock({"Modes/Held materials=rock"}),
+                    massless = with_rock({"Modes/Massless materials=rock"}),
+                    fixed    = with_rock({"Modes/Massless materials=rock",
+                                          "Boundaries/Fixed=base"});
+        verdicts.near("rigid rock, mode 1 of a fixed base",
+                      held.list[0].frequency,
+                      fixed.list[0].frequency,
+                      1e-6,
+                      "Hz");
+        verdicts.above("rigid rock over rock without mass, mode 1",
+                       held.list[0].frequency / massless.list[0].frequency,
+                       1.);
+        verdicts.above("rock without mass over rock with mass, mode 1",
+                       massless.list[0].frequency / without.list[0].frequency,
+                       1.);
+        verdicts.near("mass that moves on rock without mass",
+                      1e-6 * massless.moving_mass[1],
+                      1e-6 * dam_mass,
+                      1e-8,
+                      "kt");
+      }
+
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Mass", dam_mass, "Of the dam [kg].");
+      }
+
+    private:
+      double dam_mass = 0.;
+    };
+
+    const Registry<Check>::Add<FoundationModes>
+      registered_foundation("modes and foundation", "Rigid, massless, massed.");
+
+
+    /** Rayleigh damping has its ratio at the modes it is told. */
+    class DampingFromModes : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto parameters = make_case(file);
+        const auto simulation = make_simulation(*parameters, communicator);
+        for (const unsigned int mode : {1, 2, 3})
+          verdicts.near("ratio in mode " + std::to_string(mode),
+                        100. * simulation->damping.ratio(
+                                 simulation->modes.list[mode - 1].frequency),
+                        expected[mode - 1],
+                        1e-6,
+                        "%");
+      }
+
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Ratios", expected, "In modes 1, 2, 3 [%].");
+      }
+
+    private:
+      std::vector<double> expected;
+    };
+
+    const Registry<Check>::Add<DampingFromModes>
+      registered_damping("damping from modes", "Its ratio at two modes.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,220 @@
+#include <voussoir/output/observer.h>
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** The folder that the observers of these checks write to. */
+    ObservedModel
+    model_with_folder(const Simulation &simulation)
+    {
+      ObservedModel model = simulation.model;
+      model.folder        = "observed";
+      if (Utilities::MPI::this_mpi_process(simulation.grid.communicator()) == 0)
+        std::filesystem::create_directories(model.folder);
+      MPI_Barrier(simulation.grid.communicator());
+      return model;
+    }
+
+
+    /** The stress envelopes are the extremes over all looks of the principal
+     *  stresses, found here by deal.II's own means. */
+    class StressEnvelopes : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto parameters = make_case(file);
+        const auto simulation = make_simulation(*parameters, communicator);
+        const auto model      = model_with_folder(*simulation);
+        const auto observer =
+          Registry<Observer>::create("envelopes", "the check");
+        ParameterHandler prm;
+        observer->declare_parameters(prm);
+        prm.set("Stress interval", 1e-9);
+        prm.set("Stress in", "soil");
+        observer->prepare(model, 0., false);
+
+        const Discretization &discretization = simulation->discretization;
+        std::map<std::uint64_t, std::array<double, 2>> expected;
+        for (unsigned int look = 0; look < 3; ++look)
+          {
+            State state = simulation->state;
+            state.step  = look;
+            for (unsigned int i = 0; i < discretization.node_positions.size();
+                 ++i)
+              for (unsigned int d = 0; d < 3; ++d)
+                {
+                  const Point<3> &x = discretization.node_positions[i];
+                  state.displacement.local_element(3 * i + d) =
+                    1e-3 * std::sin((0.1 + 0.02 * look) * x[0] + 0.07 * x[1] -
+                                    0.05 * x[2] + 2. * d + look);
+                }
+            observer->observe(state);
+            reference(*simulation, state.displacement, expected);
+          }
+
+        double      difference = 0., size = 0.;
+        std::size_t n_cells = 0;
+        const auto  envelopes =
+          observer->checkpoint_values().at("principal stress");
+        for (const auto &[key, values] : envelopes.items)
+          for (unsigned int i = 0; i < 2; ++i)
+            {
+              size = std::max(size, std::abs(expected.at(key)[i]));
+              difference =
+                std::max(difference, std::abs(values[i] - expected.at(key)[i]));
+              n_cells += i;
+            }
+        verdicts.is_true("all cells of the set, and no others",
+                         Utilities::MPI::sum(n_cells, communicator) ==
+                           Utilities::MPI::sum(expected.size(), communicator));
+        verdicts.below("largest difference over the largest stress",
+                       Utilities::MPI::max(difference, communicator) /
+                         Utilities::MPI::max(size, communicator),
+                       1e-9);
+        nlohmann::json summary;
+        observer->finish(simulation->state, summary);
+        verdicts.is_true("envelopes.vtu is written",
+                         std::filesystem::file_size("observed/envelopes.vtu") >
+                           1000);
+      }
+
+    private:
+      static void
+      reference(const Simulation                               &simulation,
+                const Vector                                   &displacement,
+                std::map<std::uint64_t, std::array<double, 2>> &expected)
+      {
+        const Discretization &discretization = simulation.discretization;
+        Vector                full(discretization.owned_dofs,
+                    discretization.relevant_dofs,
+                    simulation.grid.communicator());
+        full.copy_locally_owned_data_from(displacement);
+        full.update_ghost_values();
+        discretization.hanging_nodes.distribute(full);
+        full.update_ghost_values();
+        FEValues<3>                        values(discretization.mapping,
+                           discretization.fe,
+                           QMidpoint<3>(),
+                           update_gradients);
+        std::vector<SymmetricTensor<2, 3>> strain(1);
+        for (const auto &cell :
+             discretization.dof_handler.active_cell_iterators())
+          if (cell->is_locally_owned() &&
+              simulation.grid.in_cell_set(cell, "soil"))
+            {
+              values.reinit(cell);
+              values[FEValuesExtractors::Vector(0)]
+                .get_function_symmetric_gradients(full, strain);
+              const auto principal = eigenvalues(
+                simulation.materials[simulation.material_of(cell)]->stress(
+                  strain[0]));
+              auto &extremes =
+                expected.insert({Grid::global_key(cell), {{-1e300, 1e300}}})
+                  .first->second;
+              extremes[0] = std::max(extremes[0], principal[0]);
+              extremes[1] = std::min(extremes[1], principal[2]);
+            }
+      }
+    };
+
+    const Registry<Check>::Add<StressEnvelopes>
+      registered("stress envelopes", "Envelopes of principal stress.");
+
+
+    /** A sine of constant amplitude: at its own period the oscillator ends up
+     *  at 1/(2 xi) times the amplitude. */
+    class Spectrum : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto    parameters = make_case(file);
+        const auto    simulation = make_simulation(*parameters, communicator);
+        ObservedModel model      = model_with_folder(*simulation);
+        model.time_step          = 0.005;
+        const auto observer =
+          Registry<Observer>::create("response spectra", "the check");
+        ParameterHandler prm;
+        observer->declare_parameters(prm);
+        prm.set("Points", "base: 5 5 0; top: 5 5 10");
+        prm.set("Reference", "base");
+        prm.set("Components", "x");
+        prm.set("Shortest period", 0.02);
+        prm.set("Longest period", 1.);
+        prm.set("Number of periods", 3L);
+        observer->check(model);
+        observer->prepare(model, 0., false);
+
+        // a = sin(w t) m/s2 at the base, three times that at the top
+        const double omega = 2. * numbers::PI, dt = model.time_step;
+        const auto   u = [&](const double t, const double z) {
+          return -(1. + 0.2 * z) * std::sin(omega * t) / (omega * omega);
+        };
+        State       state     = simulation->state;
+        const auto &positions = simulation->discretization.node_positions;
+        for (state.step = 0; state.step <= 8001; ++state.step)
+          {
+            state.time = state.step * dt;
+            for (unsigned int i = 0; i < positions.size(); ++i)
+              {
+                const double now  = u(state.time, positions[i][2]),
+                             last = u(state.time - dt, positions[i][2]);
+                state.displacement.local_element(3 * i) = now;
+                state.velocity.local_element(3 * i)     = (now - last) / dt;
+              }
+            observer->observe(state);
+          }
+        nlohmann::json summary;
+        observer->finish(state, summary);
+        const auto &base = summary["response spectra"]["base"]["x"];
+        const auto &top  = summary["response spectra"]["top"]["x"];
+        verdicts.near("peak acceleration [m/s2]",
+                      base.at("peak acceleration [m/s2]"),
+                      1.,
+                      1e-3);
+        verdicts.near("spectral value at resonance [m/s2]",
+                      base.at("largest spectral value [m/s2]"),
+                      10.,
+                      1e-3);
+        verdicts.near("its period [s]", base.at("at period [s]"), 1., 1e-12);
+        verdicts.near("amplification from base to top",
+                      top.at("amplification of the peak"),
+                      3.,
+                      1e-9);
+        // a stiff oscillator follows the ground
+        if (Utilities::MPI::this_mpi_process(communicator) == 0)
+          {
+            std::ifstream in("observed/response_spectra.csv");
+            std::string   heading;
+            double        period, value;
+            char          comma;
+            std::getline(in, heading);
+            in >> period >> comma >> value;
+            verdicts.is_true("heading: " + heading, true);
+            verdicts.near("spectral value at 0.02 s [m/s2]", value, 1., 1e-3);
+          }
+      }
+    };
+
+    const Registry<Check>::Add<Spectrum>
+      registered_spectrum("recorded spectrum", "Response spectrum of a sine.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,114 @@
+#include <voussoir/fem/stable_step.h>
+#include <voussoir/time/central_difference.h>
+
+#include "tank.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * An elastic dam and its water exchange energy and lose none, up to the
+     * stable step of the two together.
+     */
+    class ReservoirCoupling : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto          parameters = make_case(file);
+        Tank                tank(*parameters, communicator);
+        const auto          materials = parameters->material_list();
+        const LumpedMass    mass(tank.discretization,
+                              {materials[0]->density},
+                              {0.},
+                              [](const Grid::Cell &) { return 0U; });
+        const InternalForce internal_force(tank.discretization, {materials[0]});
+
+        StepLimits limits;
+        limits.stiffening   = [](const double) { return 0.; };
+        limits.add_diagonal = [](Vector &, const Vector &, const double) {};
+        const double solid =
+          stable_step(tank.discretization, internal_force, mass, limits);
+        limits.add_diagonal =
+          [&](Vector &force, const Vector &displacement, const double dt) {
+            tank.reservoir.add_coupling(force, displacement, dt);
+          };
+        const double together = std::min(
+          0.95 * tank.reservoir.stable_step(),
+          stable_step(tank.discretization, internal_force, mass, limits));
+        verdicts.above("stable step with water over that of the solid",
+                       together / solid,
+                       0.8);
+
+        const Damping      damping(parameters->damping);
+        const InitialState initial_state;
+        CentralDifference  scheme(
+          tank.discretization,
+          internal_force,
+          mass,
+          damping,
+          tank.terms,
+          initial_state,
+          {},
+          [&](const double) {
+            std::fill(tank.terms.forces.begin(),
+                      tank.terms.forces.end(),
+                      Tensor<1, 3>());
+            tank.reservoir.add_forces(tank.terms);
+          },
+          [&](const State &now) {
+            tank.reservoir.advance(now.velocity, Tensor<1, 3>());
+          },
+          {},
+          false,
+          parameters->time.safety_factor * together);
+        tank.reservoir.prepare(scheme.time_step);
+
+        State state = scheme.state_at_rest();
+        for (unsigned int node = 0; node < tank.discretization.n_owned_nodes();
+             ++node)
+          for (unsigned int d = 0; d < 3; ++d)
+            if (mass.mass.local_element(3 * node + d) > 0.)
+              state.velocity.local_element(3 * node + d) =
+                std::sin(0.3 * tank.discretization.node_positions[node][2] + d);
+
+        double initial = 0., worst = 0., in_water = 0.;
+        for (unsigned int step = 0; step < 3000; ++step)
+          {
+            if (step % 100 == 0)
+              {
+                Vector before(state.displacement), momentum(state.velocity);
+                before.add(-scheme.time_step, state.velocity);
+                momentum.scale(mass.mass);
+                const double water =
+                  tank.reservoir.stored_energy() +
+                  Utilities::MPI::sum(tank.reservoir.loss, communicator);
+                const double total =
+                  0.5 * (momentum * state.velocity) +
+                  0.5 * internal_force.work(state.displacement, before) +
+                  water + tank.reservoir.work_ahead(state.velocity);
+                if (step == 0)
+                  initial = total;
+                worst    = std::max(worst, std::abs(total - initial));
+                in_water = std::max(in_water, water);
+              }
+            scheme.step(state);
+          }
+        verdicts.above("largest part of the energy in the water",
+                       in_water / initial,
+                       0.05);
+        verdicts.below("relative error of the sum", worst / initial, 1e-10);
+      }
+    };
+
+
+    const Registry<Check>::Add<ReservoirCoupling>
+      registered("reservoir coupling", "Energy of an elastic dam and water.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,49 @@
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** After the static stage nothing moves, unless an earthquake comes. */
+    class Rest : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        for (const std::string supports : {"fixed", "roller", "springs"})
+          {
+            const auto parameters =
+              make_case(file.with({"Static state/Supports=" + supports}));
+            const auto simulation = make_simulation(*parameters, communicator);
+            const Vector before   = simulation->state.displacement;
+            double       fastest  = 0.;
+            while (simulation->state.time < parameters->time.end_time)
+              {
+                simulation->scheme.step(simulation->state);
+                if (simulation->state.step % 10 == 0)
+                  fastest =
+                    std::max(fastest, simulation->state.velocity.linfty_norm());
+              }
+            Vector drift = simulation->state.displacement;
+            drift -= before;
+            const auto &stages = simulation->static_summary.at("stages");
+            verdicts.above(
+              "supports " + supports + ": largest static displacement [mm]",
+              1e3 * stages.back().at("largest displacement [m]").get<double>(),
+              1.);
+            verdicts.below("largest velocity [m/s]", fastest, 1e-6);
+            verdicts.below("drift [m]", drift.linfty_norm(), 1e-6);
+          }
+      }
+    };
+
+    const Registry<Check>::Add<Rest>
+      registered("rest", "A run without an earthquake after a static stage.");
+  } // namespace
+} // namespace Voussoir

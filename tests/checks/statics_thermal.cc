@@ -1,0 +1,219 @@
+#include <voussoir/base/mpi.h>
+#include <voussoir/fem/point_weights.h>
+
+#include <deal.II/fe/fe_values.h>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Bodies whose temperature changes by dT0 everywhere or by dT0 in a linear
+     * way from the back to the front face, at rest on planes of symmetry:
+     *
+     * - free bar: u = alpha dT0 x, no stress
+     * - clamped bar: no displacement along it, sigma_xx = -E alpha dT0
+     * - plate, y from its middle, thickness T, k = -alpha dT0 / T:
+     *     u = k (x y, (y^2 - x^2 - z^2)/2, z y), no stress
+     */
+    class Thermal : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Body",
+                          body,
+                          "Which.",
+                          Patterns::Selection("free bar|clamped bar|plate"));
+        prm.add_parameter("Change", change, "dT0 [K].");
+        prm.add_parameter("Tolerance", tolerance, "Relative.");
+        prm.add_parameter("Stress tolerance",
+                          stress_tolerance,
+                          "Largest stress over E alpha dT0.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto   parameters = make_case(file);
+        const auto   simulation = make_simulation(*parameters, communicator);
+        const auto  &material   = *simulation->materials[0];
+        const double E          = material.elastic_constants().young_modulus *
+                         material.static_factor,
+                     strain = material.expansion * change;
+
+        const auto error = displacement_error(*simulation, strain);
+        verdicts.below("displacement against closed form, over the largest",
+                       error,
+                       tolerance);
+        if (body == "plate")
+          verdicts.near("deflection over closed form",
+                        deflection(*simulation, strain),
+                        1.,
+                        tolerance);
+        const auto [smallest, largest] = stress_range(*simulation);
+        if (body == "clamped bar")
+          {
+            verdicts.near("smallest stress along the bar",
+                          1e-6 * smallest,
+                          -1e-6 * E * strain,
+                          tolerance,
+                          "MPa");
+            verdicts.near("largest stress along the bar",
+                          1e-6 * largest,
+                          -1e-6 * E * strain,
+                          tolerance,
+                          "MPa");
+          }
+        else
+          verdicts.below("largest stress over E alpha dT",
+                         std::max(-smallest, largest) / (E * strain),
+                         stress_tolerance);
+      }
+
+    private:
+      Tensor<1, 3>
+      exact(const Point<3> &x, const double strain) const
+      {
+        if (body == "clamped bar")
+          return {};
+        if (body == "free bar")
+          return strain * x;
+        // from the back face at y = 1 to the front face at y = -1
+        const double k = -0.5 * strain;
+        return Tensor<1, 3>(
+          {k * x[0] * x[1],
+           0.5 * k * (x[1] * x[1] - x[0] * x[0] - x[2] * x[2]),
+           k * x[2] * x[1]});
+      }
+
+      /** Largest difference over the largest displacement; of the clamped bar
+       *  only along it, over its free expansion. */
+      double
+      displacement_error(const Simulation &simulation,
+                         const double      strain) const
+      {
+        const Discretization &discretization = simulation.discretization;
+        const unsigned int    n              = discretization.n_owned_nodes();
+        // nothing holds the plate across: its mean is what the exact one has
+        std::vector<double> sums(2);
+        for (unsigned int node = 0; node < n; ++node)
+          {
+            sums[0] += displacement(simulation, node)[1] -
+                       exact(discretization.node_positions[node], strain)[1];
+            sums[1] += 1.;
+          }
+        sums = sum_over_ranks(sums, simulation.grid.communicator());
+        const double shift = body == "plate" ? sums[0] / sums[1] : 0.;
+
+        double difference = 0., size = 0.;
+        for (unsigned int node = 0; node < n; ++node)
+          {
+            const Point<3> &x = discretization.node_positions[node];
+            Tensor<1, 3>    u = displacement(simulation, node),
+                         e    = exact(x, strain);
+            u[1] -= shift;
+            if (body == "clamped bar")
+              {
+                difference = std::max(difference, std::abs(u[0]));
+                size       = std::max(size, strain * x.norm());
+              }
+            else
+              {
+                difference = std::max(difference, (u - e).norm());
+                size       = std::max(size, e.norm());
+              }
+          }
+        const MPI_Comm communicator = simulation.grid.communicator();
+        return Utilities::MPI::max(difference, communicator) /
+               Utilities::MPI::max(size, communicator);
+      }
+
+      /** Of the plate: displacement across at the far corner less that at the
+       *  middle, over the exact one. */
+      double
+      deflection(const Simulation &simulation, const double strain) const
+      {
+        const std::vector<NamedPoint> points{{"middle", Point<3>()},
+                                             {"corner",
+                                              Point<3>(10., 0., 10.)}};
+        const auto share = PointWeights(simulation.discretization, points, "")
+                             .share(simulation.initial.displacement);
+        return Utilities::MPI::sum(share[1][1] - share[0][1],
+                                   simulation.grid.communicator()) /
+               exact(points[1].position, strain)[1];
+      }
+
+      static Tensor<1, 3>
+      displacement(const Simulation &simulation, const unsigned int node)
+      {
+        Tensor<1, 3> u;
+        for (unsigned int d = 0; d < 3; ++d)
+          u[d] = simulation.initial.displacement.local_element(3 * node + d);
+        return u;
+      }
+
+      /** Smallest and largest stress: along the bar if it is clamped, else of
+       *  all components, at the Gauss points. */
+      std::pair<double, double>
+      stress_range(const Simulation &simulation) const
+      {
+        const Discretization &discretization = simulation.discretization;
+        Vector                u              = simulation.initial.displacement,
+               temperature                   = simulation.initial.temperature;
+        for (Vector *vector : {&u, &temperature})
+          {
+            discretization.hanging_nodes.distribute(*vector);
+            vector->update_ghost_values();
+          }
+        FEValues<3>                        values(discretization.mapping,
+                           discretization.fe,
+                           QGauss<3>(discretization.degree + 1),
+                           update_values | update_gradients);
+        const FEValuesExtractors::Vector   all(0);
+        std::vector<SymmetricTensor<2, 3>> strains(values.n_quadrature_points);
+        std::vector<Tensor<1, 3>> temperatures(values.n_quadrature_points);
+        double                    smallest = 1e300, largest = -1e300;
+        for (const auto &cell :
+             discretization.dof_handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              values.reinit(cell);
+              values[all].get_function_symmetric_gradients(u, strains);
+              values[all].get_function_values(temperature, temperatures);
+              for (const unsigned int q : values.quadrature_point_indices())
+                {
+                  const auto stress =
+                    simulation.materials[0]->total_stress(strains[q],
+                                                          strains[q],
+                                                          temperatures[q][0]);
+                  for (unsigned int i = 0; i < (body == "clamped bar" ? 1 : 6);
+                       ++i)
+                    {
+                      const double s = stress.access_raw_entry(i);
+                      smallest       = std::min(smallest, s);
+                      largest        = std::max(largest, s);
+                    }
+                }
+            }
+        const MPI_Comm communicator = simulation.grid.communicator();
+        return {Utilities::MPI::min(smallest, communicator),
+                Utilities::MPI::max(largest, communicator)};
+      }
+
+      std::string body      = "free bar";
+      double      change    = 0.;
+      double      tolerance = 1e-6, stress_tolerance = 1e-6;
+    };
+
+    const Registry<Check>::Add<Thermal>
+      registered("thermal", "Expansion, held expansion, bending.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,78 @@
+#include "tank.h"
+
+#include <voussoir/base/parameter_file.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  Tank::Tank(Case &parameters, const MPI_Comm communicator)
+    : mesh(parameters.generator->generate())
+    , water(split_off_reservoir(mesh,
+                                split_list(parameters.reservoir.cell_sets),
+                                "The tank"))
+    , grid(
+        mesh,
+        parameters.grid,
+        [](const unsigned int) { return 1.; },
+        communicator)
+    , discretization(grid,
+                     parameters.discretization,
+                     parameters.boundaries.supports(),
+                     [](const Grid::Cell &) { return 0U; })
+    , reservoir(water,
+                parameters.grid,
+                parameters.reservoir,
+                discretization,
+                terms)
+    , time_step(parameters.time.time_step > 0. ?
+                  parameters.time.time_step :
+                  parameters.time.safety_factor * reservoir.stable_step())
+  {
+    reservoir.prepare(time_step);
+  }
+
+
+  void
+  Tank::step(const Tensor<1, 3> &velocity, const Tensor<1, 3> &base_velocity)
+  {
+    Vector motion = discretization.create_vector();
+    for (unsigned int i = 0; i < motion.locally_owned_size(); ++i)
+      motion.local_element(i) = velocity[i % 3];
+    std::fill(terms.forces.begin(), terms.forces.end(), Tensor<1, 3>());
+    reservoir.add_forces(terms);
+    reservoir.advance(motion, base_velocity);
+    time += time_step;
+  }
+
+
+  Tensor<1, 3>
+  Tank::thrust() const
+  {
+    Tensor<1, 3> sum;
+    for (const Tensor<1, 3> &force : terms.forces)
+      sum += force;
+    return Utilities::MPI::sum(sum, grid.communicator());
+  }
+
+
+  double
+  Tank::pressure(const Point<3> &position) const
+  {
+    double value = 0.;
+    for (unsigned int i = 0; i < reservoir.space.node_positions.size(); ++i)
+      if (position.distance(reservoir.space.node_positions[i]) < 1e-6)
+        value += reservoir.pressure.local_element(i);
+    return Utilities::MPI::sum(value, grid.communicator());
+  }
+
+
+  double
+  pulse(const double time, const double duration)
+  {
+    const double x = time / duration;
+    return x > 0. && x < 1. ?
+             Utilities::fixed_power<4>(std::sin(numbers::PI * x)) :
+             0.;
+  }
+} // namespace Voussoir

@@ -1,0 +1,49 @@
+#ifndef voussoir_tests_tank_h
+#define voussoir_tests_tank_h
+
+#include <voussoir/loads/reservoir.h>
+#include <voussoir/mesh/reservoir_mesh.h>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  /** The water of a case, shaken by a solid whose motion is prescribed. */
+  class Tank
+  {
+  public:
+    Tank(Case &parameters, const MPI_Comm communicator);
+
+    CoarseMesh           mesh; // of the solid, once the water is made
+    const CoarseMesh     water;
+    const Grid           grid;
+    const Discretization discretization;
+    NodalTerms           terms;
+    Reservoir            reservoir;
+    const double         time_step;
+    double               time = 0.;
+
+    /**
+     * One step with the whole solid moving at these velocities at its middle
+     * [m/s]; `terms.forces` are then those of its beginning.
+     */
+    void
+    step(const dealii::Tensor<1, 3> &velocity,
+         const dealii::Tensor<1, 3> &base_velocity = dealii::Tensor<1, 3>());
+
+    /** Sum of the forces on the solid [N]. */
+    dealii::Tensor<1, 3>
+    thrust() const;
+
+    /** Pressure at a node [Pa]. */
+    double
+    pressure(const dealii::Point<3> &position) const;
+  };
+
+  /** A velocity that goes from 0 to 1 and back [m/s], smooth, at @p time over
+   *  the @p duration. */
+  double
+  pulse(const double time, const double duration);
+} // namespace Voussoir
+
+#endif

@@ -1,6 +1,7 @@
 // Runs the test that a parameter file names in its section "Check":
 //   voussoir_check test.prm
 
+#include <voussoir/base/parallel_session.h>
 #include <voussoir/driver/command_line.h>
 
 #include <iomanip>
@@ -120,7 +121,7 @@ int
 main(int argc, char **argv)
 {
   using namespace Voussoir;
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const ParallelSession session(argc, argv);
   return guarded(
     [&] {
       const ParameterFile file(argv[1]);

@@ -1,0 +1,24 @@
+#include <voussoir/base/parallel_session.h>
+
+#include <cstdlib>
+
+#if defined(__SSE__)
+#  include <xmmintrin.h>
+#endif
+
+namespace Voussoir
+{
+  ParallelSession::ParallelSession(int &argc, char **&argv)
+  {
+#if defined(__SSE__)
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _mm_setcsr(_mm_getcsr() | 0x0040);
+#endif
+    // Shared file pointers are not used. Open MPI's component for them keeps a
+    // file in the session's folder, which two programs without mpirun at the
+    // same time take from each other, and complains on every file opened then.
+    setenv("OMPI_MCA_sharedfp", "^sm", 0);
+    mpi =
+      std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(argc, argv, 1);
+  }
+} // namespace Voussoir

@@ -4,6 +4,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/text.h>
+#include <voussoir/fem/nodal_values.h>
 
 #include <deal.II/base/timer.h>
 
@@ -247,34 +248,21 @@ namespace Voussoir
               const ModalMass &modal_mass,
               const Vector    &orientation)
     {
-      const MPI_Comm communicator = shape.get_mpi_communicator();
-      Vector         momentum(shape);
+      Vector momentum(shape);
       modal_mass(momentum, shape);
-      std::vector<double> sums(3); // phi^T (M + M_a) r
-      double              largest = 0.;
-      for (unsigned int i = 0; i < shape.locally_owned_size(); i += 3)
-        {
-          Tensor<1, 3> displacement;
-          for (unsigned int d = 0; d < 3; ++d)
-            {
-              sums[d] += momentum.local_element(i + d);
-              displacement[d] = shape.local_element(i + d);
-            }
-          largest = std::max(largest, displacement.norm());
-        }
-      sums    = sum_over_ranks(sums, communicator);
-      largest = std::copysign(Utilities::MPI::max(largest, communicator),
-                              momentum * orientation);
+      const Tensor<1, 3> factors = resultant(momentum); // phi^T (M + M_a) r
+      const double       largest =
+        std::copysign(largest_amount(shape), momentum * orientation);
       shape /= largest;
 
       Mode mode{std::sqrt(eigenvalue) / (2. * numbers::PI),
                 std::move(shape),
                 1. / (largest * largest),
                 residual,
-                Tensor<1, 3>({sums[0], sums[1], sums[2]}) * largest,
+                factors * largest,
                 {}};
       for (unsigned int d = 0; d < 3; ++d)
-        mode.effective_mass[d] = sums[d] * sums[d];
+        mode.effective_mass[d] = factors[d] * factors[d];
       return mode;
     }
 
@@ -413,12 +401,8 @@ namespace Voussoir
                   parameters.number,
                   parameters.tolerance);
 
-    Modes               modes;
-    std::vector<double> moving(3);
-    for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
-      moving[i % 3] += mass.local_element(i);
-    moving = sum_over_ranks(moving, discretization.grid.communicator());
-    modes.moving_mass = Tensor<1, 3>({moving[0], moving[1], moving[2]});
+    Modes modes;
+    modes.moving_mass = resultant(mass);
     for (unsigned int j = 0; j < parameters.number; ++j)
       modes.list.push_back(make_mode(pairs.values[j],
                                      pairs.residuals[j],

@@ -1,5 +1,6 @@
 #include <voussoir/analysis/relaxation.h>
 #include <voussoir/base/error.h>
+#include <voussoir/fem/nodal_values.h>
 #include <voussoir/fem/stable_step.h>
 
 namespace Voussoir
@@ -12,19 +13,6 @@ namespace Voussoir
 
     // how often rest is looked for, in steps
     constexpr unsigned int look_interval = 20;
-
-
-    double
-    largest_of_nodes(const Vector &vector)
-    {
-      double largest = 0.;
-      for (unsigned int i = 0; i < vector.locally_owned_size(); i += 3)
-        largest = std::max(largest,
-                           std::hypot(vector.local_element(i),
-                                      vector.local_element(i + 1),
-                                      vector.local_element(i + 2)));
-      return Utilities::MPI::max(largest, vector.get_mpi_communicator());
-    }
   } // namespace
 
 
@@ -133,8 +121,8 @@ namespace Voussoir
         scheme.step(state);
         if (steps % look_interval != 0)
           continue;
-        const double moving = largest_of_nodes(state.velocity) * period;
-        if (moving <= tolerance * largest_of_nodes(state.displacement))
+        const double moving = largest_amount(state.velocity) * period;
+        if (moving <= tolerance * largest_amount(state.displacement))
           {
             displacement = state.displacement;
             contact.forget_approach();

@@ -1,7 +1,7 @@
 #include <voussoir/analysis/elastic_solver.h>
 #include <voussoir/analysis/relaxation.h>
 #include <voussoir/analysis/static_state.h>
-#include <voussoir/base/mpi.h>
+#include <voussoir/fem/nodal_values.h>
 
 #include <deal.II/base/timer.h>
 
@@ -81,17 +81,6 @@ namespace Voussoir
 
   namespace
   {
-    Tensor<1, 3>
-    resultant(const Vector &force)
-    {
-      std::vector<double> sums(3);
-      for (unsigned int i = 0; i < force.locally_owned_size(); ++i)
-        sums[i % 3] += force.local_element(i);
-      sums = sum_over_ranks(sums, force.get_mpi_communicator());
-      return Tensor<1, 3>({sums[0], sums[1], sums[2]});
-    }
-
-
     std::string
     meganewtons(const Tensor<1, 3> &force)
     {
@@ -106,19 +95,6 @@ namespace Voussoir
     to_json(const Tensor<1, 3> &force)
     {
       return {force[0], force[1], force[2]};
-    }
-
-
-    double
-    largest_displacement(const Vector &displacement)
-    {
-      double largest = 0.;
-      for (unsigned int i = 0; i < displacement.locally_owned_size(); i += 3)
-        largest = std::max(largest,
-                           std::hypot(displacement.local_element(i),
-                                      displacement.local_element(i + 1),
-                                      displacement.local_element(i + 2)));
-      return Utilities::MPI::max(largest, displacement.get_mpi_communicator());
     }
 
 
@@ -236,7 +212,7 @@ namespace Voussoir
           model.contact->add_forces(-1., state.force);
         const Tensor<1, 3> sum       = resultant(applied);
         const Tensor<1, 3> reactions = resultant(state.force);
-        const double       largest   = largest_displacement(state.displacement);
+        const double       largest   = largest_amount(state.displacement);
         std::ostringstream text;
         text << std::setprecision(4) << "  stage \"" << join(stage, ", ")
              << "\": " << iterations << (solver ? " iterations, " : " steps, ")

@@ -1,21 +1,9 @@
 #include <voussoir/fem/nodal_terms.h>
+#include <voussoir/fem/nodal_values.h>
 
 namespace Voussoir
 {
   using namespace dealii;
-
-  namespace
-  {
-    Tensor<1, 3>
-    read(const Vector &vector, const unsigned int node)
-    {
-      Tensor<1, 3> value;
-      for (unsigned int d = 0; d < 3; ++d)
-        value[d] = vector.local_element(3 * node + d);
-      return value;
-    }
-  } // namespace
-
 
   unsigned int
   NodalTerms::add_node(const unsigned int node)
@@ -47,7 +35,7 @@ namespace Voussoir
     last_velocity.resize(nodes.size());
     for (unsigned int slot = 0; slot < nodes.size(); ++slot)
       {
-        masses[slot] = read(mass.mass, nodes[slot]);
+        masses[slot] = node_value(mass.mass, nodes[slot]);
         if (central)
           masses[slot] *= 1. + 0.5 * time_step * mass_coefficient;
         // a held component keeps its zero velocity: unit row and column
@@ -75,8 +63,8 @@ namespace Voussoir
     base = base_acceleration;
     for (unsigned int slot = 0; slot < nodes.size(); ++slot)
       {
-        last_displacement[slot] = read(displacement, nodes[slot]);
-        last_velocity[slot]     = read(velocity, nodes[slot]);
+        last_displacement[slot] = node_value(displacement, nodes[slot]);
+        last_velocity[slot]     = node_value(velocity, nodes[slot]);
       }
   }
 
@@ -158,7 +146,7 @@ namespace Voussoir
     double sum = 0.;
     for (unsigned int slot = 0; slot < nodes.size(); ++slot)
       {
-        const Tensor<1, 3> v = read(velocity, nodes[slot]);
+        const Tensor<1, 3> v = node_value(velocity, nodes[slot]);
         sum += 0.5 * (v * (added_mass[slot] * v));
       }
     return sum;
@@ -172,9 +160,9 @@ namespace Voussoir
     double sum = 0.;
     for (unsigned int slot = 0; slot < nodes.size(); ++slot)
       {
-        const Tensor<1, 3> u = read(displacement, nodes[slot]);
+        const Tensor<1, 3> u = node_value(displacement, nodes[slot]);
         const Tensor<1, 3> previous =
-          u - time_step * read(velocity, nodes[slot]);
+          u - time_step * node_value(velocity, nodes[slot]);
         sum += 0.5 * (u * (springs[slot] * previous));
       }
     return sum;
@@ -188,7 +176,7 @@ namespace Voussoir
   {
     for (unsigned int slot = 0; slot < nodes.size(); ++slot)
       {
-        const Tensor<1, 3> u = read(displacement, nodes[slot]);
+        const Tensor<1, 3> u = node_value(displacement, nodes[slot]);
         const Tensor<1, 3> f =
           springs[slot] * u + dashpot_factor * (dashpots[slot] * u);
         for (unsigned int d = 0; d < 3; ++d)

@@ -1,3 +1,4 @@
+#include <voussoir/fem/nodal_values.h>
 #include <voussoir/time/central_difference.h>
 
 #include <set>
@@ -5,19 +6,6 @@
 namespace Voussoir
 {
   using namespace dealii;
-
-  namespace
-  {
-    Tensor<1, 3>
-    velocity_at(const State &state, const unsigned int node)
-    {
-      Tensor<1, 3> velocity;
-      for (unsigned int d = 0; d < 3; ++d)
-        velocity[d] = state.velocity.local_element(3 * node + d);
-      return velocity;
-    }
-  } // namespace
-
 
   CentralDifference::CentralDifference(
     const Discretization                            &discretization,
@@ -110,7 +98,7 @@ namespace Voussoir
     evaluate_loads(state.time);
     terms.before_step(state.displacement, state.velocity, base);
     for (unsigned int i = 0; i < projected_nodes.size(); ++i)
-      last_velocity[i] = velocity_at(state, projected_nodes[i]);
+      last_velocity[i] = node_value(state.velocity, projected_nodes[i]);
 
     // f(u_n) with the damping memory, and the motion it alone would cause
     internal_force.sweep(
@@ -136,7 +124,7 @@ namespace Voussoir
   CentralDifference::project(State &state, const Tensor<1, 3> &base)
   {
     for (unsigned int i = 0; i < projected_nodes.size(); ++i)
-      predicted_velocity[i] = velocity_at(state, projected_nodes[i]);
+      predicted_velocity[i] = node_value(state.velocity, projected_nodes[i]);
     for (Projection *projection : projections)
       work_of_projections += projection->project(state, time_step).work;
 
@@ -144,7 +132,7 @@ namespace Voussoir
     for (unsigned int i = 0; i < projected_nodes.size(); ++i)
       {
         const unsigned int node     = projected_nodes[i];
-        const Tensor<1, 3> velocity = velocity_at(state, node);
+        const Tensor<1, 3> velocity = node_value(state.velocity, node);
         const Tensor<1, 3> change   = velocity - predicted_velocity[i];
         if (change.norm_square() == 0.)
           continue;

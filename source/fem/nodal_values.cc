@@ -1,0 +1,27 @@
+#include <voussoir/base/mpi.h>
+#include <voussoir/fem/nodal_values.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  Tensor<1, 3>
+  resultant(const Vector &vector)
+  {
+    std::vector<double> sums(3);
+    for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
+      sums[i % 3] += vector.local_element(i);
+    sums = sum_over_ranks(sums, vector.get_mpi_communicator());
+    return Tensor<1, 3>({sums[0], sums[1], sums[2]});
+  }
+
+
+  double
+  largest_amount(const Vector &vector)
+  {
+    double largest = 0.;
+    for (unsigned int node = 0; 3 * node < vector.locally_owned_size(); ++node)
+      largest = std::max(largest, node_value(vector, node).norm());
+    return Utilities::MPI::max(largest, vector.get_mpi_communicator());
+  }
+} // namespace Voussoir

@@ -17,12 +17,12 @@ namespace Voussoir
 
 
   Relaxation::Relaxation(const Discretization            &discretization,
-                         const InternalForce             &internal_force,
+                         InternalForce                   &internal_force,
                          const LumpedMass                &mass_of_run,
                          const NodalTerms                &terms_of_run,
                          const AffineConstraints<double> &constraints,
                          const bool                       springs,
-                         Contact                         &contact)
+                         Contact                         *contact)
     : discretization(discretization)
     , internal_force(internal_force)
     , mass(mass_of_run)
@@ -65,7 +65,8 @@ namespace Voussoir
             damping,
             terms,
             loaded,
-            {&contact},
+            contact != nullptr ? std::vector<Projection *>{contact} :
+                                 std::vector<Projection *>{},
             [](const double) {},
             {},
             {},
@@ -79,7 +80,8 @@ namespace Voussoir
   {
     CentralDifference scheme  = make_scheme(0.);
     double            largest = 0.;
-    contact.start(state);
+    if (contact != nullptr)
+      contact->start(state);
     while (steps < max_steps)
       {
         scheme.step(state);
@@ -115,7 +117,8 @@ namespace Voussoir
     // critical damping 2 omega of the period; the motion goes on from here
     CentralDifference scheme = make_scheme(4. * numbers::PI / period);
     state.velocity           = 0.;
-    contact.start(state);
+    if (contact != nullptr)
+      contact->start(state);
     for (; steps < max_steps; ++steps)
       {
         scheme.step(state);
@@ -125,7 +128,8 @@ namespace Voussoir
         if (moving <= tolerance * largest_amount(state.displacement))
           {
             displacement = state.displacement;
-            contact.forget_approach();
+            if (contact != nullptr)
+              contact->forget_approach();
             return steps;
           }
         if (!std::isfinite(moving))
@@ -139,10 +143,10 @@ namespace Voussoir
                    period,
                    " s");
       }
-    throw UserError("The static state with contact has not come to rest within "
-                    "50000 steps: a block slides or falls under the static "
-                    "loads. Look at the interfaces' strength and friction, and "
-                    "at the order of the \"Stages\" in section \"Static "
-                    "state\".");
+    throw UserError("The static state has not come to rest within 50000 steps: "
+                    "under the static loads a block slides or falls, or cracks "
+                    "or plastic flow do not end. Look at the strength of "
+                    "interfaces and materials, and at the order of the "
+                    "\"Stages\" in section \"Static state\".");
   }
 } // namespace Voussoir

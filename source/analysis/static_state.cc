@@ -153,6 +153,7 @@ namespace Voussoir
     const bool                     springs = parameters.supports == "springs";
     std::unique_ptr<ElasticSolver> solver;
     std::unique_ptr<Relaxation>    relaxation;
+    const bool has_memory = model.internal_force.has_memory();
     if (model.contact == nullptr)
       solver = std::make_unique<ElasticSolver>(
         discretization,
@@ -162,14 +163,14 @@ namespace Voussoir
         model.material_of_cell,
         constraints,
         springs ? &model.terms : nullptr);
-    else
+    if (model.contact != nullptr || has_memory)
       relaxation = std::make_unique<Relaxation>(discretization,
                                                 model.internal_force,
                                                 model.mass,
                                                 model.terms,
                                                 constraints,
                                                 springs,
-                                                *model.contact);
+                                                model.contact);
     log.line("Static state by ",
              solver ? "multigrid" : "damped motion with contact",
              ", set up in ",
@@ -196,6 +197,7 @@ namespace Voussoir
           }
         Vector right_side = applied;
         model.internal_force.add_thermal_force(right_side, state.temperature);
+        model.internal_force.uses_memory = false;
         const unsigned int iterations =
           solver ? solver->solve(state.displacement,
                                  right_side,
@@ -204,9 +206,22 @@ namespace Voussoir
                                                 right_side,
                                                 parameters.rest,
                                                 log);
+        if (has_memory)
+          {
+            model.internal_force.uses_memory = true;
+            model.internal_force.set_static_state(state.displacement,
+                                                  state.temperature);
+            model.internal_force.respond(state.force, state.displacement);
+            if (Utilities::MPI::max(model.internal_force.dissipated(),
+                                    discretization.grid.communicator()) > 0.)
+              log.line("  cracks or yields; at rest again after ",
+                       relaxation->find_equilibrium(
+                         state.displacement, right_side, parameters.rest, log),
+                       " steps");
+          }
 
         // f(u) minus loads and contact is what the supports bring
-        model.internal_force.apply(state.force, state.displacement);
+        model.internal_force.respond(state.force, state.displacement);
         state.force -= right_side;
         if (model.contact != nullptr)
           model.contact->add_forces(-1., state.force);
@@ -231,7 +246,11 @@ namespace Voussoir
 
     for (unsigned int m = 0; m < dynamic_scale.size(); ++m)
       model.materials[m]->stiffness_scale = dynamic_scale[m];
-    model.internal_force.apply(state.force, state.displacement);
+    model.internal_force.set_static_state(state.displacement,
+                                          state.temperature);
+    model.internal_force.respond(state.force, state.displacement);
+    for (PointHistory &history : model.internal_force.histories)
+      history.mark_start();
     model.terms.add_to(state.force, state.displacement, 0.);
     if (model.contact != nullptr)
       {

@@ -191,6 +191,7 @@ namespace Voussoir
     in_section(prm, "Reservoir", [&] { reservoir.declare(prm); });
     in_section(prm, "Static state", [&] { static_state.declare(prm); });
     in_section(prm, "Modes", [&] { modes.declare(prm); });
+    in_section(prm, "Material test", [&] { material_test.declare(prm); });
     projections.declare(
       prm, file, "Constraints", "constraints", "prescribed motion");
     in_section(prm, "Damping", [&] { damping.declare(prm); });

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
+#include <fstream>
 
 namespace Voussoir
 {
@@ -84,6 +85,30 @@ namespace Voussoir
                   << " unknowns, time step " << simulation.time_step << " s, "
                   << simulation.n_steps() << " steps." << std::endl;
     }
+    // The stress-strain table of one material.
+    void
+    test_material(const Case        &parameters,
+                  const std::string &csv_file,
+                  const bool         overwrite)
+    {
+      const auto       &test      = parameters.material_test;
+      const auto        names     = parameters.material_names();
+      const auto        materials = parameters.material_list();
+      const std::string name = test.material.empty() ? names[0] : test.material;
+      const auto        place = std::find(names.begin(), names.end(), name);
+      if (place == names.end())
+        throw UserError("\"Material\" in section \"Material test\" is \"" +
+                        name + "\"" + known_names(name, names) + ".");
+      if (std::filesystem::exists(csv_file) && !overwrite)
+        throw UserError("\"" + csv_file +
+                        "\" exists; give another name, or \"--overwrite\".");
+      std::ostringstream table;
+      test.run(*materials[place - names.begin()], table);
+      if (!(std::ofstream(csv_file) << table.str()).flush())
+        throw UserError("\"" + csv_file + "\" cannot be written.");
+      std::cout << "The test of material \"" << name << "\" is in " << csv_file
+                << std::endl;
+    }
   } // namespace
 
 
@@ -133,7 +158,7 @@ namespace Voussoir
     CLI::App    app{"Voussoir: seismic response of arch dams, from a parameter "
                     "file. Run it under mpirun for several ranks.",
                  "voussoir"};
-    std::string case_file, defaults, what;
+    std::string case_file, defaults, what, test_file;
     std::vector<std::string> changes;
     bool                     only_validate = false;
     RunOptions               options;
@@ -157,6 +182,11 @@ namespace Voussoir
                    what,
                    "Print the classes of one kind: " +
                      join(keys(lists()), ", "));
+    app.add_option("--material-test",
+                   test_file,
+                   "Lead one point of a material along the path of section "
+                   "\"Material test\" and write strains and stresses to this "
+                   "CSV file");
     app.add_flag("--restart",
                  options.restart,
                  "Go on from the last checkpoint of the newest output folder");
@@ -209,6 +239,11 @@ namespace Voussoir
           {
             if (first)
               parameters.prm.print_parameters(std::cout, style);
+          }
+        else if (!test_file.empty())
+          {
+            if (first)
+              test_material(parameters, test_file, options.overwrite);
           }
         else if (only_validate)
           validate(parameters, communicator);

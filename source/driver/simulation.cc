@@ -210,6 +210,7 @@ namespace Voussoir
     , model{discretization,
             materials,
             [this](const Grid::Cell &cell) { return material_of(cell); },
+            internal_force,
             initial,
             reservoir.get(),
             contact.get(),

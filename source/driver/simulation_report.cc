@@ -2,6 +2,7 @@
 
 #include <voussoir/base/version.h>
 #include <voussoir/driver/simulation.h>
+#include <voussoir/output/material_memory.h>
 
 #include <iomanip>
 
@@ -47,6 +48,15 @@ namespace Voussoir
              << c.s_wave_speed() * discretization.degree / (8. * edge)
              << " Hz with 8 nodes per wavelength";
         log.line(text.str());
+        double band = 0.; // widest of the material
+        for (const auto &cell : internal_force.histories[m].cells())
+          band = std::max(band,
+                          internal_force.histories[m].element_length(
+                            cell.second.batch)[cell.second.lane]);
+        band = Utilities::MPI::max(band, grid.communicator());
+        if (const std::string remark = materials[m]->remark(band);
+            !remark.empty())
+          log.line("  note: ", remark);
       }
   }
 
@@ -125,6 +135,8 @@ namespace Voussoir
         {"stored energy [J]", reservoir->stored_energy()},
         {"radiated and absorbed [J]",
          Utilities::MPI::sum(reservoir->loss, grid.communicator())}};
+    if (internal_force.has_memory())
+      result["materials"] = memory_summary(model, parameters.material_names());
     result["energy balance"] = energy.summary();
     return result;
   }

@@ -31,7 +31,10 @@ namespace Voussoir
                                const std::vector<const CellKernel *> &kernels)
     : discretization(discretization)
     , kernels(kernels)
-  {}
+  {
+    for (unsigned int m = 0; m < kernels.size(); ++m)
+      histories.emplace_back(discretization, m, kernels[m]->n_history());
+  }
 
 
   bool
@@ -55,8 +58,9 @@ namespace Voussoir
   InternalForce::sweep(Vector          &force,
                        const Vector    &displacement,
                        const Vector    *memory,
+                       const double     time_step,
                        const RangeWork &before,
-                       const RangeWork &after) const
+                       const RangeWork &after)
   {
     const std::function<void(const Discretization::MatrixFree &,
                              Vector &,
@@ -72,8 +76,18 @@ namespace Voussoir
                      [&](const unsigned int material,
                          const unsigned int begin,
                          const unsigned int end) {
-                       kernels[material]->add_force(
-                         matrix_free, dst, src, memory, begin, end);
+                       if (uses_memory && !histories[material].empty())
+                         kernels[material]->add_response(matrix_free,
+                                                         dst,
+                                                         src,
+                                                         memory,
+                                                         begin,
+                                                         end,
+                                                         histories[material],
+                                                         time_step);
+                       else
+                         kernels[material]->add_force(
+                           matrix_free, dst, src, memory, begin, end);
                      });
       };
 
@@ -94,15 +108,87 @@ namespace Voussoir
 
 
   void
-  InternalForce::apply(Vector &force, const Vector &displacement) const
+  InternalForce::apply(Vector       &force,
+                       const Vector &displacement,
+                       const Vector *memory) const
+  {
+    if (memory != nullptr)
+      memory->update_ghost_values();
+    discretization.matrix_free.cell_loop<Vector, Vector>(
+      [&](const auto                                  &matrix_free,
+          Vector                                      &dst,
+          const Vector                                &src,
+          const std::pair<unsigned int, unsigned int> &range) {
+        for_each_run(discretization.material_of_batch,
+                     range.first,
+                     range.second,
+                     [&](const unsigned int material,
+                         const unsigned int begin,
+                         const unsigned int end) {
+                       kernels[material]->add_force(
+                         matrix_free, dst, src, memory, begin, end);
+                     });
+      },
+      force,
+      displacement,
+      true);
+    if (memory != nullptr)
+      memory->zero_out_ghost_values();
+  }
+
+
+  void
+  InternalForce::respond(Vector &force, const Vector &displacement)
   {
     sweep(force,
           displacement,
           nullptr,
+          // the laws follow at once
+          std::numeric_limits<double>::max(),
           [&](const unsigned int begin, const unsigned int end) {
             std::fill(force.begin() + begin, force.begin() + end, 0.);
           },
           {});
+  }
+
+
+  bool
+  InternalForce::has_memory() const
+  {
+    return std::any_of(kernels.begin(), kernels.end(), [](const auto *kernel) {
+      return kernel->n_history() > 0;
+    });
+  }
+
+
+  void
+  InternalForce::set_static_state(const Vector &displacement,
+                                  const Vector &temperature)
+  {
+    if (displacement.size() == 0)
+      return;
+    displacement.update_ghost_values();
+    temperature.update_ghost_values();
+    for_each_run(discretization.material_of_batch,
+                 0,
+                 discretization.matrix_free.n_cell_batches(),
+                 [&](const unsigned int material,
+                     const unsigned int begin,
+                     const unsigned int end) {
+                   PointHistory &history = histories[material];
+                   if (history.empty())
+                     return;
+                   if (!history.has_offset)
+                     history.make_offsets();
+                   kernels[material]->set_offset(discretization.matrix_free,
+                                                 history,
+                                                 displacement,
+                                                 temperature,
+                                                 begin,
+                                                 end);
+                 });
+    displacement.zero_out_ghost_values();
+    temperature.zero_out_ghost_values();
   }
 
 
@@ -131,28 +217,91 @@ namespace Voussoir
 
 
   double
-  InternalForce::work(const Vector &u,
-                      const Vector &v,
-                      const bool    with_damping_factors) const
+  InternalForce::sum(
+    const std::vector<const Vector *>               &read,
+    const std::function<double(const unsigned int,
+                               const unsigned int,
+                               const unsigned int)> &evaluate) const
   {
-    u.update_ghost_values();
-    if (&u != &v)
-      v.update_ghost_values();
+    for (const Vector *vector : read)
+      if (!vector->has_ghost_elements())
+        vector->update_ghost_values();
     double sum = 0.;
-    for_each_run(
-      discretization.material_of_batch,
-      0,
-      discretization.matrix_free.n_cell_batches(),
-      [&](const unsigned int material,
-          const unsigned int begin,
-          const unsigned int end) {
-        sum +=
-          (with_damping_factors ? kernels[material]->damping_factor() : 1.) *
-          kernels[material]->work(discretization.matrix_free, u, v, begin, end);
-      });
-    u.zero_out_ghost_values();
-    if (&u != &v)
-      v.zero_out_ghost_values();
+    for_each_run(discretization.material_of_batch,
+                 0,
+                 discretization.matrix_free.n_cell_batches(),
+                 [&](const unsigned int material,
+                     const unsigned int begin,
+                     const unsigned int end) {
+                   sum += evaluate(material, begin, end);
+                 });
+    for (const Vector *vector : read)
+      vector->zero_out_ghost_values();
     return Utilities::MPI::sum(sum, discretization.grid.communicator());
+  }
+
+
+  double
+  InternalForce::stored_energy(const Vector &displacement,
+                               const Vector &u_static,
+                               const Vector &moved,
+                               const Vector &moved_before) const
+  {
+    std::vector<const Vector *> read{&displacement, &moved, &moved_before};
+    if (u_static.size() > 0)
+      read.push_back(&u_static);
+    return sum(read,
+               [&](const unsigned int material,
+                   const unsigned int begin,
+                   const unsigned int end) {
+                 const CellKernel   &kernel  = *kernels[material];
+                 const PointHistory &history = histories[material];
+                 double              energy =
+                   0.5 * kernel.work(discretization.matrix_free,
+                                     moved,
+                                     moved_before,
+                                     begin,
+                                     end,
+                                     history,
+                                     CellKernel::Inelastic::not_at_all);
+                 if (!history.empty())
+                   energy += kernel.inelastic_energy(discretization.matrix_free,
+                                                     history,
+                                                     displacement,
+                                                     u_static,
+                                                     begin,
+                                                     end);
+                 return energy;
+               });
+  }
+
+
+  double
+  InternalForce::dissipated() const
+  {
+    double energy = 0.;
+    for (const PointHistory &history : histories)
+      energy += history.dissipated;
+    return energy;
+  }
+
+
+  double
+  InternalForce::damping_work(const Vector &u, const Vector &v) const
+  {
+    return sum({&u, &v},
+               [&](const unsigned int material,
+                   const unsigned int begin,
+                   const unsigned int end) {
+                 const CellKernel &kernel = *kernels[material];
+                 return kernel.damping_factor() *
+                        kernel.work(discretization.matrix_free,
+                                    u,
+                                    v,
+                                    begin,
+                                    end,
+                                    histories[material],
+                                    CellKernel::Inelastic::by_intact_share);
+               });
   }
 } // namespace Voussoir

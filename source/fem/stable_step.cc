@@ -39,13 +39,7 @@ namespace Voussoir
       const double gamma = limits.stiffening(dt);
       const auto   apply = [&](Vector &dst, const Vector &src) {
         memory.equ(gamma, src);
-        force.sweep(dst,
-                    src,
-                    &memory,
-                    [&](const unsigned int begin, const unsigned int end) {
-                      std::fill(dst.begin() + begin, dst.begin() + end, 0.);
-                    },
-                    {});
+        force.apply(dst, src, &memory);
         limits.add_diagonal(dst, src, dt);
       };
       return 2. / std::sqrt(largest_eigenvalue(start, mass.inverse, apply));

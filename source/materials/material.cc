@@ -42,7 +42,7 @@ namespace Voussoir
 
 
   void
-  Material::check(const std::string &place) const
+  Material::check(const std::string &place)
   {
     if (cell_sets.empty())
       throw UserError(place + " has no \"Cell sets\"; name the cell sets that "
@@ -58,14 +58,14 @@ namespace Voussoir
 
 
   SymmetricTensor3<double>
-  Material::total_stress(const SymmetricTensor3<double> &strain,
-                         const SymmetricTensor3<double> &initial_strain,
-                         const double                    temperature) const
+  Material::strain_of_law(const SymmetricTensor3<double> &strain,
+                          const SymmetricTensor3<double> &initial_strain,
+                          const double                    temperature) const
   {
     SymmetricTensor3<double> at_rest = initial_strain;
     for (unsigned int d = 0; d < 3; ++d)
       at_rest[d][d] -= expansion * temperature;
-    return stress(strain - initial_strain + static_factor * at_rest);
+    return strain - initial_strain + static_factor * at_rest;
   }
 
 

@@ -52,8 +52,9 @@ namespace Voussoir
     file.open(name);
     file << std::setprecision(9);
     if (kept.empty())
-      kept.push_back("time [s],kinetic [J],strain [J],memory [J],damping [J],"
-                     "boundary [J],input [J],constraints [J],unaccounted [J]");
+      kept.push_back(
+        "time [s],kinetic [J],strain [J],memory [J],damping [J],"
+        "boundary [J],material [J],input [J],constraints [J],unaccounted [J]");
     for (const std::string &line : kept)
       file << line << '\n';
   }
@@ -82,14 +83,20 @@ namespace Voussoir
                              terms.loss_in_dashpots,
                              terms.work_of_forces + scheme.work_of_base,
                              scheme.work_of_projections,
-                             scheme.loss_by_mass};
+                             scheme.loss_by_mass,
+                             internal_force.dissipated()};
     sums = sum_over_ranks(sums, discretization.grid.communicator());
 
     terms_now.kinetic = sums[0];
-    terms_now.strain = 0.5 * internal_force.work(moved, moved_before) + sums[1];
+    terms_now.strain  = internal_force.stored_energy(state.displacement,
+                                                    initial_state.displacement,
+                                                    moved,
+                                                    moved_before) +
+                       sums[1];
     terms_now.boundary    = sums[2];
     terms_now.input       = sums[3];
     terms_now.constraints = sums[4];
+    terms_now.material    = sums[6];
     // of the work of contact, what its static forces do on the way
     if (initial_state.contact_force.size() > 0)
       terms_now.constraints -=
@@ -104,14 +111,14 @@ namespace Voussoir
       if (damping.coefficients[i] > 0.)
         {
           const double work =
-            internal_force.work(state.memory[i], state.memory[i], true);
+            internal_force.damping_work(state.memory[i], state.memory[i]);
           terms_now.memory += 0.5 * work / damping.coefficients[i];
           loss_rate +=
             work / (damping.coefficients[i] * damping.relaxation_times[i]);
         }
     if (damping.stiffness_coefficient > 0.)
       loss_rate += damping.stiffness_coefficient *
-                   internal_force.work(state.velocity, state.velocity, true);
+                   internal_force.damping_work(state.velocity, state.velocity);
     const double mass_loss_before = mass_loss;
     mass_loss                     = sums[5];
     if (first)
@@ -139,9 +146,9 @@ namespace Voussoir
     if (file.is_open())
       file << state.time << ',' << terms_now.kinetic << ',' << terms_now.strain
            << ',' << terms_now.memory << ',' << terms_now.damping << ','
-           << terms_now.boundary << ',' << terms_now.input << ','
-           << terms_now.constraints << ',' << terms_now.error(initial)
-           << std::endl;
+           << terms_now.boundary << ',' << terms_now.material << ','
+           << terms_now.input << ',' << terms_now.constraints << ','
+           << terms_now.error(initial) << std::endl;
     return terms_now;
   }
 
@@ -182,6 +189,7 @@ namespace Voussoir
             {"damping memory [J]", terms_now.memory},
             {"lost in damping [J]", terms_now.damping},
             {"gone through the boundary [J]", terms_now.boundary},
+            {"lost to cracks and plastic flow [J]", terms_now.material},
             {"input [J]", terms_now.input},
             {"work of constraints [J]", terms_now.constraints},
             {"initial [J]", initial},

@@ -1,6 +1,7 @@
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/materials/principal_stress.h>
 #include <voussoir/output/field_writer.h>
-#include <voussoir/output/principal_stress.h>
+#include <voussoir/output/law_stress.h>
 #include <voussoir/output/stress_points.h>
 
 #include <deal.II/fe/fe_tools.h>
@@ -57,6 +58,9 @@ namespace Voussoir
                 const Tensor<2, 3> inverse =
                   inverse_jacobian(matrix_free.get_cell_iterator(b, lane),
                                    centre);
+                batch.laws.emplace_back(model,
+                                        matrix_free.get_cell_iterator(b, lane),
+                                        centre);
                 for (unsigned int i = 0; i < 3; ++i)
                   for (unsigned int k = 0; k < 3; ++k)
                     batch.inverse_jacobian[i][k][lane] = inverse[i][k];
@@ -86,9 +90,6 @@ namespace Voussoir
         Evaluation cells(matrix_free);
         for (Batch &batch : batches)
           {
-            const Material &material =
-              *model.materials[model.discretization
-                                 .material_of_batch[batch.number]];
             const auto              total = strain(cells, batch, displacement);
             SymmetricTensor3<Lanes> stress;
             for (unsigned int lane = 0; lane < n_lanes(batch.number); ++lane)
@@ -100,8 +101,7 @@ namespace Voussoir
                     initial.access_raw_entry(c) =
                       batch.initial_strain.access_raw_entry(c)[lane];
                   }
-                one =
-                  material.total_stress(one, initial, batch.temperature[lane]);
+                one = batch.laws[lane](one, initial, batch.temperature[lane]);
                 for (unsigned int c = 0; c < 6; ++c)
                   stress.access_raw_entry(c)[lane] = one.access_raw_entry(c);
               }
@@ -143,6 +143,7 @@ namespace Voussoir
         Tensor<2, 3, Lanes>     inverse_jacobian;
         SymmetricTensor3<Lanes> initial_strain;
         Lanes                   temperature = 0.; // change [K]
+        std::vector<LawStress>  laws;             // of each cell
 
         // largest and smallest of each cell
         std::array<std::array<double, 2>, Lanes::size()> extremes;

@@ -1,8 +1,8 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/materials/principal_stress.h>
 #include <voussoir/output/face_mesh.h>
 #include <voussoir/output/picture_series.h>
-#include <voussoir/output/principal_stress.h>
 
 namespace Voussoir
 {

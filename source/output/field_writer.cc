@@ -1,5 +1,7 @@
+#include <voussoir/materials/principal_stress.h>
 #include <voussoir/output/field_writer.h>
-#include <voussoir/output/principal_stress.h>
+#include <voussoir/output/law_stress.h>
+#include <voussoir/output/material_memory.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
@@ -67,6 +69,7 @@ namespace Voussoir
     public:
       explicit PrincipalStresses(const ObservedModel &model)
         : model(model)
+        , points(QTrapezoid<1>(), model.discretization.degree)
         , initial(model.initial.displacement.size() > 0 ?
                     std::make_unique<InitialPoints>(model) :
                     nullptr)
@@ -77,8 +80,7 @@ namespace Voussoir
         const DataPostprocessorInputs::Vector<3> &inputs,
         std::vector<dealii::Vector<double>>      &values) const override
       {
-        const auto  cell     = inputs.get_cell<3>();
-        const auto &material = *model.materials[model.material_of_cell(cell)];
+        const auto cell = inputs.get_cell<3>();
         if (initial)
           initial->reinit(cell);
         for (unsigned int q = 0; q < values.size(); ++q)
@@ -86,12 +88,12 @@ namespace Voussoir
             Tensor<2, 3> gradient;
             for (unsigned int d = 0; d < 3; ++d)
               gradient[d] = inputs.solution_gradients[q][d];
-            const SymmetricTensor<2, 3> strain = symmetrize(gradient);
-            const auto [largest, smallest]     = largest_and_smallest_principal(
-              initial ? material.total_stress(strain,
-                                              initial->strains[q],
-                                              initial->temperatures[q]) :
-                        material.stress(strain));
+            const LawStress law(model, cell, points.point(q));
+            const auto [largest, smallest] = largest_and_smallest_principal(
+              initial ? law(symmetrize(gradient),
+                            initial->strains[q],
+                            initial->temperatures[q]) :
+                        law(symmetrize(gradient), {}, 0.));
             values[q](0) = 1e-6 * largest;
             values[q](1) = 1e-6 * smallest;
           }
@@ -118,8 +120,27 @@ namespace Voussoir
 
     private:
       const ObservedModel                 &model;
+      const QIterated<3>                   points;  // that are drawn
       const std::unique_ptr<InitialPoints> initial; // null: no static stage
     };
+  } // namespace
+
+
+  namespace
+  {
+    /** "crack opening [mm]" as "crack_opening_mm". */
+    std::string
+    vtk_name(std::string name)
+    {
+      name.erase(std::remove_if(name.begin(),
+                                name.end(),
+                                [](const char c) {
+                                  return c == '[' || c == ']';
+                                }),
+                 name.end());
+      std::replace(name.begin(), name.end(), ' ', '_');
+      return name;
+    }
   } // namespace
 
 
@@ -165,6 +186,9 @@ namespace Voussoir
     data_out.add_data_vector(material, "material");
     for (const CellField &field : cell_fields)
       data_out.add_data_vector(*field.values, field.name);
+    const auto memory = memory_of_cells(model);
+    for (const auto &[memory_name, values] : memory)
+      data_out.add_data_vector(values, vtk_name(memory_name));
 
     DataOutBase::VtkFlags flags;
     flags.time                     = time;

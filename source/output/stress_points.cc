@@ -47,8 +47,7 @@ namespace Voussoir
                           model.initial.temperature.local_element(entry);
             }
         end_of_weights.push_back(weights.size());
-        materials.push_back(
-          model.materials[model.material_of_cell(place.cell)]);
+        laws.emplace_back(model, place.cell, place.unit);
         temperature.push_back(degree);
       }
     initial_strain.resize(places.size());
@@ -84,9 +83,8 @@ namespace Voussoir
   {
     displacement.update_ghost_values();
     for (unsigned int p = 0; p < stress.size(); ++p)
-      stress[p] = materials[p]->total_stress(strain(p, displacement),
-                                             initial_strain[p],
-                                             temperature[p]);
+      stress[p] =
+        laws[p](strain(p, displacement), initial_strain[p], temperature[p]);
     displacement.zero_out_ghost_values();
     return stress;
   }

@@ -9,7 +9,7 @@ namespace Voussoir
 
   CentralDifference::CentralDifference(
     const Discretization                            &discretization,
-    const InternalForce                             &internal_force,
+    InternalForce                                   &internal_force,
     const LumpedMass                                &mass,
     const Damping                                   &damping,
     NodalTerms                                      &terms,
@@ -105,6 +105,7 @@ namespace Voussoir
       force,
       effective,
       uniform ? nullptr : &memory,
+      time_step,
       [&](const unsigned int begin, const unsigned int end) {
         update_memory(state, begin, end);
       },

@@ -21,14 +21,14 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const auto          parameters = make_case(file);
-        Tank                tank(*parameters, communicator);
-        const auto          materials = parameters->material_list();
-        const LumpedMass    mass(tank.discretization,
+        const auto       parameters = make_case(file);
+        Tank             tank(*parameters, communicator);
+        const auto       materials = parameters->material_list();
+        const LumpedMass mass(tank.discretization,
                               {materials[0]->density},
                               {0.},
                               [](const Grid::Cell &) { return 0U; });
-        const InternalForce internal_force(tank.discretization, {materials[0]});
+        InternalForce    internal_force(tank.discretization, {materials[0]});
 
         StepLimits limits;
         limits.stiffening   = [](const double) { return 0.; };
@@ -91,7 +91,10 @@ namespace Voussoir
                   Utilities::MPI::sum(tank.reservoir.loss, communicator);
                 const double total =
                   0.5 * (momentum * state.velocity) +
-                  0.5 * internal_force.work(state.displacement, before) +
+                  internal_force.stored_energy(state.displacement,
+                                               Vector(),
+                                               state.displacement,
+                                               before) +
                   water + tank.reservoir.work_ahead(state.velocity);
                 if (step == 0)
                   initial = total;

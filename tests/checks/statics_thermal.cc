@@ -190,10 +190,9 @@ namespace Voussoir
               values[all].get_function_values(temperature, temperatures);
               for (const unsigned int q : values.quadrature_point_indices())
                 {
-                  const auto stress =
-                    simulation.materials[0]->total_stress(strains[q],
-                                                          strains[q],
-                                                          temperatures[q][0]);
+                  const auto &material = *simulation.materials[0];
+                  const auto  stress   = material.stress(material.strain_of_law(
+                    strains[q], strains[q], temperatures[q][0]));
                   for (unsigned int i = 0; i < (body == "clamped bar" ? 1 : 6);
                        ++i)
                     {

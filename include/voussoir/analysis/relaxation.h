@@ -24,12 +24,12 @@ namespace Voussoir
      * @param springs     whether the absorbing boundary stands on its springs
      */
     Relaxation(const Discretization                    &discretization,
-               const InternalForce                     &internal_force,
+               InternalForce                           &internal_force,
                const LumpedMass                        &mass,
                const NodalTerms                        &terms,
                const dealii::AffineConstraints<double> &constraints,
                const bool                               springs,
-               Contact                                 &contact);
+               Contact                                 *contact);
 
     /**
      * Moves the displacement to the equilibrium with a force. Throws UserError
@@ -53,10 +53,10 @@ namespace Voussoir
     quarter_period(State &state, unsigned int &steps);
 
     const Discretization &discretization;
-    const InternalForce  &internal_force;
+    InternalForce        &internal_force;
     LumpedMass            mass;
     NodalTerms            terms;
-    Contact              &contact;
+    Contact              *contact; // or null
     double                time_step;
     InitialState          loaded;
   };

@@ -39,7 +39,7 @@ namespace Voussoir
   struct StaticModel
   {
     const Discretization                           &discretization;
-    const InternalForce                            &internal_force;
+    InternalForce                                  &internal_force;
     const std::vector<Material *>                  &materials;
     std::function<unsigned int(const Grid::Cell &)> material_of_cell;
     const BoundaryParameters                       &boundaries;
@@ -56,7 +56,9 @@ namespace Voussoir
    * so that without an earthquake nothing moves. Forces of contact are no part
    * of it, as the run finds them by itself.
    *
-   * Without interfaces by multigrid, with them by damped motion.
+   * Without interfaces by multigrid, with them by damped motion; materials with
+   * memory are elastic then, and where they crack or yield under that state,
+   * damped motion goes on from it.
    *
    * @param summary resultants of loads and reactions, iterations, by stage
    */

@@ -6,6 +6,7 @@
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/constraints/interface_parameters.h>
 #include <voussoir/constraints/projection.h>
+#include <voussoir/driver/material_test.h>
 #include <voussoir/fem/damping.h>
 #include <voussoir/fem/discretization.h>
 #include <voussoir/loads/absorbing_boundary.h>
@@ -96,6 +97,7 @@ namespace Voussoir
     ReservoirParameters            reservoir;
     StaticParameters               static_state;
     ModeParameters                 modes;
+    MaterialTestParameters         material_test;
     NamedObjects<Projection>       projections;
     BoundaryParameters             boundaries;
     GroundMotion                   ground_motion;

@@ -56,7 +56,7 @@ namespace Voussoir
     const Grid                          grid;
     const Discretization                discretization;
     const LumpedMass                    mass;
-    const InternalForce                 internal_force;
+    InternalForce                       internal_force;
     NodalTerms                          terms;
     AbsorbingBoundary                   boundary;
     std::unique_ptr<Reservoir>          reservoir;    // compressible, or null

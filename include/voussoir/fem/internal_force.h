@@ -1,7 +1,7 @@
 #ifndef voussoir_fem_internal_force_h
 #define voussoir_fem_internal_force_h
 
-#include <voussoir/fem/discretization.h>
+#include <voussoir/fem/point_history.h>
 
 #include <functional>
 #include <memory>
@@ -33,6 +33,51 @@ namespace Voussoir
               const unsigned int begin,
               const unsigned int end) const = 0;
 
+    /** Numbers that each integration point remembers; 0 for a linear law. */
+    virtual unsigned int
+    n_history() const = 0;
+
+    /**
+     * Like add_force, but by the law with its memory, which goes one step on:
+     *   f = sum B^T ( sigma(e) - D e_0 ) ,  e = k B (u + s w) + e_0 ,
+     * with the stiffness scale k and the strain offset e_0 of the history.
+     * While the law is elastic this is add_force.
+     */
+    virtual void
+    add_response(const MatrixFree  &matrix_free,
+                 Vector            &force,
+                 const Vector      &displacement,
+                 const Vector      *memory,
+                 const unsigned int begin,
+                 const unsigned int end,
+                 PointHistory      &history,
+                 const double       time_step) const = 0;
+
+    /**
+     * Sets the strain offset e_0 of the history, for which the strain e under
+     * the static displacement u_s [m] and the temperature T [K] of each node is
+     * a (B u_s - alpha T I), with the factor a of the static stage.
+     */
+    virtual void
+    set_offset(const MatrixFree  &matrix_free,
+               PointHistory      &history,
+               const Vector      &displacement,
+               const Vector      &temperature,
+               const unsigned int begin,
+               const unsigned int end) const = 0;
+
+    /**
+     * Energy stored at the points that have left the elastic range [J], less
+     * what the forces of the static state @p u_static (or empty) do.
+     */
+    virtual double
+    inelastic_energy(const MatrixFree   &matrix_free,
+                     const PointHistory &history,
+                     const Vector       &displacement,
+                     const Vector       &u_static,
+                     const unsigned int  begin,
+                     const unsigned int  end) const = 0;
+
     /**
      * Adds the force that a free expansion needs to be held back [N],
      *   f = sum B^T sigma(alpha T I),
@@ -45,13 +90,23 @@ namespace Voussoir
                       const unsigned int begin,
                       const unsigned int end) const = 0;
 
-    /** Integral of sigma(u) : epsilon(v) over the batches [begin, end) [J]. */
+    /** How points that have left the elastic range count in an integral. */
+    enum class Inelastic
+    {
+      not_at_all,
+      by_intact_share
+    };
+
+    /** Integral of D epsilon(u) : epsilon(v) over the batches [begin, end) [J].
+     */
     virtual double
-    work(const MatrixFree  &matrix_free,
-         const Vector      &u,
-         const Vector      &v,
-         const unsigned int begin,
-         const unsigned int end) const = 0;
+    work(const MatrixFree   &matrix_free,
+         const Vector       &u,
+         const Vector       &v,
+         const unsigned int  begin,
+         const unsigned int  end,
+         const PointHistory &history,
+         const Inelastic     inelastic) const = 0;
 
     /**
      * Largest eigenvalue of M^-1 K of each cell of a batch by itself [1/s2].
@@ -69,8 +124,8 @@ namespace Voussoir
   };
 
   /**
-   * The internal force f(u) of all materials in one matrix-free sweep, with
-   * vector updates fused into it: the hot loop.
+   * The internal force of all materials in one matrix-free sweep, with vector
+   * updates fused into it: the hot loop. The materials' memory lives here.
    */
   class InternalForce
   {
@@ -93,7 +148,8 @@ namespace Voussoir
       std::function<void(const unsigned int, const unsigned int)>;
 
     /**
-     * force = f(displacement + s memory) with @p before and @p after called
+     * force = f(displacement + s memory) by the materials' laws, whose memory
+     * goes on by @p time_step, with @p before and @p after called
      * once for every owned entry: before it is first read, after its last
      * contribution has arrived (on one rank; across ranks the library orders
      * the exchange accordingly). @p before may still change the source vectors.
@@ -102,28 +158,67 @@ namespace Voussoir
     sweep(Vector          &force,
           const Vector    &displacement,
           const Vector    *memory,
+          const double     time_step,
           const RangeWork &before,
-          const RangeWork &after) const;
+          const RangeWork &after);
 
-    /** force = f(displacement). */
+    /** force = K (displacement + s memory) with the elastic moduli. */
     void
-    apply(Vector &force, const Vector &displacement) const;
+    apply(Vector       &force,
+          const Vector &displacement,
+          const Vector *memory = nullptr) const;
+
+    /** force = f(displacement) by the laws; their memory takes it in. */
+    void
+    respond(Vector &force, const Vector &displacement);
+
+    /** Whether any law has a memory. */
+    bool
+    has_memory() const;
+
+    /** Whether `sweep` uses the laws with memory, or their elastic moduli. */
+    bool uses_memory = true;
+
+    /** Lets the laws know the static state; see CellKernel::set_offset. Without
+     *  a static stage the vectors are empty. */
+    void
+    set_static_state(const Vector &displacement, const Vector &temperature);
+
+    /** Energy stored in the materials by the motion since the static state
+     *  @p u_static (or empty) [J]; @p moved and @p moved_before are that motion
+     *  at the last two steps. */
+    double
+    stored_energy(const Vector &displacement,
+                  const Vector &u_static,
+                  const Vector &moved,
+                  const Vector &moved_before) const;
+
+    /** Energy lost to cracks and plastic flow, this rank's [J]. */
+    double
+    dissipated() const;
+
+    /** One of each material. */
+    std::vector<PointHistory> histories;
 
     /** force += what holds back the free expansion at this temperature (in all
      *  three components of each node) [N]. */
     void
     add_thermal_force(Vector &force, const Vector &temperature) const;
 
-    /**
-     * The stored work u^T K v [J]; with @p with_damping_factors each material
-     * counts times its damping factor.
-     */
+    /** Integral of the damping factor times D epsilon(u) : epsilon(v), where
+     *  damage leaves the intact share of it [J]. */
     double
-    work(const Vector &u,
-         const Vector &v,
-         const bool    with_damping_factors = false) const;
+    damping_work(const Vector &u, const Vector &v) const;
 
   private:
+    /** Sum over all ranks of what @p evaluate gives for runs of batches of one
+     *  material. */
+    double
+    sum(const std::vector<const Vector *>               &read,
+        const std::function<double(const unsigned int,
+                                   const unsigned int,
+                                   const unsigned int)> &evaluate) const;
+
     const Discretization           &discretization;
     std::vector<const CellKernel *> kernels;
   };

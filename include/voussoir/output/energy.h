@@ -24,6 +24,7 @@ namespace Voussoir
     double memory      = 0.; // in the springs of the Maxwell branches
     double damping     = 0.; // lost in the material so far
     double boundary    = 0.; // gone through the boundary dashpots so far
+    double material    = 0.; // lost to cracks and plastic flow so far
     double input       = 0.; // work of all forces and of a moving base so far
     double constraints = 0.; // work of the projections so far
 
@@ -37,7 +38,8 @@ namespace Voussoir
     double
     error(const double initial) const
     {
-      return input + constraints + initial - stored() - damping - boundary;
+      return input + constraints + initial - stored() - damping - material -
+             boundary;
     }
   };
 

@@ -21,6 +21,7 @@ namespace Voussoir
     const Discretization                           &discretization;
     const std::vector<const Material *>            &materials;
     std::function<unsigned int(const Grid::Cell &)> material_of_cell;
+    const InternalForce                            &internal_force;
     const InitialState                             &initial;
     const Reservoir                                *reservoir; // or null
     const Contact                                  *contact;   // or null

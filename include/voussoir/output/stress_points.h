@@ -1,7 +1,7 @@
 #ifndef voussoir_output_stress_points_h
 #define voussoir_output_stress_points_h
 
-#include <voussoir/output/observer.h>
+#include <voussoir/output/law_stress.h>
 
 namespace Voussoir
 {
@@ -35,9 +35,9 @@ namespace Voussoir
     dealii::SymmetricTensor<2, 3>
     strain(const unsigned int point, const Vector &displacement) const;
 
-    std::vector<Weight>           weights;
-    std::vector<std::size_t>      end_of_weights; // of each point
-    std::vector<const Material *> materials;      // of each point
+    std::vector<Weight>      weights;
+    std::vector<std::size_t> end_of_weights; // of each point
+    std::vector<LawStress>   laws;           // of each point
 
     // of each point, if there is a static stage
     std::vector<dealii::SymmetricTensor<2, 3>> initial_strain;

@@ -1,7 +1,7 @@
-#ifndef voussoir_output_principal_stress_h
-#define voussoir_output_principal_stress_h
+#ifndef voussoir_materials_principal_stress_h
+#define voussoir_materials_principal_stress_h
 
-#include <voussoir/materials/material.h>
+#include <voussoir/fem/point_history.h>
 
 #include <algorithm>
 #include <array>

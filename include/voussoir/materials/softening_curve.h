@@ -1,0 +1,118 @@
+#ifndef voussoir_materials_softening_curve_h
+#define voussoir_materials_softening_curve_h
+
+#include <string>
+#include <vector>
+
+namespace Voussoir
+{
+  /**
+   * Stress over strain in a uniaxial test beyond the elastic limit, in straight
+   * pieces. The inelastic strain of a node is a part of the material itself and
+   * a displacement that is smeared over a band, as wide as the element: the
+   * crack band of Bazant and Oh (1983), which makes the energy of a crack the
+   * same on all meshes.
+   */
+  class SofteningCurve
+  {
+  public:
+    struct Node
+    {
+      double stress;       // [Pa]
+      double strain;       // inelastic, of the material [1]
+      double displacement; // inelastic, of the band [m]
+    };
+
+    /** What has become of a point at its largest equivalent strain. */
+    struct Point
+    {
+      double stress;       // [Pa]
+      double irreversible; // part of the strain that stays on unloading
+      double elastic;      // the other part
+
+      /** Loss of stiffness. */
+      double
+      damage(const double young_modulus) const
+      {
+        return 1. - stress / (young_modulus * elastic);
+      }
+    };
+
+    SofteningCurve() = default;
+
+    /**
+     * @param irreversible_share share of the inelastic strain that stays on
+     *   unloading; the rest is damage
+     */
+    SofteningCurve(const std::vector<Node> &nodes,
+                   const double             young_modulus,
+                   const double             irreversible_share);
+
+    /** At a strain [1] in a band of this width [m]; elastic below the limit. */
+    Point
+    at(const double strain, const double band) const;
+
+    /** Strain of the elastic limit. */
+    double
+    elastic_limit(const double band) const
+    {
+      return strength_factor(band) * nodes[0].stress / young_modulus;
+    }
+
+    /**
+     * Factor on the stresses, and its inverse on the displacements, which keeps
+     * the energy. It is below one where the band is so wide that a crack that
+     * opens along a straight line releases more elastic energy around it than
+     * it takes (snap-back).
+     */
+    template <typename Number>
+    Number
+    strength_factor(const Number &band) const
+    {
+      return std::min(Number(1.), Number(std::sqrt(Number(widest / band))));
+    }
+
+    /**
+     * Share of a straight line of the same energy in the falling branch: above
+     * zero where the band is so wide that the steepest piece of the curve
+     * itself would snap back.
+     */
+    double
+    straightness(const double band) const;
+
+    /** Widest band with the curve as it is, and with its strength [m]. */
+    double
+    widest_band_of_curve() const
+    {
+      return widest_of_curve;
+    }
+
+    double
+    widest_band() const
+    {
+      return widest;
+    }
+
+    /** Energy of the displacements, per area of the crack [J/m2]. */
+    static double
+    energy(const std::vector<Node> &nodes);
+
+    /** Nodes with displacements such that their energy is @p energy. */
+    static std::vector<Node>
+    scaled_to(std::vector<Node> nodes, const double energy);
+
+    /** From "strain or displacement: stress, ...", beginning at 0, for a
+     *  message named by @p place. */
+    static std::vector<std::pair<double, double>>
+    parse(const std::string &table, const std::string &place);
+
+  private:
+    std::vector<Node> nodes;
+    double            young_modulus = 1., irreversible_share = 0.;
+    unsigned int      peak     = 0;  // node
+    double            straight = 0.; // displacement over loss of stress [m/Pa]
+    double            widest_of_curve = 0., widest = 0.;
+  };
+} // namespace Voussoir
+
+#endif

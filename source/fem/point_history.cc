@@ -1,0 +1,213 @@
+#include <voussoir/fem/point_history.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  PointHistory::PointHistory(const Discretization &discretization,
+                             const unsigned int    material,
+                             const unsigned int    width)
+    : width(width)
+  {
+    if (width == 0)
+      return;
+    const auto &matrix_free = discretization.matrix_free;
+    n_points                = matrix_free.get_quadrature().size();
+    slot_of_batch.assign(matrix_free.n_cell_batches(),
+                         numbers::invalid_unsigned_int);
+    item_of_cell.assign(discretization.grid.triangulation().n_active_cells(),
+                        numbers::invalid_unsigned_int);
+    unsigned int n_slots = 0;
+    for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
+      {
+        if (discretization.material_of_batch[batch] != material)
+          continue;
+        slot_of_batch[batch] = n_slots++;
+        Lanes length         = 1.;
+        for (unsigned int lane = 0;
+             lane < matrix_free.n_active_entries_per_cell_batch(batch);
+             ++lane)
+          {
+            const auto cell = matrix_free.get_cell_iterator(batch, lane);
+            length[lane] = std::cbrt(cell->measure()) / discretization.degree;
+            item_of_cell[cell->active_cell_index()] = places.size();
+            places.push_back({cell, {batch, lane}});
+          }
+        lengths.push_back(length);
+      }
+    numbers.resize(std::size_t(n_slots) * n_points * width);
+    intact_shares.resize(n_slots * n_points, Lanes(1.));
+    active.resize(n_slots * n_points, 0);
+  }
+
+
+  bool
+  PointHistory::empty() const
+  {
+    return width == 0;
+  }
+
+
+  std::size_t
+  PointHistory::index(const unsigned int batch, const unsigned int q) const
+  {
+    return std::size_t(slot_of_batch[batch]) * n_points + q;
+  }
+
+
+  Lanes *
+  PointHistory::values(const unsigned int batch, const unsigned int q)
+  {
+    return numbers.data() + width * index(batch, q);
+  }
+
+
+  const Lanes *
+  PointHistory::values(const unsigned int batch, const unsigned int q) const
+  {
+    return numbers.data() + width * index(batch, q);
+  }
+
+
+  bool
+  PointHistory::is_active(const unsigned int batch, const unsigned int q) const
+  {
+    return active[index(batch, q)] != 0;
+  }
+
+
+  void
+  PointHistory::activate(const unsigned int batch, const unsigned int q)
+  {
+    active[index(batch, q)] = 1;
+  }
+
+
+  Lanes
+  PointHistory::element_length(const unsigned int batch) const
+  {
+    return lengths[slot_of_batch[batch]];
+  }
+
+
+  const SymmetricTensor3<Lanes> &
+  PointHistory::strain_offset(const unsigned int batch,
+                              const unsigned int q) const
+  {
+    return offsets[index(batch, q)];
+  }
+
+
+  SymmetricTensor3<Lanes> &
+  PointHistory::strain_offset(const unsigned int batch, const unsigned int q)
+  {
+    return offsets[index(batch, q)];
+  }
+
+
+  void
+  PointHistory::make_offsets()
+  {
+    offsets.resize(active.size());
+    has_offset = true;
+  }
+
+
+  Lanes &
+  PointHistory::intact(const unsigned int batch, const unsigned int q)
+  {
+    return intact_shares[index(batch, q)];
+  }
+
+
+  const Lanes &
+  PointHistory::intact(const unsigned int batch, const unsigned int q) const
+  {
+    return intact_shares[index(batch, q)];
+  }
+
+
+  void
+  PointHistory::mark_start()
+  {
+    dissipated = 0.;
+    if (std::count(active.begin(), active.end(), 1) > 0)
+      at_start = numbers;
+  }
+
+
+  const Lanes *
+  PointHistory::values_at_start(const unsigned int batch,
+                                const unsigned int q) const
+  {
+    return at_start.empty() ? nullptr :
+                              at_start.data() + width * index(batch, q);
+  }
+
+
+  const std::vector<std::pair<Discretization::Cell, PointHistory::Place>> &
+  PointHistory::cells() const
+  {
+    return places;
+  }
+
+
+  PointHistory::Place
+  PointHistory::place_of(const Discretization::Cell &cell) const
+  {
+    return places[item_of_cell[cell->active_cell_index()]].second;
+  }
+
+
+  std::vector<double>
+  PointHistory::read(const Place &place, const unsigned int q) const
+  {
+    std::vector<double> result;
+    const Lanes        *source = values(place.batch, q);
+    for (unsigned int i = 0; i < width; ++i)
+      result.push_back(source[i][place.lane]);
+    return result;
+  }
+
+
+  KeyedValues
+  PointHistory::checkpoint_values()
+  {
+    packed.resize(places.size() * n_points * width);
+    exchange(false);
+    KeyedValues values{n_points * width, {}};
+    for (unsigned int i = 0; i < places.size(); ++i)
+      values.items.emplace_back(Grid::global_key(places[i].first),
+                                packed.data() + i * values.width);
+    return values;
+  }
+
+
+  void
+  PointHistory::load()
+  {
+    exchange(true);
+    packed.clear();
+  }
+
+
+  void
+  PointHistory::exchange(const bool load)
+  {
+    auto item = packed.begin();
+    for (const auto &place : places)
+      for (unsigned int q = 0; q < n_points; ++q)
+        {
+          const auto [batch, lane] = place.second;
+          for (unsigned int i = 0; i < width; ++i, ++item)
+            if (load)
+              {
+                values(batch, q)[i][lane] = *item;
+                if (*item != 0.)
+                  activate(batch, q);
+              }
+            else
+              *item = values(batch, q)[i][lane];
+        }
+  }
+} // namespace Voussoir

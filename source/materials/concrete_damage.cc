@@ -1,0 +1,425 @@
+// Concrete that cracks in tension and is crushed in compression.
+
+#include <voussoir/base/error.h>
+#include <voussoir/materials/isotropic_elasticity.h>
+#include <voussoir/materials/material_of.h>
+#include <voussoir/materials/softening_curve.h>
+#include <voussoir/materials/spectral.h>
+
+#include <iomanip>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Two scalar damages on the effective stress s = C : (e - e_p), split by
+     * the sign of its principal values (Faria, Oliver, Cervera 1998),
+     *   sigma = (1 - d+) s+ + (1 - d-) s- ,
+     * each driven by the largest equivalent strain so far: in tension that of
+     * the largest principal stress, in compression that of the surface of
+     * Lubliner et al. (1989) at s-. The damages follow from uniaxial curves, so
+     * that a step needs no iteration, and a crack that closes has its stiffness
+     * back. A share of the inelastic strain may be irreversible.
+     */
+    struct ConcreteDamage : IsotropicElasticity
+    {
+      // equivalent strains in tension and compression, e_p
+      static constexpr unsigned int n_history = 8;
+
+      double tensile_strength      = 2.5e6;
+      double fracture_energy       = 250.;
+      double compressive_strength  = 25e6;
+      double crushing_energy       = 30e3;
+      double biaxial_ratio         = 1.16;
+      double strength_increase     = 1.;
+      double relaxation_time       = 0.;
+      double irreversible_tension  = 0.;
+      double irreversible_crushing = 0.;
+
+      std::string tension_law     = "exponential";
+      std::string compression_law = "GB 50010";
+      std::string tension_table, compression_table;
+
+      SofteningCurve tension, compression;
+      double         alpha = 0.; // of Lubliner's surface
+
+      void
+      declare_parameters(ParameterHandler &prm)
+      {
+        IsotropicElasticity::declare_parameters(prm);
+        prm.add_parameter("Tensile strength",
+                          tensile_strength,
+                          "Uniaxial tensile strength ft [Pa].",
+                          Patterns::Double(1.));
+        prm.add_parameter("Fracture energy",
+                          fracture_energy,
+                          "Energy Gf that a crack takes per area [N/m].",
+                          Patterns::Double(1e-3));
+        prm.add_parameter("Compressive strength",
+                          compressive_strength,
+                          "Uniaxial compressive strength fc [Pa].",
+                          Patterns::Double(1.));
+        prm.add_parameter("Crushing energy",
+                          crushing_energy,
+                          "Energy that crushing takes per area beyond the peak "
+                          "[N/m].",
+                          Patterns::Double(1e-3));
+        prm.add_parameter("Biaxial ratio",
+                          biaxial_ratio,
+                          "Strength under equal compression in two directions "
+                          "over the uniaxial one.",
+                          Patterns::Double(1.01, 1.5));
+        prm.add_parameter("Strength increase",
+                          strength_increase,
+                          "Factor on strengths and energies under an "
+                          "earthquake; codes give 1.2 to 1.3.",
+                          Patterns::Double(0.1, 5.));
+        prm.add_parameter("Relaxation time",
+                          relaxation_time,
+                          "Time that damage lags behind by, which strengthens "
+                          "under fast loading [s]; 0 for no effect of rate.",
+                          Patterns::Double(0.));
+        prm.add_parameter("Tension law",
+                          tension_law,
+                          "Stress over the opening of a crack: exponential, "
+                          "linear, the curve of the Chinese code GB 50010 "
+                          "scaled to the fracture energy, or an own table, "
+                          "which has its own strength and energy.",
+                          Patterns::Selection(
+                            "exponential|linear|GB 50010|table"));
+        prm.add_parameter("Tension table",
+                          tension_table,
+                          "Openings [m] and stresses [Pa], as in \"0: 2.9e6, "
+                          "66e-6: 1.9e6, 480e-6: 0\".");
+        prm.add_parameter(
+          "Compression law",
+          compression_law,
+          "The curve of GB 50010, linear up to 0.4 fc, its part "
+          "beyond the peak scaled to the crushing energy, or an "
+          "own table.",
+          Patterns::Selection("GB 50010|table"));
+        prm.add_parameter("Compression table",
+                          compression_table,
+                          "Inelastic strains and stresses [Pa], as in \"0: "
+                          "13e6, 1e-3: 24e6, 1e-2: 5e6\"; the same for all "
+                          "sizes of cells.");
+        prm.add_parameter(
+          "Irreversible share in tension",
+          irreversible_tension,
+          "Part of the inelastic strain that stays when a crack "
+          "is unloaded.",
+          Patterns::Double(0., 0.95));
+        prm.add_parameter("Irreversible share in compression",
+                          irreversible_crushing,
+                          "The same in compression.",
+                          Patterns::Double(0., 0.95));
+      }
+
+      void
+      check(const std::string &place)
+      {
+        alpha       = (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
+        tension     = SofteningCurve(increased(tension_nodes(place)),
+                                 young_modulus,
+                                 irreversible_tension);
+        compression = SofteningCurve(increased(compression_nodes(place)),
+                                     young_modulus,
+                                     irreversible_crushing);
+      }
+
+      std::vector<SofteningCurve::Node>
+      increased(std::vector<SofteningCurve::Node> nodes) const
+      {
+        for (auto &node : nodes)
+          node.stress *= strength_increase;
+        return nodes;
+      }
+
+      std::vector<SofteningCurve::Node>
+      tension_nodes(const std::string &place) const
+      {
+        std::vector<SofteningCurve::Node> nodes;
+        const double                      ft = tensile_strength;
+        if (tension_law == "table")
+          {
+            for (const auto &[opening, stress] :
+                 SofteningCurve::parse(tension_table,
+                                       place + ", \"Tension table\""))
+              nodes.push_back({stress, 0., opening});
+            return nodes;
+          }
+        if (tension_law == "linear")
+          nodes = {{ft, 0., 0.}, {0., 0., 1.}};
+        else if (tension_law == "exponential")
+          {
+            // sigma = ft exp(-w ft / Gf), to 1 % of ft
+            const unsigned int n = 24;
+            for (unsigned int i = 0; i < n; ++i)
+              {
+                const double stress = std::pow(0.01, double(i) / (n - 1));
+                nodes.push_back({ft * stress, 0., -std::log(stress)});
+              }
+            nodes.push_back({0., 0., nodes.back().displacement + 2.});
+          }
+        else
+          {
+            // GB 50010-2010, C.2.3, stresses in MPa, to 40 times the strain of
+            // the peak
+            const double mpa = 1e-6 * ft, peak = 65e-6 * std::pow(mpa, 0.54),
+                         a = 0.312 * mpa * mpa;
+            for (double x = 1.; x < 40.; x *= 1.15)
+              {
+                const double stress = ft * x / (a * std::pow(x - 1., 1.7) + x);
+                nodes.push_back(
+                  {stress,
+                   0.,
+                   (x - 1.) * peak + (ft - stress) / young_modulus});
+              }
+            nodes.push_back({0., 0., 1.25 * nodes.back().displacement});
+          }
+        return SofteningCurve::scaled_to(nodes, fracture_energy);
+      }
+
+      std::vector<SofteningCurve::Node>
+      compression_nodes(const std::string &place) const
+      {
+        std::vector<SofteningCurve::Node> nodes;
+        if (compression_law == "table")
+          {
+            for (const auto &[strain, stress] :
+                 SofteningCurve::parse(compression_table,
+                                       place + ", \"Compression table\""))
+              nodes.push_back({stress, strain, 0.});
+            return nodes;
+          }
+        // GB 50010-2010, C.2.4, stresses in MPa
+        const double fc = compressive_strength, mpa = 1e-6 * fc,
+                     peak = (700. + 172. * std::sqrt(mpa)) * 1e-6,
+                     a    = std::max(0.1, 0.157 * std::pow(mpa, 0.785) - 0.905);
+        const double elastic = young_modulus * peak;
+        if (elastic < 1.1 * fc)
+          throw UserError(
+            place +
+            ": \"Compressive strength\" is too high for its Young's modulus: by GB 50010 "
+            "the strain at the peak would be elastic. Give a "
+            "\"Compression table\".");
+        const double n      = elastic / (elastic - fc);
+        const auto   rising = [&](const double x) {
+          return fc * n * x / (n - 1. + std::pow(x, n));
+        };
+        // up to 0.4 fc it is taken as linear
+        double x = 0.4 * fc / elastic;
+        while (rising(x) < 0.4 * fc)
+          x *= 1.001;
+        const double first     = x * peak - rising(x) / young_modulus;
+        const auto   inelastic = [&](const double ratio, const double stress) {
+          return ratio * peak - stress / young_modulus - first;
+        };
+        const unsigned int pieces = 12;
+        for (unsigned int i = 0; i <= pieces; ++i)
+          {
+            const double ratio  = x + (1. - x) * i / pieces;
+            const double stress = rising(ratio);
+            nodes.push_back({stress, inelastic(ratio, stress), 0.});
+          }
+        const double                      at_peak = nodes.back().strain;
+        std::vector<SofteningCurve::Node> falling{nodes.back()};
+        for (double ratio = 1.1; ratio < 12.; ratio *= 1.15)
+          {
+            const double stress =
+              fc * ratio / (a * (ratio - 1.) * (ratio - 1.) + ratio);
+            falling.push_back(
+              {stress,
+               at_peak,
+               std::max(inelastic(ratio, stress) - at_peak, 1e-6)});
+          }
+        falling.push_back(
+          {0.05 * fc, at_peak, 1.5 * falling.back().displacement});
+        falling = SofteningCurve::scaled_to(falling, crushing_energy);
+        nodes.insert(nodes.end(), falling.begin() + 1, falling.end());
+        return nodes;
+      }
+
+      template <typename Number>
+      Number
+      load_level(const SymmetricTensor3<Number> &stress,
+                 const Number                   &element_length) const
+      {
+        // principal values lie within mean -+ 2 sqrt(J2 / 3)
+        const auto [first, second] = invariants(stress);
+        const Number mean          = first / 3.,
+                     radius        = 2. * std::sqrt(Number(second / 3.));
+        const Number ft            = tension.elastic_limit(0.) * young_modulus *
+                          tension.strength_factor(element_length);
+        const Number fc = compression.elastic_limit(0.) * young_modulus *
+                          (1. - alpha) *
+                          compression.strength_factor(element_length);
+        return std::max(Number((mean + radius) / ft),
+                        Number((radius - mean) / fc));
+      }
+
+      /** One of the damages goes one step on. */
+      struct Progress
+      {
+        double effective;   // factor on s for the irreversible strain
+        double intact;      // 1 - d
+        double dissipation; // over the elastic energy of s
+      };
+
+      Progress
+      go_on(const SofteningCurve &curve,
+            const double          equivalent_stress,
+            double               &largest,
+            const double          band,
+            const double          time_step) const
+      {
+        // zero is a point that has never left the elastic range
+        const double limit  = curve.elastic_limit(band);
+        const double before = std::max(largest, limit);
+        const auto   old    = curve.at(before, band);
+        const double trial =
+          equivalent_stress / young_modulus + old.irreversible;
+        if (trial <= before)
+          return {1., largest == 0. ? 1. : 1. - old.damage(young_modulus), 0.};
+        const double share = relaxation_time == 0. ?
+                               1. :
+                               time_step / (relaxation_time + time_step);
+        largest            = before + share * (trial - before);
+        const auto now     = curve.at(largest, band);
+
+        // along straight pieces of the curve the work less what is stored is
+        // (sigma_old e - sigma e_old)/2 + (sigma_old + sigma)/2 dp
+        const double lost =
+          0.5 * (old.stress * now.elastic - now.stress * old.elastic) +
+          0.5 * (old.stress + now.stress) *
+            (now.irreversible - old.irreversible);
+        return {now.elastic / (largest - old.irreversible),
+                1. - now.damage(young_modulus),
+                lost / (0.5 * young_modulus * now.elastic * now.elastic)};
+      }
+
+      template <typename Number>
+      PointResponse<Number>
+      respond(const SymmetricTensor3<Number> &strain,
+              Number                         *history,
+              const PointSituation<Number>   &situation) const
+      {
+        SymmetricTensor3<Number> plastic;
+        for (unsigned int i = 0; i < 6; ++i)
+          plastic.access_raw_entry(i) = history[2 + i];
+        const auto  principal = spectrum(stress(strain - plastic));
+        const auto &s         = principal.values;
+
+        std::array<Number, 3> positive, negative;
+        Number                first = 0., squares = 0., largest = s[0];
+        for (unsigned int i = 0; i < 3; ++i)
+          {
+            positive[i] = std::max(s[i], Number(0.));
+            negative[i] = std::min(s[i], Number(0.));
+            first += negative[i];
+            largest = std::max(largest, s[i]);
+          }
+        const Number least_pressed = std::min(largest, Number(0.));
+        for (unsigned int i = 0; i < 3; ++i)
+          {
+            const Number difference = negative[i] - negative[(i + 1) % 3];
+            squares += difference * difference; // 6 J2
+          }
+        // gamma = 3: Kc = 2/3
+        const Number equivalent_compression =
+          (alpha * first + std::sqrt(Number(0.5 * squares)) +
+           3. * least_pressed) /
+          (1. - alpha);
+
+        Number factor[2], intact[2], dissipation[2];
+        for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
+          for (const unsigned int sign : {0, 1})
+            {
+              const Progress progress =
+                go_on(sign == 0 ? tension : compression,
+                      lane_of(sign == 0 ? largest : equivalent_compression,
+                              lane),
+                      lane_of(history[sign], lane),
+                      lane_of(situation.element_length, lane),
+                      situation.time_step);
+              lane_of(factor[sign], lane)      = progress.effective;
+              lane_of(intact[sign], lane)      = progress.intact;
+              lane_of(dissipation[sign], lane) = progress.dissipation;
+            }
+
+        PointResponse<Number>    response;
+        SymmetricTensor3<Number> effective[2];
+        for (const unsigned int sign : {0, 1})
+          effective[sign] =
+            factor[sign] * principal.compose(sign == 0 ? positive : negative);
+        response.stress = intact[0] * effective[0] + intact[1] * effective[1];
+        response.elastic_strain = this->strain(effective[0] + effective[1]);
+        response.dissipation =
+          0.5 * (dissipation[0] * (effective[0] * response.elastic_strain) +
+                 dissipation[1] * (effective[1] * response.elastic_strain));
+        for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
+          if (lane_of(factor[0], lane) * lane_of(factor[1], lane) != 1.)
+            for (unsigned int i = 0; i < 6; ++i)
+              lane_of(history[2 + i], lane) =
+                lane_of(strain.access_raw_entry(i), lane) -
+                lane_of(response.elastic_strain.access_raw_entry(i), lane);
+        return response;
+      }
+
+      static std::vector<std::string>
+      output_names()
+      {
+        return {"tension damage", "compression damage", "crack opening [mm]"};
+      }
+
+      std::vector<double>
+      outputs(const double *history, const double element_length) const
+      {
+        std::vector<double> result;
+        for (const unsigned int sign : {0, 1})
+          result.push_back(history[sign] == 0. ?
+                             0. :
+                             (sign == 0 ? tension : compression)
+                               .at(history[sign], element_length)
+                               .damage(young_modulus));
+        result.push_back(
+          history[0] == 0. ?
+            0. :
+            1e3 * element_length *
+              (history[0] -
+               tension.at(history[0], element_length).stress / young_modulus));
+        return result;
+      }
+
+      std::string
+      remark(const double element_length) const
+      {
+        std::ostringstream text;
+        text << std::setprecision(3) << "cells of up to " << element_length
+             << " m are longer than ";
+        if (element_length > tension.widest_band())
+          text << tension.widest_band()
+               << " m, beyond which a crack would snap back; to keep the "
+                  "fracture energy their tensile strength is lowered by up to "
+               << 100. * (1. - tension.strength_factor(element_length))
+               << " %.";
+        else if (element_length > tension.widest_band_of_curve())
+          text << tension.widest_band_of_curve()
+               << " m, beyond which a crack would snap back at first; in them "
+                  "the stress falls in a straighter line, with the same "
+                  "strength and fracture energy.";
+        else
+          return {};
+        return text.str();
+      }
+    };
+
+    const Registry<Material>::Add<MaterialOf<ConcreteDamage>> registered(
+      "concrete damage",
+      "Concrete with damage in tension and compression on the effective stress; "
+      "cracks close with their stiffness back.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,42 @@
+#include <voussoir/output/law_stress.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  LawStress::LawStress(const ObservedModel        &model,
+                       const Discretization::Cell &cell,
+                       const Point<3>             &unit)
+  {
+    const unsigned int number = model.material_of_cell(cell);
+    material                  = model.materials[number];
+    history                   = &model.internal_force.histories[number];
+    if (history->empty())
+      return;
+    place = history->place_of(cell);
+    const auto &points =
+      model.discretization.matrix_free.get_quadrature().get_points();
+    for (unsigned int i = 1; i < points.size(); ++i)
+      // of equally near ones the first, whatever the round-off
+      if (points[i].distance(unit) < points[q].distance(unit) - 1e-10)
+        q = i;
+  }
+
+
+  SymmetricTensor<2, 3>
+  LawStress::operator()(const SymmetricTensor<2, 3> &strain,
+                        const SymmetricTensor<2, 3> &initial_strain,
+                        const double                 temperature) const
+  {
+    const auto strain_of_law =
+      material->strain_of_law(strain, initial_strain, temperature);
+    if (history->empty() || !history->is_active(place.batch, q))
+      return material->stress(strain_of_law);
+    std::vector<double> memory = history->read(place, q);
+    return material
+      ->respond(strain_of_law,
+                memory.data(),
+                {history->element_length(place.batch)[place.lane], 0.})
+      .stress;
+  }
+} // namespace Voussoir

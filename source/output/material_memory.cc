@@ -1,0 +1,105 @@
+#include <voussoir/base/mpi.h>
+#include <voussoir/output/material_memory.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Calls visit(cell, outputs of one point) for all points of a material. */
+    void
+    for_each_point(
+      const Material                                         &material,
+      const PointHistory                                     &history,
+      const std::function<void(const Discretization::Cell &,
+                               const bool,
+                               const std::vector<double> &)> &visit)
+    {
+      const std::vector<double> nothing(material.output_names().size());
+      for (const auto &[cell, place] : history.cells())
+        for (unsigned int q = 0; q < history.n_points; ++q)
+          {
+            // lanes of one batch are active together
+            const std::vector<double> memory = history.read(place, q);
+            const bool                active =
+              std::any_of(memory.begin(), memory.end(), [](const double value) {
+                return value != 0.;
+              });
+            visit(cell,
+                  active,
+                  active ? material.outputs(memory.data(),
+                                            history.element_length(
+                                              place.batch)[place.lane]) :
+                           nothing);
+          }
+    }
+  } // namespace
+
+
+  std::map<std::string, dealii::Vector<float>>
+  memory_of_cells(const ObservedModel &model)
+  {
+    const auto n = model.discretization.grid.triangulation().n_active_cells();
+    std::map<std::string, dealii::Vector<float>> result;
+    for (unsigned int m = 0; m < model.materials.size(); ++m)
+      {
+        const PointHistory &history = model.internal_force.histories[m];
+        const auto          names   = model.materials[m]->output_names();
+        for (const std::string &name : names)
+          if (result[name].size() == 0)
+            result[name].reinit(n);
+        for_each_point(*model.materials[m],
+                       history,
+                       [&](const Discretization::Cell &cell,
+                           const bool                  active,
+                           const std::vector<double>  &outputs) {
+                         for (unsigned int i = 0; active && i < names.size();
+                              ++i)
+                           result[names[i]][cell->active_cell_index()] +=
+                             outputs[i] / history.n_points;
+                       });
+      }
+    return result;
+  }
+
+
+  nlohmann::json
+  memory_summary(const ObservedModel            &model,
+                 const std::vector<std::string> &material_names)
+  {
+    nlohmann::json result;
+    const MPI_Comm communicator = model.discretization.grid.communicator();
+    for (unsigned int m = 0; m < model.materials.size(); ++m)
+      {
+        const PointHistory &history = model.internal_force.histories[m];
+        if (history.empty())
+          continue;
+        const auto          names = model.materials[m]->output_names();
+        std::vector<double> largest(names.size()), volumes(3);
+        for_each_point(*model.materials[m],
+                       history,
+                       [&](const Discretization::Cell &cell,
+                           const bool                  active,
+                           const std::vector<double>  &outputs) {
+                         const double volume =
+                           cell->measure() / history.n_points;
+                         volumes[0] += volume;
+                         if (active)
+                           volumes[1] += volume;
+                         for (unsigned int i = 0; i < names.size(); ++i)
+                           largest[i] = std::max(largest[i], outputs[i]);
+                       });
+        volumes[2] = history.dissipated;
+        volumes    = sum_over_ranks(volumes, communicator);
+        auto &item = result[material_names[m]];
+        item["share of the volume that left the elastic range"] =
+          volumes[1] / volumes[0];
+        item["energy lost [J]"] = volumes[2];
+        for (unsigned int i = 0; i < names.size(); ++i)
+          item["largest " + names[i]] =
+            Utilities::MPI::max(largest[i], communicator);
+      }
+    return result;
+  }
+} // namespace Voussoir

@@ -1,0 +1,347 @@
+#include <voussoir/fem/nodal_values.h>
+#include <voussoir/materials/point_test.h>
+
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/physics/transformations.h>
+
+#include <random>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    using Tensor2 = SymmetricTensor<2, 3>;
+
+    Tensor2
+    random_strain(std::mt19937 &random, const double size)
+    {
+      std::normal_distribution<double> normal;
+      Tensor2                          strain;
+      for (unsigned int i = 0; i < 6; ++i)
+        strain.access_raw_entry(i) = size * normal(random);
+      return strain;
+    }
+
+
+    Tensor<2, 3>
+    random_rotation(std::mt19937 &random)
+    {
+      std::normal_distribution<double> normal;
+      Tensor<1, 3>                     axis;
+      for (unsigned int d = 0; d < 3; ++d)
+        axis[d] = normal(random);
+      return Physics::Transformations::Rotations::rotation_matrix_3d(
+        axis / axis.norm(), 1. + normal(random));
+    }
+
+
+    Tensor2
+    rotated(const Tensor2 &tensor, const Tensor<2, 3> &rotation)
+    {
+      return symmetrize(rotation * Tensor<2, 3>(tensor) * transpose(rotation));
+    }
+
+
+    /** Corners of a path of strains, up to several times the elastic range. */
+    std::vector<Tensor2>
+    random_path(std::mt19937 &random)
+    {
+      std::vector<Tensor2> corners{Tensor2()};
+      for (unsigned int i = 0; i < 8; ++i)
+        corners.push_back(random_strain(random, i % 2 == 0 ? 4e-4 : 2e-3));
+      return corners;
+    }
+
+
+    constexpr unsigned int steps = 400; // from corner to corner
+
+
+    double
+    stored(const PointResponse<double> &response)
+    {
+      return 0.5 * (response.stress * response.elastic_strain);
+    }
+
+
+    /** Calls visit(strain) along a path. */
+    void
+    follow(const std::vector<Tensor2>                 &corners,
+           const std::function<void(const Tensor2 &)> &visit)
+    {
+      for (unsigned int i = 0; i + 1 < corners.size(); ++i)
+        for (unsigned int step = 1; step <= steps; ++step)
+          visit(corners[i] +
+                (corners[i + 1] - corners[i]) * (double(step) / steps));
+    }
+
+
+    /**
+     * What must hold for every class of materials, those of other authors too:
+     * with the default entries, each registered class goes through it.
+     */
+    class Materials : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        for (const std::string &name : Registry<Material>::names())
+          {
+            const auto parameters =
+              make_case(file.with({"Materials/stuff/Class=" + name}));
+            const Material &material = *parameters->material_list().at(0);
+            look_at_point(name, material, verdicts);
+            look_at_cells(name, *parameters, verdicts, communicator);
+            look_at_patch(name, *parameters, 1e-5, verdicts, communicator);
+            // cracks depend on the size of the cells
+            const auto regular = make_case(file.with(
+              {"Materials/stuff/Class=" + name, "Mesh/box/Distortion=0"}));
+            look_at_patch(name, *regular, 1e-3, verdicts, communicator);
+          }
+      }
+
+    private:
+      void
+      look_at_point(const std::string &name,
+                    const Material    &material,
+                    Verdicts          &verdicts) const
+      {
+        std::mt19937                 random(1);
+        const PointSituation<double> situation{1., 1e-3};
+        const double modulus = material.elastic_constants().young_modulus;
+        double       turned = 0., lost = 0., turnover = 0.;
+        for (unsigned int repetition = 0; repetition < 5; ++repetition)
+          {
+            const auto          rotation = random_rotation(random);
+            std::vector<double> history(material.n_history()), other(history);
+            follow(random_path(random), [&](const Tensor2 &strain) {
+              const auto response =
+                material.respond(strain, history.data(), situation);
+              const auto turned_response =
+                material.respond(rotated(strain, rotation),
+                                 other.data(),
+                                 situation);
+              turned   = std::max(turned,
+                                (rotated(response.stress, rotation) -
+                                 turned_response.stress)
+                                    .norm() /
+                                  (1e-4 * modulus));
+              lost     = std::min(lost, response.dissipation);
+              turnover = std::max(turnover, stored(response));
+            });
+          }
+        if (material.isotropic())
+          verdicts.below(name + ": stress turns with the strain", turned, 1e-9);
+        verdicts.below(name + ": energy made, over the largest stored",
+                       -lost / turnover,
+                       1e-12);
+
+        // There and back along one direction: elsewhere damage that is split by
+        // the sign of stresses has no potential, as is known.
+        double unaccounted = 0.;
+        for (unsigned int repetition = 0; repetition < 5; ++repetition)
+          {
+            std::vector<double>  history(material.n_history());
+            std::vector<Tensor2> corners;
+            const Tensor2        direction = random_strain(random, 1.);
+            for (const double size : {0., 4e-4, -1e-3, 6e-4, -2e-3, 1e-3, 0.})
+              corners.push_back(size * direction);
+            Tensor2 last_strain, last_stress;
+            double  work = 0., dissipated = 0., largest = 0.;
+            follow(corners, [&](const Tensor2 &strain) {
+              const auto response =
+                material.respond(strain, history.data(), situation);
+              work +=
+                0.5 * (response.stress + last_stress) * (strain - last_strain);
+              dissipated += response.dissipation;
+              largest = std::max({largest, stored(response), dissipated});
+              unaccounted =
+                std::max(unaccounted,
+                         std::abs(work - dissipated - stored(response)) /
+                           largest);
+              last_strain = strain;
+              last_stress = response.stress;
+            });
+          }
+        verdicts.below(name + ": work less what is stored and lost",
+                       unaccounted,
+                       0.02);
+
+        // elastic waves of all directions are no faster than the P wave
+        double fastest = 0.;
+        for (unsigned int repetition = 0; repetition < 200; ++repetition)
+          {
+            const Tensor<2, 3> axes = random_rotation(random);
+            Tensor<1, 3>       direction, polarisation;
+            for (unsigned int d = 0; d < 3; ++d)
+              {
+                direction[d]    = axes[d][0];
+                polarisation[d] = repetition % 2 == 0 ? axes[d][0] : axes[d][1];
+              }
+            const Tensor2 strain =
+              symmetrize(outer_product(direction, polarisation));
+            fastest = std::max(fastest, material.stress(strain) * strain);
+          }
+        const ElasticConstants c = material.elastic_constants();
+        verdicts.below(
+          name + ": speed of waves over that of the P wave, less 1",
+          std::max(0., std::sqrt(fastest / c.density) / c.p_wave_speed() - 1.),
+          1e-9);
+      }
+
+
+      void
+      look_at_cells(const std::string &name,
+                    Case              &parameters,
+                    Verdicts          &verdicts,
+                    const MPI_Comm     communicator) const
+      {
+        const auto     simulation = make_simulation(parameters, communicator);
+        InternalForce &internal   = simulation->internal_force;
+        const Discretization &discretization = simulation->discretization;
+        const Material       &material       = *simulation->materials[0];
+
+        // a rough field that grows: SIMD lanes against points by themselves
+        Vector force = discretization.create_vector(), u = force, plain = force;
+        std::map<std::pair<unsigned int, unsigned int>, std::vector<double>>
+               histories;
+        double worst = 0.;
+        for (unsigned int step = 1; step <= 6; ++step)
+          {
+            for (unsigned int node = 0; node < discretization.n_owned_nodes();
+                 ++node)
+              {
+                const Point<3> &x = discretization.node_positions[node];
+                for (unsigned int d = 0; d < 3; ++d)
+                  u.local_element(3 * node + d) =
+                    (step % 3 == 0 ? -3e-4 : 1e-4) * step *
+                    std::sin(3. * x[d] + 2. * x[(d + 1) % 3] + d);
+              }
+            internal.respond(force, u);
+            respond_plainly(*simulation, u, plain, histories);
+            plain -= force;
+            worst = std::max(worst, plain.linfty_norm() / force.linfty_norm());
+          }
+        verdicts.below(name + ": force in SIMD lanes against point by point",
+                       worst,
+                       1e-10);
+
+        if (material.n_history() > 0)
+          {
+            PointHistory &history = internal.histories[0];
+            KeyedValues   saved   = history.checkpoint_values();
+            std::vector<std::vector<double>> kept;
+            for (const auto &item : saved.items)
+              kept.emplace_back(item.second, item.second + saved.width);
+            Vector after = force;
+            u *= 1.1;
+            internal.respond(after, u);
+            saved = history.checkpoint_values();
+            for (unsigned int i = 0; i < kept.size(); ++i)
+              std::copy(kept[i].begin(), kept[i].end(), saved.items[i].second);
+            history.load();
+            Vector again = force;
+            internal.respond(again, u);
+            again -= after;
+            verdicts.below(name + ": force from saved memory",
+                           again.linfty_norm(),
+                           1e-12 * after.linfty_norm());
+          }
+      }
+
+
+      /** One strain everywhere: no force inside, whatever the law does. */
+      void
+      look_at_patch(const std::string &name,
+                    Case              &parameters,
+                    const double       size,
+                    Verdicts          &verdicts,
+                    const MPI_Comm     communicator) const
+      {
+        const auto simulation = make_simulation(parameters, communicator);
+        const Discretization &discretization = simulation->discretization;
+        std::mt19937          random(2);
+        const Tensor2         strain = random_strain(random, size);
+        Vector                u = discretization.create_vector(), force = u;
+        for (unsigned int node = 0; node < discretization.n_owned_nodes();
+             ++node)
+          {
+            const Tensor<1, 3> value =
+              strain * Tensor<1, 3>(discretization.node_positions[node]);
+            for (unsigned int d = 0; d < 3; ++d)
+              u.local_element(3 * node + d) = value[d];
+          }
+        simulation->internal_force.respond(force, u);
+        double inside = 0.;
+        for (unsigned int node = 0; node < discretization.n_owned_nodes();
+             ++node)
+          {
+            const Point<3> &x     = discretization.node_positions[node];
+            bool            inner = true;
+            for (unsigned int d = 0; d < 3; ++d)
+              inner = inner && x[d] > 1e-6 && x[d] < 1. - 1e-6;
+            if (inner)
+              inside = std::max(inside, node_value(force, node).norm());
+          }
+        verdicts.below(name + ": patch test",
+                       Utilities::MPI::max(inside, communicator) /
+                         force.linfty_norm(),
+                       1e-10);
+      }
+
+
+      /** The internal force from points by themselves. */
+      void
+      respond_plainly(const Simulation              &simulation,
+                      const Vector                  &u,
+                      Vector                        &result,
+                      std::map<std::pair<unsigned int, unsigned int>,
+                               std::vector<double>> &histories) const
+      {
+        const Discretization &discretization = simulation.discretization;
+        const auto           &fe             = discretization.fe;
+        const Material       &material       = *simulation.materials[0];
+        FEValues<3>           values(discretization.mapping,
+                           fe,
+                           discretization.matrix_free.get_quadrature(),
+                           update_gradients | update_JxW_values);
+        const FEValuesExtractors::Vector     displacement(0);
+        std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
+        std::vector<Tensor2> strains(values.n_quadrature_points);
+        result = 0.;
+        for (const auto &cell :
+             discretization.dof_handler.active_cell_iterators())
+          {
+            values.reinit(cell);
+            values[displacement].get_function_symmetric_gradients(u, strains);
+            cell->get_dof_indices(dofs);
+            for (const unsigned int q : values.quadrature_point_indices())
+              {
+                auto &history = histories[{cell->active_cell_index(), q}];
+                history.resize(material.n_history());
+                const auto stress = material
+                                      .respond(strains[q],
+                                               history.data(),
+                                               {std::cbrt(cell->measure()) /
+                                                  discretization.degree,
+                                                1e300})
+                                      .stress;
+                for (const unsigned int i : values.dof_indices())
+                  result(dofs[i]) +=
+                    stress * values[displacement].symmetric_gradient(i, q) *
+                    values.JxW(q);
+              }
+          }
+      }
+    };
+
+    const Registry<Check>::Add<Materials>
+      registered("materials", "What must hold for all materials.");
+  } // namespace
+} // namespace Voussoir

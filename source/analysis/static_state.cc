@@ -144,6 +144,7 @@ namespace Voussoir
       {
         dynamic_scale.push_back(material->stiffness_scale);
         material->stiffness_scale = material->static_factor;
+        material->strain_factor   = material->static_factor;
       }
 
     const Timer                     clock;
@@ -245,7 +246,10 @@ namespace Voussoir
     summary["seconds"] = clock.wall_time();
 
     for (unsigned int m = 0; m < dynamic_scale.size(); ++m)
-      model.materials[m]->stiffness_scale = dynamic_scale[m];
+      {
+        model.materials[m]->stiffness_scale = dynamic_scale[m];
+        model.materials[m]->strain_factor   = 1.;
+      }
     model.internal_force.set_static_state(state.displacement,
                                           state.temperature);
     model.internal_force.respond(state.force, state.displacement);

@@ -301,7 +301,7 @@ namespace Voussoir
                                     begin,
                                     end,
                                     histories[material],
-                                    CellKernel::Inelastic::by_intact_share);
+                                    CellKernel::Inelastic::by_damping_share);
                });
   }
 } // namespace Voussoir

@@ -36,7 +36,7 @@ namespace Voussoir
         lengths.push_back(length);
       }
     numbers.resize(std::size_t(n_slots) * n_points * width);
-    intact_shares.resize(n_slots * n_points, Lanes(1.));
+    damping_shares.resize(n_slots * n_points, Lanes(1.));
     active.resize(n_slots * n_points, 0);
   }
 
@@ -114,16 +114,17 @@ namespace Voussoir
 
 
   Lanes &
-  PointHistory::intact(const unsigned int batch, const unsigned int q)
+  PointHistory::damping_share(const unsigned int batch, const unsigned int q)
   {
-    return intact_shares[index(batch, q)];
+    return damping_shares[index(batch, q)];
   }
 
 
   const Lanes &
-  PointHistory::intact(const unsigned int batch, const unsigned int q) const
+  PointHistory::damping_share(const unsigned int batch,
+                              const unsigned int q) const
   {
-    return intact_shares[index(batch, q)];
+    return damping_shares[index(batch, q)];
   }
 
 

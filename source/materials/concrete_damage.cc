@@ -4,7 +4,7 @@
 #include <voussoir/materials/isotropic_elasticity.h>
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/softening_curve.h>
-#include <voussoir/materials/spectral.h>
+#include <voussoir/materials/tension_split.h>
 
 #include <iomanip>
 
@@ -15,14 +15,16 @@ namespace Voussoir
   namespace
   {
     /**
-     * Two scalar damages on the effective stress s = C : (e - e_p), split by
-     * the sign of its principal values (Faria, Oliver, Cervera 1998),
-     *   sigma = (1 - d+) s+ + (1 - d-) s- ,
-     * each driven by the largest equivalent strain so far: in tension that of
-     * the largest principal stress, in compression that of the surface of
-     * Lubliner et al. (1989) at s-. The damages follow from uniaxial curves, so
-     * that a step needs no iteration, and a crack that closes has its stiffness
-     * back. A share of the inelastic strain may be irreversible.
+     * Two scalar damages on the effective stress s = C : (e - e_p), split into
+     * tension and compression,
+     *   sigma = (1 - d+) s+ + (1 - d-) s-
+     * (Faria, Oliver, Cervera 1998, here with a split that has a potential: see
+     * split_tension). Each is driven by the largest equivalent strain so far:
+     * in tension that of the largest principal stress, in compression that of
+     * the surface of Lubliner et al. (1989) at s-. The damages follow from
+     * uniaxial curves, so that a step needs no iteration, and a crack that
+     * closes has its stiffness back. A share of the inelastic strain may be
+     * irreversible.
      */
     struct ConcreteDamage : IsotropicElasticity
     {
@@ -121,10 +123,14 @@ namespace Voussoir
       void
       check(const std::string &place)
       {
-        alpha       = (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
+        alpha = (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
+        // across an open crack the stress no longer contracts the material
+        // sideways: e = ((1 - k) s + k sigma)/E with k = 2 nu^2/(1 - nu)
         tension     = SofteningCurve(increased(tension_nodes(place)),
                                  young_modulus,
-                                 irreversible_tension);
+                                 irreversible_tension,
+                                 2. * poisson_ratio * poisson_ratio /
+                                   (1. - poisson_ratio));
         compression = SofteningCurve(increased(compression_nodes(place)),
                                      young_modulus,
                                      irreversible_crushing);
@@ -310,28 +316,19 @@ namespace Voussoir
         SymmetricTensor3<Number> plastic;
         for (unsigned int i = 0; i < 6; ++i)
           plastic.access_raw_entry(i) = history[2 + i];
-        const auto  principal = spectrum(stress(strain - plastic));
-        const auto &s         = principal.values;
-
-        std::array<Number, 3> positive, negative;
-        Number                first = 0., squares = 0., largest = s[0];
+        const auto   split   = split_tension(stress(strain - plastic), *this);
+        const auto  &pressed = split.compression;
+        const Number largest = split.principal.values[0];
+        Number       first = 0., squares = 0.;
         for (unsigned int i = 0; i < 3; ++i)
           {
-            positive[i] = std::max(s[i], Number(0.));
-            negative[i] = std::min(s[i], Number(0.));
-            first += negative[i];
-            largest = std::max(largest, s[i]);
-          }
-        const Number least_pressed = std::min(largest, Number(0.));
-        for (unsigned int i = 0; i < 3; ++i)
-          {
-            const Number difference = negative[i] - negative[(i + 1) % 3];
+            const Number difference = pressed[i] - pressed[(i + 1) % 3];
+            first += pressed[i];
             squares += difference * difference; // 6 J2
           }
         // gamma = 3: Kc = 2/3
         const Number equivalent_compression =
-          (alpha * first + std::sqrt(Number(0.5 * squares)) +
-           3. * least_pressed) /
+          (alpha * first + std::sqrt(Number(0.5 * squares)) + 3. * pressed[0]) /
           (1. - alpha);
 
         Number factor[2], intact[2], dissipation[2];
@@ -354,9 +351,11 @@ namespace Voussoir
         SymmetricTensor3<Number> effective[2];
         for (const unsigned int sign : {0, 1})
           effective[sign] =
-            factor[sign] * principal.compose(sign == 0 ? positive : negative);
+            factor[sign] * split.principal.compose(
+                             sign == 0 ? split.tension : split.compression);
         response.stress = intact[0] * effective[0] + intact[1] * effective[1];
         response.elastic_strain = this->strain(effective[0] + effective[1]);
+        response.damping_share  = intact[0] * intact[1];
         response.dissipation =
           0.5 * (dissipation[0] * (effective[0] * response.elastic_strain) +
                  dissipation[1] * (effective[1] * response.elastic_strain));
@@ -385,12 +384,10 @@ namespace Voussoir
                              (sign == 0 ? tension : compression)
                                .at(history[sign], element_length)
                                .damage(young_modulus));
-        result.push_back(
-          history[0] == 0. ?
-            0. :
-            1e3 * element_length *
-              (history[0] -
-               tension.at(history[0], element_length).stress / young_modulus));
+        result.push_back(history[0] == 0. ?
+                           0. :
+                           1e3 * element_length *
+                             tension.at(history[0], element_length).inelastic);
         return result;
       }
 

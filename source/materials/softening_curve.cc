@@ -10,10 +10,12 @@ namespace Voussoir
 {
   SofteningCurve::SofteningCurve(const std::vector<Node> &nodes,
                                  const double             young_modulus,
-                                 const double             irreversible_share)
+                                 const double             irreversible_share,
+                                 const double             relief)
     : nodes(nodes)
     , young_modulus(young_modulus)
     , irreversible_share(irreversible_share)
+    , stretch((1. - irreversible_share) / (1. - relief) + irreversible_share)
   {
     for (unsigned int i = 0; i < nodes.size(); ++i)
       if (nodes[i].stress >= nodes[peak].stress)
@@ -55,9 +57,10 @@ namespace Voussoir
       const Node  &node = nodes[i];
       const double line =
         i < peak ? 0. : straight * (nodes[peak].stress - node.stress);
-      return factor * node.stress / young_modulus + node.strain +
-             ((1. - share) * node.displacement + share * line) /
-               (factor * band);
+      return factor * node.stress / young_modulus +
+             stretch * (node.strain +
+                        ((1. - share) * node.displacement + share * line) /
+                          (factor * band));
     };
     double stress = young_modulus * strain;
     double before = strain_of(0);
@@ -77,9 +80,9 @@ namespace Voussoir
             before = after;
           }
       }
-    const double irreversible =
-      irreversible_share * (strain - stress / young_modulus);
-    return {stress, irreversible, strain - irreversible};
+    const double inelastic    = (strain - stress / young_modulus) / stretch;
+    const double irreversible = irreversible_share * inelastic;
+    return {stress, inelastic, irreversible, strain - irreversible};
   }
 
 

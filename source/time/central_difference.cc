@@ -34,8 +34,9 @@ namespace Voussoir
     , mass_coefficient(damping.mass_coefficient)
     , stiffness_coefficient(damping.stiffness_coefficient)
     , central(!paper_scheme)
-    , uniform(internal_force.uniform_damping() ||
-              (n_branches == 0 && stiffness_coefficient == 0.))
+    , uniform(
+        (internal_force.uniform_damping() && !internal_force.has_memory()) ||
+        (n_branches == 0 && stiffness_coefficient == 0.))
     , uniform_factor(internal_force.damping_factor())
     , force(discretization.create_vector())
     , effective(force)

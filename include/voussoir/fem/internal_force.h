@@ -39,9 +39,12 @@ namespace Voussoir
 
     /**
      * Like add_force, but by the law with its memory, which goes one step on:
-     *   f = sum B^T ( sigma(e) - D e_0 ) ,  e = k B (u + s w) + e_0 ,
-     * with the stiffness scale k and the strain offset e_0 of the history.
-     * While the law is elastic this is add_force.
+     *   f = sum B^T ( sigma(e) - D e_0 + b D (k B (u + s w) - m B u) ) ,
+     *   e = m B u + e_0 ,
+     * with the stiffness scale k of the damping model, the factor m on strains
+     * (one, but in the static stage) and the strain offset e_0 of the history.
+     * The last term is the stress of damping alone, of which damage leaves the
+     * share b. While the law is elastic, this is add_force.
      */
     virtual void
     add_response(const MatrixFree  &matrix_free,
@@ -56,7 +59,7 @@ namespace Voussoir
     /**
      * Sets the strain offset e_0 of the history, for which the strain e under
      * the static displacement u_s [m] and the temperature T [K] of each node is
-     * a (B u_s - alpha T I), with the factor a of the static stage.
+     * a (B u_s - alpha T I), with the static factor a of the material.
      */
     virtual void
     set_offset(const MatrixFree  &matrix_free,
@@ -94,7 +97,7 @@ namespace Voussoir
     enum class Inelastic
     {
       not_at_all,
-      by_intact_share
+      by_damping_share
     };
 
     /** Integral of D epsilon(u) : epsilon(v) over the batches [begin, end) [J].
@@ -205,8 +208,8 @@ namespace Voussoir
     void
     add_thermal_force(Vector &force, const Vector &temperature) const;
 
-    /** Integral of the damping factor times D epsilon(u) : epsilon(v), where
-     *  damage leaves the intact share of it [J]. */
+    /** Integral of the damping factor times D epsilon(u) : epsilon(v), of which
+     *  damage leaves a share [J]. */
     double
     damping_work(const Vector &u, const Vector &v) const;
 

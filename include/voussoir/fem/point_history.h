@@ -56,7 +56,7 @@ namespace Voussoir
 
     /**
      * Strain that the law sees beside that of the displacement, of the static
-     * state and of temperature; see MaterialOf::respond.
+     * state and of temperature; see CellKernel::add_response.
      */
     const SymmetricTensor3<Lanes> &
     strain_offset(const unsigned int batch, const unsigned int q) const;
@@ -70,12 +70,12 @@ namespace Voussoir
     void
     make_offsets();
 
-    /** Share of the elastic stress work that the law left in the last step. */
+    /** Share of the stress of damping that damage has left. */
     Lanes &
-    intact(const unsigned int batch, const unsigned int q);
+    damping_share(const unsigned int batch, const unsigned int q);
 
     const Lanes &
-    intact(const unsigned int batch, const unsigned int q) const;
+    damping_share(const unsigned int batch, const unsigned int q) const;
 
     /** Keeps the numbers of now as those of the static state. */
     void
@@ -121,7 +121,7 @@ namespace Voussoir
     std::vector<unsigned int>                           slot_of_batch;
     std::vector<std::pair<Discretization::Cell, Place>> places;
     std::vector<unsigned int>                           item_of_cell;
-    dealii::AlignedVector<Lanes> numbers, at_start, lengths, intact_shares;
+    dealii::AlignedVector<Lanes> numbers, at_start, lengths, damping_shares;
     dealii::AlignedVector<SymmetricTensor3<Lanes>> offsets;
     std::vector<char>                              active;
     std::vector<double>                            packed;

@@ -89,6 +89,9 @@ namespace Voussoir
     SymmetricTensor3<Number> stress;         // [Pa]
     SymmetricTensor3<Number> elastic_strain; // stored: stress times half of it
     Number                   dissipation;    // lost in this step [J/m3]
+
+    /** Share that damage leaves of the stress of damping. */
+    Number damping_share = Number(1.);
   };
 
   /**
@@ -171,6 +174,10 @@ namespace Voussoir
      *  dynamic load what lets the moduli hold at the reference frequency of
      *  the damping model. */
     double stiffness_scale = 1.;
+
+    /** Factor on the strain that the law sees: the static factor in the static
+     *  stage. */
+    double strain_factor = 1.;
   };
 } // namespace Voussoir
 

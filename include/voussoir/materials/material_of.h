@@ -42,7 +42,8 @@ namespace Voussoir
    *     std::string remark(const double element_length) const;
    *
    * A point that has been elastic so far stays it without a call of `respond`
-   * while the load level, a cheap bound, is at most one.
+   * while the load level, a cheap bound that is one at the elastic limit or
+   * before, is below 0.8.
    */
   template <typename Law>
   class MaterialOf : public Material
@@ -160,7 +161,7 @@ namespace Voussoir
     {
       if constexpr (has_memory)
         {
-          Evaluation cell(matrix_free);
+          Evaluation cell(matrix_free), own(matrix_free);
           for (unsigned int batch = begin; batch < end; ++batch)
             {
               const Lanes length = history.element_length(batch);
@@ -169,22 +170,36 @@ namespace Voussoir
               if (memory != nullptr)
                 add_memory(cell, *memory);
               cell.evaluate(dealii::EvaluationFlags::gradients);
+              bool knows_own = false;
               for (const unsigned int q : cell.quadrature_point_indices())
                 {
-                  SymmetricTensor3<Lanes> strain =
-                    stiffness_scale * cell.get_symmetric_gradient(q);
-                  SymmetricTensor3<Lanes> stress = law.stress(strain);
-                  SymmetricTensor3<Lanes> trial  = stress, offset_stress;
+                  SymmetricTensor3<Lanes> stress =
+                    stiffness_scale *
+                    law.stress(cell.get_symmetric_gradient(q));
+                  SymmetricTensor3<Lanes> trial = stress, offset_stress;
                   if (history.has_offset)
                     {
-                      const auto &offset = history.strain_offset(batch, q);
-                      offset_stress      = law.stress(offset);
-                      strain += offset;
+                      offset_stress =
+                        law.stress(history.strain_offset(batch, q));
                       trial += offset_stress;
                     }
                   if (history.is_active(batch, q) ||
-                      any_above_one(law.load_level(trial, length)))
+                      any_above(law.load_level(trial, length), watched))
                     {
+                      // the law goes by the strain without damping
+                      if (!knows_own)
+                        {
+                          own.reinit(batch);
+                          own.gather_evaluate(
+                            displacement, dealii::EvaluationFlags::gradients);
+                          knows_own = true;
+                        }
+                      SymmetricTensor3<Lanes> strain =
+                        strain_factor * own.get_symmetric_gradient(q);
+                      const SymmetricTensor3<Lanes> damping_stress =
+                        stress - law.stress(strain);
+                      if (history.has_offset)
+                        strain += history.strain_offset(batch, q);
                       const auto response =
                         go_on(strain,
                               batch,
@@ -194,9 +209,8 @@ namespace Voussoir
                               cell.JxW(q),
                               time_step,
                               history);
-                      stress = response.stress;
-                      if (history.has_offset)
-                        stress -= offset_stress;
+                      stress = response.stress - offset_stress +
+                               response.damping_share * damping_stress;
                     }
                   cell.submit_symmetric_gradient(stress, q);
                 }
@@ -228,7 +242,7 @@ namespace Voussoir
           for (const unsigned int q : cell.quadrature_point_indices())
             {
               auto &offset = history.strain_offset(batch, q);
-              offset       = (static_factor - stiffness_scale) *
+              offset       = (static_factor - strain_factor) *
                        cell.get_symmetric_gradient(q);
               for (unsigned int d = 0; d < 3; ++d)
                 offset[d][d] -=
@@ -273,22 +287,27 @@ namespace Voussoir
                   {
                     SymmetricTensor3<Lanes> moved =
                       cell.get_symmetric_gradient(q);
-                    Lanes energy =
-                      stored(moved, history.values(batch, q), history, batch, q)
-                        .second;
+                    const auto now = look_at(
+                      moved, history.values(batch, q), history, batch, q);
+                    Lanes energy = 0.5 * (now.stress * now.elastic_strain);
                     if (u_static.size() > 0)
                       {
                         const auto strain =
                           cell_static.get_symmetric_gradient(q);
                         const auto at_start =
-                          stored(strain,
-                                 history.values_at_start(batch, q),
-                                 history,
-                                 batch,
-                                 q);
+                          look_at(strain,
+                                  history.values_at_start(batch, q),
+                                  history,
+                                  batch,
+                                  q);
                         moved -= strain;
-                        energy -= at_start.second + at_start.first * moved;
+                        energy -= at_start.stress *
+                                  (0.5 * at_start.elastic_strain + moved);
                       }
+                    // what the damping model takes off the moduli
+                    energy += 0.5 * (stiffness_scale - 1.) *
+                              history.damping_share(batch, q) *
+                              (law.stress(moved) * moved);
                     sum += energy * cell.JxW(q);
                   }
               total += sum_of_cells(matrix_free, batch, sum);
@@ -358,7 +377,7 @@ namespace Voussoir
               if (has_memory && history.is_active(batch, q))
                 part *= inelastic == Inelastic::not_at_all ?
                           Lanes(0.) :
-                          history.intact(batch, q);
+                          history.damping_share(batch, q);
               sum += part;
             }
           total += sum_of_cells(matrix_free, batch, sum);
@@ -410,11 +429,15 @@ namespace Voussoir
 
     static constexpr bool has_memory = Law::n_history > 0;
 
+    // load level from which the law itself is asked: below one, as damping adds
+    // to the stress or takes from it
+    static constexpr double watched = 0.8;
+
     static bool
-    any_above_one(const Lanes &values)
+    any_above(const Lanes &values, const double limit)
     {
       for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-        if (values[lane] > 1.)
+        if (values[lane] > limit)
           return true;
       return false;
     }
@@ -449,17 +472,11 @@ namespace Voussoir
                     values,
                     PointSituation<Lanes>{history.element_length(batch),
                                           time_step});
-      const Lanes left    = response.stress * response.elastic_strain,
-                  elastic = law.stress(response.elastic_strain) *
-                            response.elastic_strain;
-      history.intact(batch, q) =
-        std::max(Lanes(0.),
-                 std::min(Lanes(1.), (left + 1e-30) / (elastic + 1e-30)));
-      bool active = false;
+      history.damping_share(batch, q) = response.damping_share;
+      bool active                     = false;
       for (unsigned int lane = 0; lane < n_cells; ++lane)
         {
-          history.dissipated +=
-            response.dissipation[lane] * weight[lane] / stiffness_scale;
+          history.dissipated += response.dissipation[lane] * weight[lane];
           for (unsigned int i = 0; i < Law::n_history; ++i)
             active = active || values[i][lane] != 0.;
         }
@@ -468,30 +485,26 @@ namespace Voussoir
       return response;
     }
 
-    /** Stress and energy density under a strain of the displacement, with this
-     *  memory (null: none yet). The energy is that of the displacement's own
-     *  strain, of which the law sees k times as much. */
-    std::pair<SymmetricTensor3<Lanes>, Lanes>
-    stored(const SymmetricTensor3<Lanes> &strain,
-           const Lanes                   *values,
-           const PointHistory            &history,
-           const unsigned int             batch,
-           const unsigned int             q) const
+    /** Response to a strain of the displacement with this memory (null: none
+     *  yet), which stays as it is. */
+    PointResponse<Lanes>
+    look_at(const SymmetricTensor3<Lanes> &strain,
+            const Lanes                   *values,
+            const PointHistory            &history,
+            const unsigned int             batch,
+            const unsigned int             q) const
     {
       std::array<Lanes, Law::n_history> copy;
       copy.fill(Lanes(0.));
       if (values != nullptr)
         std::copy(values, values + Law::n_history, copy.begin());
-      SymmetricTensor3<Lanes> total = stiffness_scale * strain;
+      SymmetricTensor3<Lanes> total = strain_factor * strain;
       if (history.has_offset)
         total += history.strain_offset(batch, q);
-      const auto response =
-        law.respond(total,
-                    copy.data(),
-                    PointSituation<Lanes>{history.element_length(batch), 0.});
-      return {response.stress,
-              0.5 / stiffness_scale *
-                (response.stress * response.elastic_strain)};
+      return law.respond(total,
+                         copy.data(),
+                         PointSituation<Lanes>{history.element_length(batch),
+                                               0.});
     }
 
     void

@@ -27,8 +27,9 @@ namespace Voussoir
     struct Point
     {
       double stress;       // [Pa]
-      double irreversible; // part of the strain that stays on unloading
-      double elastic;      // the other part
+      double inelastic;    // strain of a uniaxial test
+      double irreversible; // part of it that stays on unloading
+      double elastic;      // effective, without that part
 
       /** Loss of stiffness. */
       double
@@ -43,12 +44,16 @@ namespace Voussoir
     /**
      * @param irreversible_share share of the inelastic strain that stays on
      *   unloading; the rest is damage
+     * @param relief k of a law in which a uniaxial test with the effective
+     *   stress s has the strain ((1 - k) s + k sigma)/E
      */
     SofteningCurve(const std::vector<Node> &nodes,
                    const double             young_modulus,
-                   const double             irreversible_share);
+                   const double             irreversible_share,
+                   const double             relief = 0.);
 
-    /** At a strain [1] in a band of this width [m]; elastic below the limit. */
+    /** At an effective strain s/E [1] in a band of this width [m]; elastic
+     * below the limit. */
     Point
     at(const double strain, const double band) const;
 
@@ -109,6 +114,7 @@ namespace Voussoir
   private:
     std::vector<Node> nodes;
     double            young_modulus = 1., irreversible_share = 0.;
+    double            stretch  = 1.; // effective over uniaxial inelastic strain
     unsigned int      peak     = 0;  // node
     double            straight = 0.; // displacement over loss of stress [m/Pa]
     double            widest_of_curve = 0., widest = 0.;

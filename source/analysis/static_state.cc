@@ -51,7 +51,8 @@ namespace Voussoir
 
 
   void
-  StaticParameters::check(const NamedLoads &loads) const
+  StaticParameters::check(const NamedLoads           &loads,
+                          const InterfacesParameters &interfaces) const
   {
     std::vector<std::string> known;
     for (const auto &load : loads)
@@ -76,6 +77,25 @@ namespace Voussoir
                         "\" is there before the earthquake, but \"Stages\" in "
                         "section \"Static state\" does not name it; add it "
                         "there.");
+    for (const InterfaceParameters &interface : interfaces.list)
+      {
+        const std::string &after = interface.grouted_after;
+        const std::string  place = "section \"Interfaces/" + interface.name;
+        if (after.empty())
+          continue;
+        if (staged.count(after) == 0)
+          throw UserError(
+            "\"Grouted after\" in " + place + "\" names \"" + after +
+            "\", which is not in the \"Stages\" of section \"Static state\"" +
+            known_names(after, {staged.begin(), staged.end()}) + ".");
+        const auto last = stage_names().back();
+        if (interface.uplift.given() &&
+            std::find(last.begin(), last.end(), after) != last.end())
+          throw UserError("The interface of " + place +
+                          "\" is grouted after the last of the static stages, "
+                          "so that its \"Uplift\" would come with the "
+                          "earthquake; let a stage follow.");
+      }
   }
 
 
@@ -242,6 +262,8 @@ namespace Voussoir
         report["largest displacement [m]"] = largest;
         report["names"]                    = stage;
         summary["stages"].push_back(report);
+        if (model.contact != nullptr)
+          model.contact->grout(stage, state.displacement);
       }
     summary["seconds"] = clock.wall_time();
 

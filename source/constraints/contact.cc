@@ -10,6 +10,9 @@ namespace Voussoir
 
   namespace
   {
+    // Before it is grouted, an interface is too wide for its sides to meet [m].
+    constexpr double not_grouted = 1e3;
+
     /** Rows n, t1 (level), t2 (upwards). */
     Tensor<2, 3>
     frame_of(const Tensor<1, 3> &normal)
@@ -29,21 +32,17 @@ namespace Voussoir
 
   Contact::Contact(const Discretization       &discretization,
                    const InterfacesParameters &interfaces)
-    : names(interfaces.surfaces())
+    : interfaces(interfaces)
+    , names(interfaces.surfaces())
     , communicator(discretization.grid.communicator())
   {
     std::vector<ContactSurface> surfaces;
     for (unsigned int i = 0; i < interfaces.list.size(); ++i)
       for (std::size_t s = 0; s < interfaces.list[i].surfaces.size(); ++s)
         {
-          const InterfaceParameters &interface = interfaces.list[i];
-          ContactSurface             surface;
-          surface.law           = interface.law.get();
-          surface.key_depth     = interface.key_depth;
-          surface.bar_stiffness = interface.steel_ratio *
-                                  interface.steel_modulus /
-                                  interface.free_length;
-          surface.bar_strength = interface.steel_ratio * interface.yield_stress;
+          ContactSurface surface;
+          surface.law       = interfaces.list[i].law.get();
+          surface.key_depth = interfaces.list[i].key_depth;
           surfaces.push_back(surface);
           interface_of_surface.push_back(i);
         }
@@ -64,13 +63,12 @@ namespace Voussoir
             // their order in a cluster is the same on all partitions
             point_keys.push_back(256 * cluster.key + points.size());
             ContactPoint point;
-            point.surface = pair.interface;
-            point.first   = pair.first;
-            point.second  = pair.second;
-            point.frame   = frame_of(pair.normal);
-            point.area    = pair.area;
-            point.initial_gap =
-              interfaces.list[interface_of_surface[pair.interface]].initial_gap;
+            point.surface        = pair.interface;
+            point.first          = pair.first;
+            point.second         = pair.second;
+            point.frame          = frame_of(pair.normal);
+            point.area           = pair.area;
+            point.initial_gap[0] = not_grouted;
             points.push_back(point);
             point_positions.push_back(cluster.position);
             first_node.push_back(cluster.nodes[pair.first]);
@@ -78,10 +76,13 @@ namespace Voussoir
         solver->add_cluster(cluster.nodes.size(), points);
         nodes.insert(nodes.end(), cluster.nodes.begin(), cluster.nodes.end());
       }
-    add_uplift(discretization, interfaces);
+    find_uplift(discretization);
 
     exchange = std::make_unique<ContactExchange>(discretization, nodes);
     displacement.resize(nodes.size());
+    for (unsigned int i = 0; i < interfaces.list.size(); ++i)
+      if (interfaces.list[i].grouted_after.empty())
+        join(i);
     force.resize(nodes.size());
     applied.resize(exchange->owned_nodes().size());
     last_velocity.resize(applied.size());
@@ -97,32 +98,74 @@ namespace Voussoir
 
 
   void
-  Contact::add_uplift(const Discretization       &discretization,
-                      const InterfacesParameters &interfaces)
+  Contact::find_uplift(const Discretization &discretization)
   {
+    uplift.resize(solver->points.size());
     for (unsigned int i = 0; i < interfaces.list.size(); ++i)
-      if (const auto &uplift = interfaces.list[i].uplift; uplift.given())
+      if (const auto &water = interfaces.list[i].uplift; water.given())
         {
           const std::string place =
             "in section \"Interfaces/" + interfaces.list[i].name + "/Uplift\"";
           const FaceDistance upstream(discretization.grid,
-                                      split_list(uplift.upstream_faces),
+                                      split_list(water.upstream_faces),
                                       "\"Upstream faces\" " + place);
           const FaceDistance downstream(discretization.grid,
-                                        split_list(uplift.downstream_faces),
+                                        split_list(water.downstream_faces),
                                         "\"Downstream faces\" " + place);
           for (unsigned int k = 0; k < solver->points.size(); ++k)
             {
-              ContactPoint &point = solver->points[k];
-              if (interface_of_surface[point.surface] != i)
+              if (interface_of_surface[solver->points[k].surface] != i)
                 continue;
               const Point<3> &x  = point_positions[k];
               const double    up = upstream(x), down = downstream(x);
-              point.uplift =
-                uplift.pressure(x[2], up > 0. ? up / (up + down) : 0.);
-              solver->update_limits(point);
+              uplift[k] = water.pressure(x[2], up > 0. ? up / (up + down) : 0.);
             }
         }
+  }
+
+
+  void
+  Contact::join(const unsigned int interface)
+  {
+    const InterfaceParameters &joined = interfaces.list[interface];
+    for (unsigned int s = 0; s < solver->surfaces.size(); ++s)
+      if (interface_of_surface[s] == interface)
+        {
+          ContactSurface &surface = solver->surfaces[s];
+          surface.bar_stiffness =
+            joined.steel_ratio * joined.steel_modulus / joined.free_length;
+          surface.bar_strength = joined.steel_ratio * joined.yield_stress;
+        }
+    for (unsigned int k = 0; k < solver->points.size(); ++k)
+      {
+        ContactPoint &point = solver->points[k];
+        if (interface_of_surface[point.surface] != interface)
+          continue;
+        const Tensor<1, 3> motion = point.frame * (displacement[point.second] -
+                                                   displacement[point.first]);
+        point.gap                 = Tensor<1, 3>({joined.initial_gap, 0., 0.});
+        point.initial_gap         = point.gap - motion;
+        point.history             = {joined.initial_gap, 0.};
+        point.stick_point         = Tensor<1, 2>();
+        point.largest_slip        = 0.;
+        point.bar_extension       = motion[0];
+        point.uplift              = uplift[k];
+        point.status              = ContactStatus::sticking;
+        solver->update_limits(point);
+      }
+  }
+
+
+  void
+  Contact::grout(const std::vector<std::string> &loads,
+                 const Vector                   &at_displacement)
+  {
+    exchange->to_clusters(at_displacement, displacement);
+    for (unsigned int i = 0; i < interfaces.list.size(); ++i)
+      if (std::find(loads.begin(),
+                    loads.end(),
+                    interfaces.list[i].grouted_after) != loads.end())
+        join(i);
   }
 
 
@@ -238,7 +281,8 @@ namespace Voussoir
       }
     for (ContactSurface &surface : solver->surfaces)
       surface.energy = ContactEnergy();
-    total = ContactSolver::Effort();
+    total     = ContactSolver::Effort();
+    wall_time = {};
   }
 
 
@@ -256,92 +300,6 @@ namespace Voussoir
   Contact::nodes() const
   {
     return exchange->owned_nodes();
-  }
-
-
-  KeyedValues
-  Contact::checkpoint_values()
-  {
-    KeyedValues values{memory_width, {}};
-    point_memory.resize(solver->points.size());
-    for (unsigned int k = 0; k < point_memory.size(); ++k)
-      {
-        const ContactPoint &point = solver->points[k];
-        point_memory[k]           = {{point.force[0],
-                                      point.force[1],
-                                      point.force[2],
-                                      point.stick_point[0],
-                                      point.stick_point[1],
-                                      point.history.opening,
-                                      point.history.slip,
-                                      point.bar_extension,
-                                      point.largest_slip,
-                                      static_cast<double>(point.status)}};
-        values.items.emplace_back(point_keys[k], point_memory[k].data());
-      }
-    return values;
-  }
-
-
-  nlohmann::json
-  Contact::save() const
-  {
-    nlohmann::json energies;
-    for (const ContactSurface &surface : solver->surfaces)
-      energies.push_back(
-        sum_over_ranks(std::vector<double>{surface.energy.impact,
-                                           surface.energy.friction,
-                                           surface.energy.bond,
-                                           surface.energy.bars,
-                                           surface.energy.uplift},
-                       communicator));
-    const auto largest = [&](const auto value) {
-      return Utilities::MPI::max(value, communicator);
-    };
-    return {{"energies", energies},
-            {"penetration", largest(total.penetration)},
-            {"residual", largest(total.residual)},
-            {"sweeps", largest(total.sweeps)},
-            {"all sweeps", Utilities::MPI::sum(total.all_sweeps, communicator)},
-            {"clusters", Utilities::MPI::sum(total.clusters, communicator)}};
-  }
-
-
-  void
-  Contact::load(const nlohmann::json &saved)
-  {
-    for (unsigned int k = 0; k < solver->points.size(); ++k)
-      {
-        ContactPoint      &point  = solver->points[k];
-        const PointMemory &memory = point_memory[k];
-        for (unsigned int d = 0; d < 3; ++d)
-          point.force[d] = memory[d];
-        point.stick_point[0]  = memory[3];
-        point.stick_point[1]  = memory[4];
-        point.history.opening = memory[5];
-        point.history.slip    = memory[6];
-        point.bar_extension   = memory[7];
-        point.largest_slip    = memory[8];
-        point.status          = static_cast<ContactStatus>(memory[9]);
-        solver->update_limits(point);
-      }
-
-    // sums are taken over the ranks: the first one gets all
-    for (ContactSurface &surface : solver->surfaces)
-      surface.energy = {};
-    total = {};
-    if (Utilities::MPI::this_mpi_process(communicator) != 0)
-      return;
-    for (unsigned int s = 0; s < solver->surfaces.size(); ++s)
-      {
-        const std::vector<double> e = saved.at("energies").at(s);
-        solver->surfaces[s].energy  = {e[0], e[1], e[2], e[3], e[4]};
-      }
-    total.penetration = saved.at("penetration");
-    total.residual    = saved.at("residual");
-    total.sweeps      = saved.at("sweeps");
-    total.all_sweeps  = saved.at("all sweeps");
-    total.clusters    = saved.at("clusters");
   }
 
 

@@ -112,9 +112,15 @@ namespace Voussoir
                       "surface, under the name of the interface.");
     prm.add_parameter("Initial gap",
                       initial_gap,
-                      "Opening at the start; such an interface has no bond "
-                      "[m].",
+                      "Opening at the start, or after grouting; such an "
+                      "interface has no bond [m].",
                       Patterns::Double(0.));
+    prm.add_parameter("Grouted after",
+                      grouted_after,
+                      "A load: until the end of the static stage that names "
+                      "it, the interface carries nothing, and its sides move "
+                      "as if the other were not there. Opening and slip begin "
+                      "where they are then. Empty: joined from the start.");
     prm.add_parameter("Key depth",
                       key_depth,
                       "Depth of shear keys, which do not let it slip while its "

@@ -1,4 +1,4 @@
-#include <voussoir/constraints/interface_law.h>
+#include <voussoir/constraints/bond.h>
 
 #include <algorithm>
 
@@ -14,25 +14,13 @@ namespace Voussoir
      *   (1 - w ft / (2 GfI)) (1 - s (c - c_res) / (2 GfII)) ,
      * which spends GfI per area in pure opening and GfII in pure slip.
      */
-    class SofteningBond : public InterfaceLaw
+    class SofteningBond : public Bond
     {
     public:
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Tensile strength",
-                          intact.tension,
-                          "Normal stress at which the bond starts to open "
-                          "[Pa].",
-                          Patterns::Double(0.));
-        prm.add_parameter("Cohesion",
-                          intact.bond,
-                          "Shear strength of the bond without pressure [Pa].",
-                          Patterns::Double(0.));
-        prm.add_parameter("Friction coefficient",
-                          intact.friction,
-                          "Increase of the shear strength with the pressure.",
-                          Patterns::Double(0.));
+        Bond::declare_parameters(prm);
         prm.add_parameter("Fracture energy",
                           opening_energy,
                           "Work per area that opens the bond (GfI) [J/m2].",
@@ -42,24 +30,6 @@ namespace Voussoir
                           "Work per area beyond that of the residual strength "
                           "that shears it off (GfII) [J/m2].",
                           Patterns::Double(1e-3));
-        prm.add_parameter("Residual cohesion",
-                          broken.cohesion,
-                          "Shear strength without pressure once the bond is "
-                          "lost, while closed [Pa].",
-                          Patterns::Double(0.));
-        prm.add_parameter("Residual friction coefficient",
-                          broken.friction,
-                          "Friction once the bond is lost.",
-                          Patterns::Double(0.));
-      }
-
-      void
-      check(const std::string &place) const override
-      {
-        if (broken.cohesion > intact.bond)
-          throw UserError("\"Residual cohesion\" in section \"" + place +
-                          "\" is larger than \"Cohesion\"; choose a smaller "
-                          "one.");
       }
 
       InterfaceStrength
@@ -79,8 +49,7 @@ namespace Voussoir
       }
 
     private:
-      InterfaceStrength intact{1e6, 1e6, 0., 1.}, broken{0., 0., 0., 0.7};
-      double            opening_energy = 200., slip_energy = 2000.;
+      double opening_energy = 200., slip_energy = 2000.;
     };
 
     const Registry<InterfaceLaw>::Add<SofteningBond> registered(

@@ -230,7 +230,7 @@ namespace Voussoir
     for (const auto &[name, material] : materials.objects)
       material->check("Section \"Materials/" + name + "\"");
     interfaces.check();
-    static_state.check(load_list());
+    static_state.check(load_list(), interfaces);
     modes.check(material_names(), boundaries);
     if (modes.number > 0 && !interfaces.list.empty())
       throw UserError("Section \"Modes\" asks for natural modes, which a model "

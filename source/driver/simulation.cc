@@ -668,6 +668,10 @@ namespace Voussoir
          << " steps in " << duration_text(loop_seconds) << ", "
          << throughput(loop_seconds) << " MDOF-steps/s, energy error "
          << 100. * energy.relative_error() << " %\n";
+    if (contact)
+      text << "Contact: "
+           << 100. * result.at("contact share of the loop").get<double>()
+           << " % of the loop\n";
     log(text.str());
     log(timer_table());
   }

@@ -125,6 +125,11 @@ namespace Voussoir
     Utilities::System::get_memory_stats(memory);
     result["peak memory of a rank [MB]"] =
       Utilities::MPI::max(memory.VmHWM / 1024., grid.communicator());
+    // the rank that comes last to the exchange of contact does not wait there
+    if (contact && loop_seconds > 0.)
+      result["contact share of the loop"] =
+        Utilities::MPI::min(contact->seconds(), grid.communicator()) /
+        loop_seconds;
     if (!static_summary.is_null())
       result["static state"] = static_summary;
     if (!modes.list.empty())

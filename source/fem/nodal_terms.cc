@@ -105,29 +105,35 @@ namespace Voussoir
   }
 
 
-  std::optional<Tensor<2, 3>>
-  NodalTerms::inverse_at(const unsigned int node) const
+  std::optional<unsigned int>
+  NodalTerms::slot_at(const unsigned int node) const
   {
     const auto slot = slot_of_node.find(node);
     if (slot == slot_of_node.end())
       return {};
-    Tensor<2, 3> result = inverse[slot->second];
+    return slot->second;
+  }
+
+
+  std::optional<Tensor<2, 3>>
+  NodalTerms::inverse_at(const unsigned int node) const
+  {
+    const auto slot = slot_at(node);
+    if (!slot)
+      return {};
+    Tensor<2, 3> result = inverse[*slot];
     for (unsigned int d = 0; d < 3; ++d)
-      if (masses[slot->second][d] == 0.)
+      if (masses[*slot][d] == 0.)
         result[d][d] = 0.;
     return result;
   }
 
 
   void
-  NodalTerms::account_for(const unsigned int  node,
+  NodalTerms::account_for(const unsigned int  slot,
                           const Tensor<1, 3> &velocity,
                           const Tensor<1, 3> &change)
   {
-    const auto found = slot_of_node.find(node);
-    if (found == slot_of_node.end())
-      return;
-    const unsigned int slot    = found->second;
     const Tensor<1, 3> applied = forces[slot] - added_mass[slot] * base;
     const Tensor<1, 3> mean    = 0.5 * (velocity + last_velocity[slot]),
                        was     = mean - 0.5 * change;

@@ -132,7 +132,7 @@ namespace Voussoir
 
       /** Those that are asked for; they lay lines of the section straight. */
       std::vector<AbutmentWedge>
-      make_wedges(const Sweep &sweep, ArchDamCrossSection &section) const;
+      make_wedges(const Sweep &sweep, const ArchDamCrossSection &section) const;
 
       static std::string
       wedge_section(const int bank)
@@ -270,7 +270,8 @@ namespace Voussoir
 
 
     std::vector<AbutmentWedge>
-    ArchDam::make_wedges(const Sweep &sweep, ArchDamCrossSection &section) const
+    ArchDam::make_wedges(const Sweep               &sweep,
+                         const ArchDamCrossSection &section) const
     {
       const AbutmentWedge::Layers layers{sweep.first_in_dam,
                                          sweep.first_in_dam + n_thickness,
@@ -279,10 +280,10 @@ namespace Voussoir
                                            return sweep.layers_along(length);
                                          }};
       std::vector<AbutmentWedge>  result;
-      for (const int bank : {0, 1})
+      for (const unsigned int bank : {0, 1})
         if (wedges[bank].elevation > 0.)
           result.emplace_back(wedges[bank],
-                              2 * bank - 1,
+                              bank,
                               layers,
                               section,
                               "Mesh/arch dam/" + wedge_section(bank));
@@ -301,30 +302,34 @@ namespace Voussoir
       const double columns = std::max(least_columns, crest / (2. * cell_size));
       const unsigned int columns_per_block =
         std::max(1., std::round(columns / n_blocks));
-      ArchDamCrossSection section(sections,
-                                  shape.height,
-                                  n_blocks,
-                                  columns_per_block,
-                                  rock_extent,
-                                  growth,
-                                  largest_cell,
-                                  water_level);
-      const auto          make_sweep = [&]() {
-        return Sweep(section,
-                     sections,
-                     shape.height,
-                     rock_extent,
-                     n_thickness,
-                     cell_size,
-                     growth,
-                     largest_cell);
-      };
-      const auto         bank_wedges = make_wedges(make_sweep(), section);
-      const Sweep        sweep       = make_sweep();
-      const unsigned int n_lines     = section.vertices.size();
-      const unsigned int n_layers    = sweep.n_layers;
-      const unsigned int dam_begin   = sweep.first_in_dam,
-                         dam_end     = dam_begin + n_thickness;
+      std::array<ArchDamCrossSection::Ledge, 2> ledges;
+      for (const unsigned int bank : {0, 1})
+        {
+          ledges[bank].elevation = wedges[bank].elevation;
+          ledges[bank].width     = wedges[bank].width;
+        }
+      const ArchDamCrossSection section(sections,
+                                        shape.height,
+                                        n_blocks,
+                                        columns_per_block,
+                                        rock_extent,
+                                        growth,
+                                        largest_cell,
+                                        water_level,
+                                        ledges);
+      const Sweep               sweep(section,
+                        sections,
+                        shape.height,
+                        rock_extent,
+                        n_thickness,
+                        cell_size,
+                        growth,
+                        largest_cell);
+      const auto                bank_wedges = make_wedges(sweep, section);
+      const unsigned int        n_lines     = section.vertices.size();
+      const unsigned int        n_layers    = sweep.n_layers;
+      const unsigned int        dam_begin   = sweep.first_in_dam,
+                         dam_end            = dam_begin + n_thickness;
       const unsigned int water_end =
         relative_water_length > 0. ?
           dam_end + sweep.layers_along(relative_water_length * shape.height) :

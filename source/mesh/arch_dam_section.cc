@@ -23,6 +23,10 @@ namespace Voussoir
     // How far a row may be moved to the level of a reservoir, and how near it
     // may come to the next, over the height of a row.
     constexpr double surface_shift = 0.25, surface_distance = 0.3;
+
+    // How much a bank must rise over the first column of a ledge in it, over
+    // the height of a row.
+    constexpr double ledge_rise = 0.3;
   } // namespace
 
 
@@ -33,8 +37,10 @@ namespace Voussoir
                                            const double       rock_extent,
                                            const double       growth,
                                            const double       largest_cell,
-                                           const double       water_level)
-    : sections(sections)
+                                           const double       water_level,
+                                           const std::array<Ledge, 2> &wanted)
+    : ledges(wanted)
+    , sections(sections)
     , height(height)
   {
     place_columns(n_blocks * columns_per_block,
@@ -46,6 +52,10 @@ namespace Voussoir
     on_surface.resize(vertices.size());
     if (water_level > 0.)
       lay_surface(water_level);
+    on_ledge.resize(vertices.size());
+    for (const int bank : {0, 1})
+      if (ledges[bank].elevation > 0.)
+        lay_ledge(ledges[bank], 2 * bank - 1);
     make_quads();
     smooth(columns_per_block);
   }
@@ -204,6 +214,48 @@ namespace Voussoir
   }
 
 
+  // The row that begins where a column meets the contour nearest to the
+  // elevation, of those over which the bank rises into the next row.
+  void
+  ArchDamCrossSection::lay_ledge(Ledge &ledge, const int bank)
+  {
+    const int    n_rows     = rows.size();
+    const double row_height = height / (n_rows - 1 - base_row);
+    double       nearest    = std::numeric_limits<double>::max();
+    for (int i = first_dam_column + 1; i < last_dam_column; ++i)
+      {
+        const double distance = std::abs(contour[i] - ledge.elevation);
+        if (columns[i] * bank > 0. && distance < nearest &&
+            contour_rows[i + bank] > contour_rows[i] &&
+            contour[i + bank] - contour[i] > ledge_rise * row_height)
+          {
+            nearest           = distance;
+            ledge.foot_column = i;
+          }
+      }
+    if (ledge.foot_column < 0)
+      return;
+
+    // to the column nearest to the width, that is not the last but one
+    const int foot      = ledge.foot_column;
+    ledge.row           = contour_rows[foot];
+    ledge.side_column   = foot + bank;
+    const auto too_near = [&](const int column) {
+      return std::abs(0.5 * (columns[column] + columns[column + bank]) -
+                      columns[foot]) < ledge.width;
+    };
+    while (ledge.side_column > 1 && ledge.side_column + 1 < last_column &&
+           too_near(ledge.side_column))
+      ledge.side_column += bank;
+    for (int i = foot; i != ledge.side_column + bank; i += bank)
+      {
+        const unsigned int vertex = i * n_rows + ledge.row;
+        on_ledge[vertex]          = true;
+        vertices[vertex].z        = contour[foot];
+      }
+  }
+
+
   void
   ArchDamCrossSection::make_quads()
   {
@@ -256,6 +308,7 @@ namespace Voussoir
       centre.z = surface_level;
     vertices.push_back(centre);
     on_contour.push_back(false);
+    on_ledge.push_back(false);
 
     const double cell_width    = 0.5 * (columns[column + 1] - columns[column]),
                  cell_height   = 0.5 * (rows[row + 1] - rows[row]);
@@ -307,6 +360,7 @@ namespace Voussoir
            u.column <= surface_columns.second));
         if (on_surface.back() && along_column)
           vertex.z = surface_level;
+        on_ledge.push_back(on_ledge[a] && on_ledge[b]);
         vertices.push_back(vertex);
       }
     return entry->second;
@@ -353,18 +407,22 @@ namespace Voussoir
       return sum;
     };
 
-    // Joints, the ends of the crest and of the rock stay where they are.
+    // Joints, the ends of the crest, of ledges and of the rock stay where they
+    // are.
     const auto may_move_along = [&](const Vertex &vertex) {
       const int  column = vertex.column;
       const bool in_dam =
         column >= first_dam_column && column <= last_dam_column;
+      for (const Ledge &ledge : ledges)
+        if (column >= 0 && column == ledge.side_column)
+          return false;
       return column < 0 ||
              (in_dam ? (column - first_dam_column) % columns_per_block != 0 :
                        column > 0 && column < last_column);
     };
     const auto may_move_up = [&](const unsigned int v) {
-      return !on_contour[v] && !on_surface[v] && vertices[v].z < height &&
-             vertices[v].z > rows.front();
+      return !on_contour[v] && !on_surface[v] && !on_ledge[v] &&
+             vertices[v].z < height && vertices[v].z > rows.front();
     };
 
     // Newton's step along one direction, by differences over a probe.
@@ -407,7 +465,8 @@ namespace Voussoir
               return Vertex{vertex.s, vertex.z + dz, vertex.column};
             };
 
-            if (may_move_along(vertex) && !(on_contour[v] && on_surface[v]))
+            if (may_move_along(vertex) &&
+                !(on_contour[v] && (on_surface[v] || on_ledge[v])))
               moved[v] = along(newton_step(v, cell_width, along));
             if (may_move_up(v))
               moved[v].z += newton_step(v, cell_height, up);

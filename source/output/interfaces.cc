@@ -3,6 +3,7 @@
 #include <voussoir/constraints/contact.h>
 #include <voussoir/fem/point_weights.h>
 #include <voussoir/output/interface_faces.h>
+#include <voussoir/output/interface_sums.h>
 #include <voussoir/output/table.h>
 
 namespace Voussoir
@@ -11,38 +12,11 @@ namespace Voussoir
 
   namespace
   {
-    const std::string place = "\"Points\" in section \"Output/interfaces\"";
+    using namespace InterfaceSum;
 
-    // What is summed over the points of a surface at a look.
-    enum Sum
-    {
-      opening, // times area [m3]
-      slip,    // times area [m3]
-      open_area,
-      sliding_area,
-      pressure, // resultant [N]
-      shear_x,  // resultant, in global directions [N]
-      shear_y,
-      shear_z,
-      resistance,      // cohesion and friction [N]
-      shear_of_points, // sum of sizes [N]
-      n_sums
-    };
-
-
-    double
-    slip_of(const ContactPoint &point)
-    {
-      return std::hypot(point.gap[1], point.gap[2]);
-    }
-
-
-    double
-    opening_of(const ContactPoint &point)
-    {
-      return std::max(point.gap[0], 0.);
-    }
-
+    const std::string place = "\"Points\" in section \"Output/interfaces\"",
+                      blocks_place =
+                        "\"Blocks\" in section \"Output/interfaces\"";
 
     /** Opening, slip, forces and safety of all interfaces. */
     class Interfaces : public Observer
@@ -57,6 +31,16 @@ namespace Voussoir
                           "\";\". The nearest pair of nodes of any interface "
                           "is taken; its opening and slip, level and upwards, "
                           "are written.");
+        prm.add_parameter(
+          "Blocks",
+          blocks_text,
+          "Blocks of rock whose safety against sliding as a whole is watched: "
+          "\"cell set: surface, surface\", separated by \";\", with all "
+          "surfaces of contact that hold the block, one for each plane. It is "
+          "that of limit equilibrium under the resultant of the contact "
+          "forces: along one plane or along the line where two of them meet, "
+          "zero if the block lifts off, infinite if nothing drives it or "
+          "other planes block its way.");
         prm.add_parameter("Interval",
                           interval,
                           "Time between two lines of interfaces.csv, and two "
@@ -75,6 +59,10 @@ namespace Voussoir
             "case has none; list some in section \"Interfaces\", or leave the "
             "observer out.");
         parse_points(points_text, place);
+        find_sliding_blocks(blocks_text,
+                            blocks_place,
+                            observed.discretization,
+                            *observed.contact);
       }
 
       void
@@ -99,6 +87,11 @@ namespace Voussoir
         smallest_safety.assign(names.size(),
                                std::numeric_limits<double>::infinity());
         time_at_one.assign(names.size(), 0.);
+        blocks = find_sliding_blocks(blocks_text,
+                                     blocks_place,
+                                     observed.discretization,
+                                     *contact);
+        safety_of_blocks.assign(blocks.size(), {});
         energies_at_start = energies();
 
         if (Utilities::MPI::this_mpi_process(communicator) != 0)
@@ -119,6 +112,8 @@ namespace Voussoir
           for (const char *quantity :
                {"opening [mm]", "level slip [mm]", "upward slip [mm]"})
             columns.push_back(point.name + ' ' + quantity);
+        for (const SlidingBlock &block : blocks)
+          columns.push_back(block.name + " block safety [-]");
         table.open(observed.folder + "/interfaces.csv",
                    columns,
                    observed.time_step,
@@ -138,10 +133,11 @@ namespace Voussoir
         if (!schedule.due(state.step))
           return;
         const std::size_t   n_surfaces = areas.size();
-        std::vector<double> sum(n_sums * n_surfaces), largest(2 * n_surfaces);
+        std::vector<double> sum(n_quantities * n_surfaces),
+          largest(2 * n_surfaces);
         for (const ContactPoint &point : contact->points())
           {
-            add_to_sums(point, &sum[n_sums * point.surface]);
+            add_to_sums(point, &sum[n_quantities * point.surface]);
             double *now = &largest[2 * point.surface];
             now[0]      = std::max(now[0], opening_of(point));
             now[1]      = std::max(now[1], slip_of(point));
@@ -191,6 +187,8 @@ namespace Voussoir
               surface["energies [J]"][kinds[k]] =
                 energies_now[5 * s + k] - energies_at_start[5 * s + k];
           }
+        for (unsigned int b = 0; b < blocks.size(); ++b)
+          result["blocks"][blocks[b].name] = safety_of_blocks[b].summary();
         for (const NearestContactPoint &point : points)
           {
             std::vector<double> largest(2);
@@ -236,9 +234,13 @@ namespace Voussoir
       {
         flush();
         nlohmann::json safety;
-        for (const double value : smallest_safety) // JSON has no infinity
-          safety.push_back(std::min(value, std::numeric_limits<double>::max()));
+        for (const double value : smallest_safety)
+          safety.push_back(json_number(value));
+        nlohmann::json of_blocks = nlohmann::json::array();
+        for (const SafetyHistory &block : safety_of_blocks)
+          of_blocks.push_back(block.save());
         return {{"smallest safety", safety},
+                {"blocks", of_blocks},
                 {"time at one", time_at_one},
                 {"energies at start", energies_at_start},
                 {"last look", last_look}};
@@ -251,35 +253,16 @@ namespace Voussoir
           return;
         saved.at("smallest safety").get_to(smallest_safety);
         for (double &value : smallest_safety)
-          if (value == std::numeric_limits<double>::max())
-            value = std::numeric_limits<double>::infinity();
+          value = from_json_number(value);
+        if (saved.at("blocks").size() == blocks.size())
+          for (unsigned int b = 0; b < blocks.size(); ++b)
+            safety_of_blocks[b].load(saved.at("blocks")[b]);
         saved.at("time at one").get_to(time_at_one);
         saved.at("energies at start").get_to(energies_at_start);
         saved.at("last look").get_to(last_look);
       }
 
     private:
-      static void
-      add_to_sums(const ContactPoint &point, double *sum)
-      {
-        const Tensor<1, 3> &F    = point.force;
-        const bool          open = point.status == ContactStatus::open;
-        sum[opening] += point.area * opening_of(point);
-        sum[slip] += point.area * slip_of(point);
-        sum[open_area] += open ? point.area : 0.;
-        sum[sliding_area] +=
-          point.status == ContactStatus::sliding ? point.area : 0.;
-        sum[pressure] += F[0];
-        for (unsigned int d = 0; d < 3; ++d)
-          sum[shear_x + d] +=
-            F[1] * point.frame[1][d] + F[2] * point.frame[2][d];
-        // without keys
-        ContactLimits limits = point.limits;
-        limits.locked        = false;
-        sum[resistance] += limits.shear(open, F[0]);
-        sum[shear_of_points] += std::hypot(F[1], F[2]);
-      }
-
       /** Impact, friction, bond, bars and uplift of each surface [J]. */
       std::vector<double>
       energies() const
@@ -299,13 +282,14 @@ namespace Voussoir
       flush()
       {
         const auto        all_sums = sum_over_ranks(sums, communicator);
-        const std::size_t width    = n_sums * areas.size() + 3 * points.size();
+        const std::size_t width =
+          n_quantities * areas.size() + 3 * points.size();
         Utilities::MPI::max(largest_now, communicator, largest_now);
         for (std::size_t i = 0; i < times.size(); ++i)
           {
-            const double       *sum = &all_sums[width * i];
+            const double *sums_now = &all_sums[width * i], *sum = sums_now;
             std::vector<double> line;
-            for (unsigned int s = 0; s < areas.size(); ++s, sum += n_sums)
+            for (unsigned int s = 0; s < areas.size(); ++s, sum += n_quantities)
               {
                 const double *largest =
                   &largest_now[2 * (areas.size() * i + s)];
@@ -335,6 +319,13 @@ namespace Voussoir
               }
             for (unsigned int k = 0; k < 3 * points.size(); ++k)
               line.push_back(1e3 * sum[k]);
+            for (unsigned int b = 0; b < blocks.size(); ++b)
+              {
+                line.push_back(safety_from_sums(blocks[b], sums_now, areas));
+                safety_of_blocks[b].add(times[i],
+                                        std::max(0., times[i] - last_look),
+                                        line.back());
+              }
             last_look = std::max(last_look, times[i]);
             if (table.is_open())
               table.write(times[i], line);
@@ -346,7 +337,7 @@ namespace Voussoir
         times.clear();
       }
 
-      std::string points_text;
+      std::string points_text, blocks_text;
       double      interval = 0.01;
 
       std::unique_ptr<ObservedModel>   model;
@@ -365,6 +356,9 @@ namespace Voussoir
       std::vector<double> areas, smallest_safety, time_at_one,
         energies_at_start;
       double last_look = 0.;
+
+      std::vector<SlidingBlock>  blocks;
+      std::vector<SafetyHistory> safety_of_blocks;
     };
 
     const Registry<Observer>::Add<Interfaces> registered(

@@ -61,6 +61,8 @@ namespace Voussoir
           prescribed.insert(nodes.begin(), nodes.end());
       }
     projected_nodes.assign(projected.begin(), projected.end());
+    for (const unsigned int node : projected_nodes)
+      projected_slots.push_back(terms.slot_at(node));
     predicted_velocity.resize(projected_nodes.size());
     last_velocity.resize(projected_nodes.size());
     const auto inverse_mass = [&](const unsigned int node) {
@@ -138,7 +140,8 @@ namespace Voussoir
         const Tensor<1, 3> change   = velocity - predicted_velocity[i];
         if (change.norm_square() == 0.)
           continue;
-        terms.account_for(node, velocity, change);
+        if (projected_slots[i])
+          terms.account_for(*projected_slots[i], velocity, change);
         for (unsigned int d = 0; d < 3; ++d)
           {
             const double last = last_velocity[i][d],

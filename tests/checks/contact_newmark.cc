@@ -30,6 +30,21 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
+        if (cohesion > 0.)
+          {
+            // first slip at f g + c A / m
+            const double holds =
+              (1.01 * amplitude - friction * gravity) / cohesion;
+            const std::string entry = "Interfaces/plane/Cohesion";
+            verdicts.below(
+              "slip where the strength is 1.01 of the shaking [mm]",
+              1e3 * largest_slip(file.with(
+                                   {entry + '=' +
+                                    std::to_string(
+                                      holds * std::stod(file.given(entry)))}),
+                                 communicator),
+              1e-9);
+          }
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
         State     &state      = simulation->state;
@@ -84,6 +99,21 @@ namespace Voussoir
           }
         sums = sum_over_ranks(sums, simulation.grid.communicator());
         return sums[0] / sums[1];
+      }
+
+      /** Largest slip of a case in its first cycle. */
+      static double
+      largest_slip(const ParameterFile &file, const MPI_Comm communicator)
+      {
+        const auto parameters = make_case(file);
+        const auto simulation = make_simulation(*parameters, communicator);
+        double     largest    = 0.;
+        while (simulation->state.time < rest + 1.)
+          {
+            simulation->scheme.step(simulation->state);
+            largest = std::max(largest, std::abs(slip(*simulation)));
+          }
+        return largest;
       }
 
       /** A point mass on the plane. */

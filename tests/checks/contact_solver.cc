@@ -135,7 +135,7 @@ namespace Voussoir
             solver.surfaces[point.surface].law->strength(point.history);
           Tensor<1, 3> g = point.frame * (displacement[point.second] -
                                           displacement[point.first]);
-          g[0] += point.initial_gap;
+          g += point.initial_gap;
           const Tensor<1, 3> &F     = point.force;
           const double        shear = std::hypot(F[1], F[2]);
           const auto          worse = [&](const double value) {
@@ -286,6 +286,8 @@ namespace Voussoir
       {
         without_friction(verdicts);
         with_friction(verdicts);
+        between_held_nodes(verdicts);
+        blocks_on_a_base(verdicts);
       }
 
     private:
@@ -360,6 +362,129 @@ namespace Voussoir
                            ContactSolver::max_sweeps - 1);
           }
       }
+
+      /** A node on two or three planes of held nodes, which more points hold
+       *  than it can move: from sliding along a line to forces that are not
+       *  unique. */
+      static void
+      between_held_nodes(Verdicts &verdicts)
+      {
+        Random random;
+        Worst  worst;
+        for (unsigned int trial = 0; trial < 3000; ++trial)
+          {
+            const Strength            law({0.,
+                                           0.,
+                                trial % 4 == 0 ? random.number(0., 0.1) : 0.,
+                                           random.number(0., 1.2)});
+            const unsigned int        n_planes = 2 + trial % 2;
+            std::vector<ContactPoint> points(n_planes);
+            for (unsigned int k = 0; k < n_planes; ++k)
+              {
+                Tensor<1, 3> n   = random.vector();
+                n[2]             = std::abs(n[2]) + 0.2;
+                points[k].first  = k;
+                points[k].second = n_planes;
+                points[k].frame  = frame_of(n);
+                points[k].area   = random.number(0.5, 2.);
+              }
+            Made made = empty(law);
+            made.solver.add_cluster(n_planes + 1, points);
+            made.inverse_mass.resize(n_planes + 1);
+            made.inverse_mass[n_planes] =
+              random.inverse_mass(trial % 3 == 0 ? 2. : 0.);
+            worst.add(random, made);
+          }
+        worst.report("between held nodes: ", verdicts);
+      }
+
+      /** Four blocks with upright joints on four parts of a base. */
+      static void
+      blocks_on_a_base(Verdicts &verdicts)
+      {
+        Random random;
+        Worst  worst;
+        for (unsigned int trial = 0; trial < 500; ++trial)
+          {
+            const Strength            law({0., 0., 0., 0.3 * (trial % 4)});
+            std::vector<ContactPoint> points;
+            const auto                add = [&](const unsigned int  first,
+                                 const unsigned int  second,
+                                 const Tensor<1, 3> &normal) {
+              ContactPoint point;
+              point.first  = first;
+              point.second = second;
+              point.frame  = frame_of(normal);
+              point.area   = random.number(0.5, 2.);
+              points.push_back(point);
+            };
+            for (unsigned int i = 0; i < 4; ++i)
+              {
+                add(4 + i, i, Tensor<1, 3>({0., 0., 1.}));
+                const double angle = numbers::PI_2 * i;
+                for (const unsigned int part : {0, 4})
+                  if (part == 0 || trial % 2 == 0) // a base in one part or four
+                    add(part + i,
+                        part + (i + 1) % 4,
+                        Tensor<1, 3>({std::cos(angle), std::sin(angle), 0.}));
+              }
+            Made made = empty(law);
+            made.solver.add_cluster(8, points);
+            for (unsigned int i = 0; i < 8; ++i)
+              made.inverse_mass.push_back(random.inverse_mass(0.));
+            worst.add(random, made);
+          }
+        worst.report("blocks on a base: ", verdicts);
+      }
+
+      static Made
+      empty(const Strength &law)
+      {
+        ContactSurface surface;
+        surface.law = &law;
+        return {ContactSolver({surface}), {}, {}, {}, {}, {}};
+      }
+
+      /** What is worst over several steps of many clusters. */
+      struct Worst
+      {
+        double       penetration = 0.;
+        unsigned int steps = 0, unsolved = 0, number[3]{0, 0, 0};
+
+        void
+        add(Random &random, Made &made)
+        {
+          const unsigned int n_nodes = made.inverse_mass.size();
+          made.solver.prepare_step(made.inverse_mass, 1.);
+          made.force.resize(n_nodes);
+          made.displacement.resize(n_nodes);
+          for (unsigned int step = 0; step < 4; ++step)
+            {
+              const auto move = random.motion(n_nodes);
+              for (unsigned int i = 0; i < n_nodes; ++i)
+                if (made.inverse_mass[i].norm() > 0.)
+                  made.displacement[i] += move[i];
+              made.effort = made.solver.solve(made.displacement, made.force);
+              penetration = std::max(penetration, made.effort.penetration);
+              ++steps;
+              unsolved += made.effort.sweeps == ContactSolver::max_sweeps;
+              for (const auto &point : made.solver.points)
+                ++number[static_cast<unsigned int>(point.status)];
+            }
+        }
+
+        void
+        report(const std::string &what, Verdicts &verdicts) const
+        {
+          verdicts.is_true(what + "many points open, slide and stick",
+                           std::min({number[0], number[1], number[2]}) > 100);
+          verdicts.below(what + "penetration over motion", penetration, 1e-12);
+          // some have no solution, or none that is near
+          verdicts.below(what + "steps without convergence [%]",
+                         100. * unsolved / steps,
+                         0.3);
+        }
+      };
     };
 
     const Registry<Check>::Add<ContactSolverCheck>

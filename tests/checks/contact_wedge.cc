@@ -1,4 +1,5 @@
 #include <voussoir/mesh/generator.h>
+#include <voussoir/output/interface_sums.h>
 
 #include "contact_sums.h"
 
@@ -95,11 +96,14 @@ namespace Voussoir
 
     /**
      * The wedge against limit equilibrium. The frame is that of the sliding
-     * line y, which is level; the weight is tilted by its plunge. At rest the
-     * elastic wedge bears shear across the line too, so that its normal forces
-     * are not those of limit equilibrium. Once it slides, all shear is along
-     * the line: the forces that then resist are compared, over the driving
-     * force of the weight, with the safety factor of limit equilibrium.
+     * line y, which is level; the weight is tilted by its plunge.
+     *
+     * The elastic wedge at rest bears shear across the line too, so that the
+     * forces of each plane are not those of limit equilibrium; but the block's
+     * safety, from their resultant, is. A push from behind, which grows slowly,
+     * then leads through a safety of one. The shear across the line presses on
+     * the planes and adds a little to their resistance, until the wedge has
+     * slipped so far that all shear is along the line.
      */
     class WedgeSafety : public Check
     {
@@ -158,48 +162,42 @@ namespace Voussoir
                                          Tensor<1, 3>({0., along, -down})));
           return changes;
         };
-        const auto reported = [&](const Simulation &simulation,
-                                  const double      factor) {
-          double resisting = 0., driving = 0.;
-          for (const unsigned int side : {0, 1})
-            {
-              const ContactSums sums = contact_sums(simulation, side);
-              resisting +=
-                (friction[side] * sums.pressure + cohesion[side] * sums.area) /
-                factor;
-              driving -= sums.force[1];
-            }
-          return resisting / driving;
-        };
-
         verdicts.is_true("strength over 0.99 F: it stays",
                          stands(file.with(reduced(0.99 * safety)),
                                 communicator));
 
-        // loads beyond the resistance: a pressure on its back
-        const double excess  = 0.5 * mass * along;
-        const double push    = (resistance - mass * along + excess) / section;
-        auto         changes = reduced(1.);
-        std::ostringstream text;
-        text.precision(17);
-        text << "Loads/push/Pressure=" << push;
-        changes.push_back(text.str());
+        // a pressure on its back grows slowly beyond the resistance
+        const double       excess = 0.5 * mass * along;
+        const double       push   = resistance - mass * along + excess;
+        std::ostringstream pressure, history;
+        pressure.precision(17);
+        pressure << "Loads/push/Pressure=" << push / section;
+        history << "Loads/push/Time function=min(t / " << ramp << ", 1)";
+        auto changes = reduced(1.);
+        changes.push_back(pressure.str());
+        changes.push_back(history.str());
         const auto parameters = make_case(file.with(changes));
         const auto simulation = make_simulation(*parameters, communicator);
-        verdicts.above("at rest before, safety factor of the contact forces",
-                       reported(*simulation, 1.),
-                       1.);
+        verdicts.near("at rest before: safety factor of the block",
+                      block_safety(*simulation),
+                      safety,
+                      0.01);
 
-        // the push is there after 0.2 s; the acceleration is that of the
-        // motion at the ends and in the middle of two equal intervals
         double              resisting = 0., N_left = 0., N_right = 0.;
         unsigned int        samples = 0;
         std::vector<double> times, motion;
+        double              at_start = 0., before = 0.;
         while (simulation->state.time < parameters->time.end_time)
           {
             simulation->scheme.step(simulation->state);
             const double time = simulation->state.time;
-            if (time < 0.4)
+            const double load =
+              resistance / (mass * along + push * std::min(time / ramp, 1.));
+            if (load > 1.05)
+              before = mean_motion(*simulation)[1];
+            if (at_start == 0. && block_safety(*simulation) < 1.001)
+              at_start = load;
+            if (time < ramp)
               continue;
             times.push_back(time);
             motion.push_back(mean_motion(*simulation)[1]);
@@ -210,8 +208,18 @@ namespace Voussoir
             N_right += on_right.pressure;
             ++samples;
           }
+        // the acceleration is that of the motion at the ends and in the middle
+        // of two equal intervals
         const unsigned int half = (samples - 1) / 2;
         const double       step = times[half] - times[0];
+        // elastic; it ends half a metre away
+        verdicts.below("motion while the load leaves a safety of 1.05 [mm]",
+                       1e3 * before,
+                       0.05);
+        verdicts.near("starts to slide at a safety under the load",
+                      0.01 * std::round(100. * at_start),
+                      1.,
+                      0.02);
         verdicts.near("sliding: resistance over driving weight",
                       resisting / samples / (mass * along),
                       safety,
@@ -229,11 +237,39 @@ namespace Voussoir
                         (step * step),
                       excess / mass,
                       0.01);
+        verdicts.below(
+          "penetration over cell size",
+          Utilities::MPI::max(simulation->contact->effort().penetration,
+                              communicator) /
+            simulation->contact->cell_size,
+          1e-12);
       }
 
     private:
+      /** As the observer "interfaces" reports it. */
+      static double
+      block_safety(const Simulation &simulation)
+      {
+        const Contact      &contact = *simulation.contact;
+        const auto          blocks  = find_sliding_blocks("wedge: left, right",
+                                                "\"Blocks\"",
+                                                simulation.discretization,
+                                                contact);
+        std::vector<double> sums(2 * InterfaceSum::n_quantities), areas(2);
+        for (const ContactPoint &point : contact.points())
+          {
+            add_to_sums(point,
+                        &sums[InterfaceSum::n_quantities * point.surface]);
+            areas[point.surface] += point.area;
+          }
+        const MPI_Comm communicator = simulation.grid.communicator();
+        sums                        = sum_over_ranks(sums, communicator);
+        areas                       = sum_over_ranks(areas, communicator);
+        return safety_from_sums(blocks[0], sums.data(), areas);
+      }
+
       static constexpr double gravity = 9.81, density = 2700., height = 6.,
-                              length = 12.;
+                              length = 12., ramp = 1.; // [s]
 
       double       plunge = 20.;
       Tensor<1, 2> friction{{0.6, 0.6}}, cohesion;

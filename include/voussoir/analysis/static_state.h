@@ -29,10 +29,11 @@ namespace Voussoir
     std::vector<std::vector<std::string>>
     stage_names() const;
 
-    /** Refuses stages of unknown loads, loads named twice, and loads that need
-     *  a stage and have none. */
+    /** Refuses stages of unknown loads, loads named twice, loads that need a
+     *  stage and have none, and interfaces grouted after no stage. */
     void
-    check(const NamedLoads &loads) const;
+    check(const NamedLoads           &loads,
+          const InterfacesParameters &interfaces) const;
   };
 
   /** What the static stage is computed from. */
@@ -58,7 +59,8 @@ namespace Voussoir
    *
    * Without interfaces by multigrid, with them by damped motion; materials with
    * memory are elastic then, and where they crack or yield under that state,
-   * damped motion goes on from it.
+   * damped motion goes on from it. An interface is grouted at the end of the
+   * stage that it names.
    *
    * @param summary resultants of loads and reactions, iterations, by stage
    */

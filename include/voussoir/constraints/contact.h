@@ -21,7 +21,8 @@ namespace Voussoir
   class Contact : public Projection
   {
   public:
-    /** @param interfaces of the mesh, which is split along them */
+    /** @param interfaces of the mesh, which is split along them; must live
+     *  as long as this */
     Contact(const Discretization       &discretization,
             const InterfacesParameters &interfaces);
 
@@ -61,11 +62,17 @@ namespace Voussoir
     void
     forget_approach();
 
+    /** Joins the interfaces that are grouted after one of these loads. Called
+     *  on all ranks.
+     *  @param displacement at which their gap and slip begin */
+    void
+    grout(const std::vector<std::string> &loads, const Vector &displacement);
+
     /** What the steps took; the largest values and sums since the start. */
     const ContactSolver::Effort &
     effort() const;
 
-    /** Wall time of this rank in the steps so far [s]. */
+    /** Wall time of this rank in the steps since the static state [s]. */
     double
     seconds() const;
 
@@ -96,13 +103,18 @@ namespace Voussoir
     double cell_size = 0.;
 
   private:
-    static constexpr unsigned int memory_width = 10;
+    static constexpr unsigned int memory_width = 13;
     using PointMemory = std::array<double, memory_width>;
 
     void
-    add_uplift(const Discretization       &discretization,
-               const InterfacesParameters &interfaces);
+    find_uplift(const Discretization &discretization);
 
+    /** Lets the sides of an interface meet from now on; gap and slip begin at
+     *  the displacement of the nodes of the clusters. */
+    void
+    join(const unsigned int interface);
+
+    const InterfacesParameters                  &interfaces;
     std::vector<std::string>                     names;
     std::vector<unsigned int>                    interface_of_surface;
     std::unique_ptr<ContactSolver>               solver;
@@ -110,6 +122,7 @@ namespace Voussoir
     std::vector<dealii::Point<3>>                point_positions;
     std::vector<dealii::types::global_dof_index> first_node;
     std::vector<std::uint64_t>                   point_keys;
+    std::vector<double>                          uplift; // of each point [Pa]
     std::vector<PointMemory>                     point_memory;
     MPI_Comm                                     communicator;
 

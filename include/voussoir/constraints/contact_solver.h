@@ -5,6 +5,7 @@
 
 #include <deal.II/base/point.h>
 
+#include <cmath>
 #include <vector>
 
 namespace Voussoir
@@ -35,10 +36,12 @@ namespace Voussoir
   {
     unsigned int         surface = 0;
     unsigned int         first = 0, second = 0; // nodes of the solver
-    dealii::Tensor<2, 3> frame;            // rows n (first to second), t1, t2
-    double               area        = 0.; // [m2]
-    double               initial_gap = 0.; // [m]
-    double               uplift      = 0.; // pressure inside [Pa]
+    dealii::Tensor<2, 3> frame;       // rows n (first to second), t1, t2
+    double               area   = 0.; // [m2]
+    double               uplift = 0.; // pressure inside [Pa]
+
+    // gap and slip where its nodes have not moved, in the frame [m]
+    dealii::Tensor<1, 3> initial_gap;
 
     // what a checkpoint must hold, all in the frame
     dealii::Tensor<1, 3> force; // on the second node, without the given one [N]
@@ -60,7 +63,8 @@ namespace Voussoir
    * forces that keep the predicted motion from penetration and from slip and
    * opening that the interfaces resist. Exact, without penalty: a cluster of
    * two nodes in closed form, others by their dense system if nothing slips or
-   * opens, else by projected Gauss-Seidel over their points.
+   * opens, else by projected Gauss-Seidel over their points and, where that
+   * goes slowly, Newton's iteration.
    *
    * Knows neither mesh nor ranks: its nodes are those of the clusters of one
    * rank.
@@ -133,6 +137,20 @@ namespace Voussoir
       std::vector<double> flexibility, stiffness;
     };
 
+    /** The gap less the slip at the last stick, which is what the contact force
+     *  has to undo. */
+    static dealii::Tensor<1, 3>
+    gap_to_hold(const ContactPoint         &point,
+                const dealii::Tensor<1, 3> &relative);
+
+    /** Size of the tangential part; std::hypot minds overflow, at ten times the
+     *  cost. */
+    static double
+    tangential_norm(const dealii::Tensor<1, 3> &v)
+    {
+      return std::sqrt(v[1] * v[1] + v[2] * v[2]);
+    }
+
     /** Finds the contact force of a point from the gap without it. */
     void
     solve_point(const unsigned int number, const dealii::Tensor<1, 3> &gap);
@@ -156,9 +174,10 @@ namespace Voussoir
     dealii::Tensor<1, 3>
     motion(const unsigned int node, const dealii::Tensor<1, 3> &force) const;
 
-    /** Improves the forces as if no point changed its status. */
-    void
-    solve_as_they_stand(const Cluster &cluster);
+    /** Improves the forces of a cluster together, or the normal ones only;
+     *  returns their largest change. */
+    double
+    newton_step(const Cluster &cluster, const bool shear_too);
 
     void
     make_matrices(Cluster &cluster) const;
@@ -185,7 +204,6 @@ namespace Voussoir
     // points, motion of its nodes
     std::vector<dealii::Tensor<1, 3>> gaps, holding, moves;
     std::vector<double>               system, unknowns;
-    std::vector<unsigned int>         column_of_row;
   };
 } // namespace Voussoir
 

@@ -41,6 +41,10 @@ namespace Voussoir
             const double      time_step,
             const bool        central);
 
+    /** Slot of an owned node, or null if it has no terms. */
+    std::optional<unsigned int>
+    slot_at(const unsigned int node) const;
+
     /** The inverse that `prepare` made for an owned node, zero where held, or
      *  null if it has no terms. */
     std::optional<dealii::Tensor<2, 3>>
@@ -49,7 +53,7 @@ namespace Voussoir
     /** Takes into the energies that the velocity at the end of the step was
      *  changed by @p change after `correct`. */
     void
-    account_for(const unsigned int          node,
+    account_for(const unsigned int          slot,
                 const dealii::Tensor<1, 3> &velocity,
                 const dealii::Tensor<1, 3> &change);
 

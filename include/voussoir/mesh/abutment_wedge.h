@@ -44,15 +44,15 @@ namespace Voussoir
     };
 
     /**
-     * Lays the row and the column straight in @p section. Throws UserError
-     * that names the @p place of the parameters.
+     * On the ledge that @p section has in this bank. Throws UserError that
+     * names the @p place of the parameters.
      *
-     * @param bank -1 for the right one, 1 for the left
+     * @param bank 0 for the right one, 1 for the left
      */
     AbutmentWedge(const AbutmentWedgeParameters &parameters,
-                  const int                      bank,
+                  const unsigned int             bank,
                   const Layers                  &layers,
-                  ArchDamCrossSection           &section,
+                  const ArchDamCrossSection     &section,
                   const std::string             &place);
 
     bool
@@ -81,21 +81,11 @@ namespace Voussoir
     bool
     is_in_columns(const ArchDamCrossSection::Quad &quad) const;
 
-    void
-    find_row(const AbutmentWedgeParameters &parameters,
-             const ArchDamCrossSection     &section,
-             const std::string             &place);
-
-    void
-    straighten(ArchDamCrossSection &section) const;
-
-    const int          bank;
+    const unsigned int bank;
     const unsigned int n_layers, end; // the back
     unsigned int       begin, cut_begin;
 
-    // columns of the grid from the contour, where it meets the row, to the side
-    int    foot_column, side_column, bottom_row;
-    double level; // of the bottom [m]
+    const ArchDamCrossSection::Ledge ledge;
   };
 } // namespace Voussoir
 

@@ -17,11 +17,23 @@ namespace Voussoir
    * They come from a grid of columns and rows in which the contour of the
    * canyon runs along the rows or diagonally through cells, so that these fall
    * into triangles; all are then halved in both directions. One row can be
-   * laid level, to be the surface of a reservoir.
+   * laid level, to be the surface of a reservoir, and one in each bank, to be
+   * the bottom of a wedge of rock.
    */
   class ArchDamCrossSection
   {
   public:
+    /** A row that goes level into a bank, from where a column meets the
+     *  contour to an upright column. */
+    struct Ledge
+    {
+      double elevation = 0.; // wanted; 0 for none [m]
+      double width     = 0.; // wanted [m]
+
+      // columns at its two ends, and its row; -1 if there is none
+      int foot_column = -1, side_column = -1, row = -1;
+    };
+
     /**
      * @param n_blocks          between the abutments at the crest
      * @param columns_per_block columns of the grid
@@ -30,15 +42,17 @@ namespace Voussoir
      * @param largest_cell      at which their halves stop growing [m]
      * @param water_level       wanted for the surface of a reservoir [m]; 0
      *                          for no reservoir
+     * @param ledges            wanted in the right and the left bank
      */
-    ArchDamCrossSection(const ArchDamSections &sections,
-                        const double           height,
-                        const unsigned int     n_blocks,
-                        const unsigned int     columns_per_block,
-                        const double           rock_extent,
-                        const double           growth,
-                        const double           largest_cell,
-                        const double           water_level);
+    ArchDamCrossSection(const ArchDamSections      &sections,
+                        const double                height,
+                        const unsigned int          n_blocks,
+                        const unsigned int          columns_per_block,
+                        const double                rock_extent,
+                        const double                growth,
+                        const double                largest_cell,
+                        const double                water_level,
+                        const std::array<Ledge, 2> &ledges);
 
     struct Vertex
     {
@@ -65,6 +79,9 @@ namespace Voussoir
      * canyon with a lower half_row; -1 without reservoir. */
     int surface_row = -1;
 
+    /** In the right and the left bank. */
+    std::array<Ledge, 2> ledges;
+
   private:
     void
     place_columns(const unsigned int n_dam_columns,
@@ -82,6 +99,10 @@ namespace Voussoir
 
     void
     lay_surface(const double water_level);
+
+    /** @param bank -1 for the right one, 1 for the left */
+    void
+    lay_ledge(Ledge &ledge, const int bank);
 
     void
     make_quads();
@@ -113,7 +134,7 @@ namespace Voussoir
     std::pair<int, int> surface_columns;
 
     std::map<std::pair<unsigned int, unsigned int>, unsigned int> middles;
-    std::vector<bool> on_contour, on_surface;
+    std::vector<bool> on_contour, on_surface, on_ledge;
   };
 } // namespace Voussoir
 

@@ -92,9 +92,11 @@ namespace Voussoir
     bool                uniform;
     double              uniform_factor;
 
-    // nodes of the projections, and their velocity before them
-    std::vector<unsigned int>         projected_nodes;
-    std::vector<dealii::Tensor<1, 3>> predicted_velocity, last_velocity;
+    // nodes of the projections, slots of those with nodal terms, and their
+    // velocity before the projections
+    std::vector<unsigned int>                projected_nodes;
+    std::vector<std::optional<unsigned int>> projected_slots;
+    std::vector<dealii::Tensor<1, 3>>        predicted_velocity, last_velocity;
 
     Vector force;
     Vector effective; // u plus damping memory, or u where factors differ

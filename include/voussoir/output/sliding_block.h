@@ -1,0 +1,96 @@
+#ifndef voussoir_output_sliding_block_h
+#define voussoir_output_sliding_block_h
+
+#include <voussoir/constraints/contact.h>
+
+#include <array>
+#include <limits>
+
+namespace Voussoir
+{
+  /** A block that rests on surfaces of contact, such as a wedge of rock. */
+  struct SlidingBlock
+  {
+    /** A surface taken as a plane. */
+    struct Plane
+    {
+      unsigned int         surface;
+      double               side;   // 1 if the block is on the second one, or -1
+      dealii::Tensor<1, 3> normal; // area mean, into the block
+    };
+
+    std::string        name; // of its cell set
+    std::vector<Plane> planes;
+  };
+
+  /**
+   * Reads "block: surface, surface; ..." with the cell sets of the blocks.
+   * Called on all ranks. Throws UserError if a name is unknown, or a block is
+   * not on one side of its surfaces; @p place names the entry.
+   */
+  std::vector<SlidingBlock>
+  find_sliding_blocks(const std::string    &text,
+                      const std::string    &place,
+                      const Discretization &discretization,
+                      const Contact        &contact);
+
+  /** A plane with what it can bear now. */
+  struct SlidingPlane
+  {
+    dealii::Tensor<1, 3> normal; // into the block
+    double               friction = 0.;
+    double               cohesion = 0.; // with its bond, times area [N]
+  };
+
+  /**
+   * Safety of a rigid block against sliding by limit equilibrium:
+   *   (sum of f_i N_i + c_i A_i) / T .
+   * The resultant of the contact forces follows from statics, however uneven
+   * their distribution is. It is resolved into a force T against the sliding,
+   * and normal forces N_i of the planes on which the block then slides: along
+   * one plane, or along the line where two of them meet (Londe, 1973). Which of
+   * these it is follows from block theory (Goodman and Shi, 1985): no
+   * normal force pulls, and the motion does not lead into another plane.
+   *
+   * @param planes those with contact; two that are parallel count one by one
+   * @param force  resultant of their contact forces on the block [N]
+   * @return 0 if the block lifts off, infinity if it is driven nowhere
+   */
+  double
+  sliding_safety(const std::vector<SlidingPlane> &planes,
+                 const dealii::Tensor<1, 3>      &force);
+
+  /** The history of a safety factor in four numbers. */
+  class SafetyHistory
+  {
+  public:
+    /** @param interval since the look before [s] */
+    void
+    add(const double time, const double interval, const double safety);
+
+    /** Infinite ones are null. */
+    nlohmann::json
+    summary() const;
+
+    /** For a checkpoint. */
+    std::array<double, 4>
+    save() const;
+
+    void
+    load(const std::array<double, 4> &saved);
+
+  private:
+    double at_start         = std::numeric_limits<double>::quiet_NaN();
+    double smallest         = std::numeric_limits<double>::infinity();
+    double time_of_smallest = 0., time_at_one = 0.; // [s]
+  };
+
+  /** A number as JSON has it, which knows no infinity, and back. */
+  double
+  json_number(const double value);
+
+  double
+  from_json_number(const double value);
+} // namespace Voussoir
+
+#endif

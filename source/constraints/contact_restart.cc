@@ -1,0 +1,100 @@
+// What a checkpoint holds of contact.
+
+#include <voussoir/base/mpi.h>
+#include <voussoir/constraints/contact.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  KeyedValues
+  Contact::checkpoint_values()
+  {
+    KeyedValues values{memory_width, {}};
+    point_memory.resize(solver->points.size());
+    for (unsigned int k = 0; k < point_memory.size(); ++k)
+      {
+        const ContactPoint &point = solver->points[k];
+        point_memory[k]           = {{point.force[0],
+                                      point.force[1],
+                                      point.force[2],
+                                      point.stick_point[0],
+                                      point.stick_point[1],
+                                      point.history.opening,
+                                      point.history.slip,
+                                      point.bar_extension,
+                                      point.largest_slip,
+                                      point.initial_gap[0],
+                                      point.initial_gap[1],
+                                      point.initial_gap[2],
+                                      static_cast<double>(point.status)}};
+        values.items.emplace_back(point_keys[k], point_memory[k].data());
+      }
+    return values;
+  }
+
+
+  nlohmann::json
+  Contact::save() const
+  {
+    nlohmann::json energies;
+    for (const ContactSurface &surface : solver->surfaces)
+      energies.push_back(
+        sum_over_ranks(std::vector<double>{surface.energy.impact,
+                                           surface.energy.friction,
+                                           surface.energy.bond,
+                                           surface.energy.bars,
+                                           surface.energy.uplift},
+                       communicator));
+    const auto largest = [&](const auto value) {
+      return Utilities::MPI::max(value, communicator);
+    };
+    return {{"energies", energies},
+            {"penetration", largest(total.penetration)},
+            {"residual", largest(total.residual)},
+            {"sweeps", largest(total.sweeps)},
+            {"all sweeps", Utilities::MPI::sum(total.all_sweeps, communicator)},
+            {"clusters", Utilities::MPI::sum(total.clusters, communicator)}};
+  }
+
+
+  void
+  Contact::load(const nlohmann::json &saved)
+  {
+    for (unsigned int k = 0; k < solver->points.size(); ++k)
+      {
+        ContactPoint      &point  = solver->points[k];
+        const PointMemory &memory = point_memory[k];
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            point.force[d]       = memory[d];
+            point.initial_gap[d] = memory[9 + d];
+          }
+        point.stick_point[0]  = memory[3];
+        point.stick_point[1]  = memory[4];
+        point.history.opening = memory[5];
+        point.history.slip    = memory[6];
+        point.bar_extension   = memory[7];
+        point.largest_slip    = memory[8];
+        point.status          = static_cast<ContactStatus>(memory[12]);
+        solver->update_limits(point);
+      }
+
+    // sums are taken over the ranks: the first one gets all
+    for (ContactSurface &surface : solver->surfaces)
+      surface.energy = {};
+    total = {};
+    if (Utilities::MPI::this_mpi_process(communicator) != 0)
+      return;
+    for (unsigned int s = 0; s < solver->surfaces.size(); ++s)
+      {
+        const std::vector<double> e = saved.at("energies").at(s);
+        solver->surfaces[s].energy  = {e[0], e[1], e[2], e[3], e[4]};
+      }
+    total.penetration = saved.at("penetration");
+    total.residual    = saved.at("residual");
+    total.sweeps      = saved.at("sweeps");
+    total.all_sweeps  = saved.at("all sweeps");
+    total.clusters    = saved.at("clusters");
+  }
+} // namespace Voussoir

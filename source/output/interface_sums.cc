@@ -1,0 +1,69 @@
+#include <voussoir/output/interface_sums.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+  using namespace InterfaceSum;
+
+  double
+  slip_of(const ContactPoint &point)
+  {
+    return std::hypot(point.gap[1], point.gap[2]);
+  }
+
+
+  double
+  opening_of(const ContactPoint &point)
+  {
+    return std::max(point.gap[0], 0.);
+  }
+
+
+  void
+  add_to_sums(const ContactPoint &point, double *sum)
+  {
+    const Tensor<1, 3> &F      = point.force;
+    const Tensor<1, 3>  global = F * point.frame;
+    const bool          open   = point.status == ContactStatus::open;
+    sum[opening] += point.area * opening_of(point);
+    sum[slip] += point.area * slip_of(point);
+    sum[open_area] += open ? point.area : 0.;
+    sum[sliding_area] +=
+      point.status == ContactStatus::sliding ? point.area : 0.;
+    sum[pressure] += F[0];
+    for (unsigned int d = 0; d < 3; ++d)
+      {
+        sum[shear_x + d] += global[d] - F[0] * point.frame[0][d];
+        sum[force_x + d] += global[d];
+      }
+    // without keys
+    ContactLimits limits = point.limits;
+    limits.locked        = false;
+    sum[resistance] += limits.shear(open, F[0]);
+    sum[shear_of_points] += std::hypot(F[1], F[2]);
+    sum[cohesion] += limits.shear(open, 0.);
+    sum[friction] += open ? 0. : limits.friction * point.area;
+  }
+
+
+  double
+  safety_from_sums(const SlidingBlock        &block,
+                   const double              *sums,
+                   const std::vector<double> &areas)
+  {
+    Tensor<1, 3>              force;
+    std::vector<SlidingPlane> closed;
+    for (const SlidingBlock::Plane &plane : block.planes)
+      {
+        const double *sum  = sums + n_quantities * plane.surface;
+        const double  area = areas[plane.surface];
+        for (unsigned int d = 0; d < 3; ++d)
+          force[d] += plane.side * sum[force_x + d];
+        const double closed_area = area - sum[open_area];
+        if (closed_area > 1e-9 * area)
+          closed.push_back(
+            {plane.normal, sum[friction] / closed_area, sum[cohesion]});
+      }
+    return sliding_safety(closed, force);
+  }
+} // namespace Voussoir

@@ -1,0 +1,196 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/mpi.h>
+#include <voussoir/base/parameter_file.h>
+#include <voussoir/mesh/interfaces.h>
+#include <voussoir/output/sliding_block.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  std::vector<SlidingBlock>
+  find_sliding_blocks(const std::string    &text,
+                      const std::string    &place,
+                      const Discretization &discretization,
+                      const Contact        &contact)
+  {
+    const Grid               &grid  = discretization.grid;
+    const auto               &names = contact.surface_names();
+    std::vector<Tensor<1, 3>> normals(names.size());
+    std::vector<SlidingBlock> blocks;
+    for (const ContactPoint &point : contact.points())
+      normals[point.surface] += point.area * point.frame[0];
+
+    for (const std::string &item : split_list(text, ';'))
+      {
+        const auto   colon = item.find(':');
+        SlidingBlock block;
+        block.name = Utilities::trim(item.substr(0, colon));
+        if (colon == std::string::npos)
+          throw UserError(place + ": \"" + item +
+                          "\" is no block; write \"cell set: surface, "
+                          "surface\", several separated by \";\".");
+        grid.check_cell_set(block.name, place);
+        for (const std::string &name : split_list(item.substr(colon + 1)))
+          {
+            const auto found = std::find(names.begin(), names.end(), name);
+            if (found == names.end())
+              throw UserError(place + " names \"" + name +
+                              "\", which is no surface of an interface; list "
+                              "it in section \"Interfaces\".");
+            const unsigned int surface = found - names.begin();
+
+            // faces of the first side, and those of the block among them
+            std::vector<double> sums(5);
+            grid.for_each_face(name, [&](const auto &cell, const unsigned int) {
+              ++sums[0];
+              sums[1] += grid.in_cell_set(cell, block.name) ? 1. : 0.;
+            });
+            grid.for_each_face(name + other_side,
+                               [&](const auto &cell, const unsigned int) {
+                                 sums[1] -=
+                                   grid.in_cell_set(cell, block.name) ? 1. : 0.;
+                               });
+            for (unsigned int d = 0; d < 3; ++d)
+              sums[2 + d] = normals[surface][d];
+            sums = sum_over_ranks(sums, grid.communicator());
+            if (std::abs(sums[1]) != sums[0])
+              throw UserError(place + ": the surface \"" + name +
+                              "\" does not separate the cell set \"" +
+                              block.name +
+                              "\" from other cells; choose the surfaces on "
+                              "which the block rests.");
+            const double       side = sums[1] < 0. ? 1. : -1.;
+            const Tensor<1, 3> normal({sums[2], sums[3], sums[4]});
+            block.planes.push_back(
+              {surface, side, side / normal.norm() * normal});
+          }
+        blocks.push_back(block);
+      }
+    return blocks;
+  }
+
+
+  double
+  sliding_safety(const std::vector<SlidingPlane> &planes,
+                 const Tensor<1, 3>              &force)
+  {
+    constexpr double infinity  = std::numeric_limits<double>::infinity();
+    constexpr double tolerance = 1e-9;
+
+    if (std::all_of(planes.begin(), planes.end(), [&](const auto &plane) {
+          return force * plane.normal < 0.;
+        }))
+      return 0.;
+
+    const std::size_t n        = planes.size();
+    double            smallest = infinity;
+    const auto        consider = [&](const Tensor<1, 3> &against,
+                              const double        resistance,
+                              const std::size_t   i,
+                              const std::size_t   j) {
+      // without a driving force, or with as good as none
+      const double driving = against.norm();
+      if (driving <= 1e-6 * std::max(resistance, force.norm()))
+        return;
+      for (std::size_t k = 0; k < n; ++k)
+        if (k != i && k != j &&
+            -against * planes[k].normal < -tolerance * driving)
+          return;
+      smallest = std::min(smallest, resistance / driving);
+    };
+
+    for (std::size_t i = 0; i < n; ++i)
+      {
+        const SlidingPlane &a  = planes[i];
+        const double        Na = force * a.normal;
+        if (Na > 0.)
+          consider(force - Na * a.normal, a.friction * Na + a.cohesion, i, i);
+        for (std::size_t j = i + 1; j < n; ++j)
+          {
+            const SlidingPlane &b      = planes[j];
+            const double        Nb     = force * b.normal;
+            const double        cosine = a.normal * b.normal,
+                         sine2         = 1. - cosine * cosine;
+            if (sine2 < tolerance)
+              continue;
+            const double Ni = (Na - cosine * Nb) / sine2,
+                         Nj = (Nb - cosine * Na) / sine2;
+            if (Ni >= 0. && Nj >= 0.)
+              consider(force - Ni * a.normal - Nj * b.normal,
+                       a.friction * Ni + a.cohesion + b.friction * Nj +
+                         b.cohesion,
+                       i,
+                       j);
+          }
+      }
+    return smallest;
+  }
+
+
+  void
+  SafetyHistory::add(const double time,
+                     const double interval,
+                     const double safety)
+  {
+    if (std::isnan(at_start))
+      at_start = safety;
+    if (safety < smallest)
+      {
+        smallest         = safety;
+        time_of_smallest = time;
+      }
+    // what slides is at its limit, up to the waves inside
+    if (safety < 1. + 1e-3)
+      time_at_one += interval;
+  }
+
+
+  nlohmann::json
+  SafetyHistory::summary() const
+  {
+    return {{"safety at the start", at_start},
+            {"smallest safety", smallest},
+            {"time of the smallest safety [s]", time_of_smallest},
+            {"time at safety one or below [s]", time_at_one}};
+  }
+
+
+  std::array<double, 4>
+  SafetyHistory::save() const
+  {
+    return {{json_number(at_start),
+             json_number(smallest),
+             time_of_smallest,
+             time_at_one}};
+  }
+
+
+  void
+  SafetyHistory::load(const std::array<double, 4> &saved)
+  {
+    at_start         = from_json_number(saved[0]);
+    smallest         = from_json_number(saved[1]);
+    time_of_smallest = saved[2];
+    time_at_one      = saved[3];
+  }
+
+
+  double
+  json_number(const double value)
+  {
+    return std::min(value, std::numeric_limits<double>::max());
+  }
+
+
+  double
+  from_json_number(const double value)
+  {
+    return value == std::numeric_limits<double>::max() ?
+             std::numeric_limits<double>::infinity() :
+             value;
+  }
+} // namespace Voussoir

@@ -1,0 +1,87 @@
+#include <voussoir/output/observer.h>
+
+#include <filesystem>
+
+#include "contact_sums.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * The sliding safety that the observer "interfaces" reports for a block at
+     * rest on an incline: (c A + f W cos) / (W sin).
+     */
+    class Safety : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Weight", weight, "Of the block [N].");
+        prm.add_parameter("Area", area, "Of its base [m2].");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const double friction =
+          std::stod(file.given("Interfaces/plane/Friction coefficient"));
+        for (const auto &[slope, cohesion] : std::vector<std::array<double, 2>>{
+               {{0.4, 0.}}, {{0.9, 0.}}, {{1.2, 5e3}}})
+          {
+            const double angle  = std::atan(slope * friction),
+                         normal = std::cos(angle), along = std::sin(angle);
+            std::ostringstream name;
+            name << "tan(theta) = " << slope
+                 << " f, cohesion = " << 1e-3 * cohesion << " kPa: safety";
+            verdicts.near(
+              name.str(),
+              reported(
+                file.with(
+                  {vector_entry("Loads/weight/Acceleration",
+                                9.81 * Tensor<1, 3>({along, 0., -normal})),
+                   "Interfaces/plane/Cohesion=" + std::to_string(cohesion)}),
+                communicator),
+              (cohesion * area + friction * weight * normal) / (weight * along),
+              0.01);
+          }
+      }
+
+    private:
+      static double
+      reported(const ParameterFile &file, const MPI_Comm communicator)
+      {
+        const auto    parameters = make_case(file);
+        const auto    simulation = make_simulation(*parameters, communicator);
+        ObservedModel model      = simulation->model;
+        model.folder             = "observed";
+        if (Utilities::MPI::this_mpi_process(communicator) == 0)
+          std::filesystem::create_directories(model.folder);
+        MPI_Barrier(communicator);
+
+        const auto observer =
+          Registry<Observer>::create("interfaces", "the check");
+        ParameterHandler prm;
+        observer->declare_parameters(prm);
+        observer->prepare(model, 0., false);
+        observer->observe(simulation->state);
+        nlohmann::json summary;
+        observer->finish(simulation->state, summary);
+        return summary.at("interfaces")
+          .at("surfaces")
+          .at("plane")
+          .at("smallest sliding safety");
+      }
+
+      double weight = 1., area = 1.;
+    };
+
+    const Registry<Check>::Add<Safety>
+      registered("contact safety", "Sliding safety of a block at rest.");
+  } // namespace
+} // namespace Voussoir

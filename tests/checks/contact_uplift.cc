@@ -1,0 +1,123 @@
+#include "contact_sums.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * A block on a base with water in the joint under it, from a heel at x = 0
+     * to a toe: head linear between them, or with drains on the way. The
+     * pressure of contact is less by it, while the base still bears all of the
+     * weight.
+     */
+    class Uplift : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Length", length, "From heel to toe [m].");
+        prm.add_parameter("Width", width, "Of the block [m].");
+        prm.add_parameter("Weight", weight, "Of the block [N].");
+        prm.add_parameter("Heads", heads, "Heel, toe [m].");
+        prm.add_parameter("Drains", drains, "Position, factor.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto mean = [](const double a, const double b) {
+          return 0.5 * (a + b);
+        };
+        const double specific = 1000. * 9.81, area = length * width;
+
+        const double linear = specific * mean(heads[0], heads[1]) * area;
+        compare("linear: ",
+                file.with(
+                  {drain_entry("position", 0.), drain_entry("factor", 1.)}),
+                linear,
+                linear_centre(0., heads[0], length, heads[1]),
+                verdicts,
+                communicator);
+
+        // heads over the downstream one: at the heel, at the drains, none
+        const double way    = drains[0] * length;
+        const double at_way = heads[1] + drains[1] * (heads[0] - heads[1]);
+        const double first  = mean(heads[0], at_way) * way,
+                     last   = mean(at_way, heads[1]) * (length - way);
+        compare("with drains: ",
+                file.with({drain_entry("position", drains[0]),
+                           drain_entry("factor", drains[1])}),
+                specific * width * (first + last),
+                (first * linear_centre(0., heads[0], way, at_way) +
+                 last * linear_centre(way, at_way, length, heads[1])) /
+                  (first + last),
+                verdicts,
+                communicator);
+      }
+
+    private:
+      static std::string
+      drain_entry(const std::string &name, const double value)
+      {
+        return "Interfaces/plane/Uplift/Drain " + name + "=" +
+               std::to_string(value);
+      }
+
+      /** Where the resultant of a linear head acts. */
+      static double
+      linear_centre(const double begin,
+                    const double at_begin,
+                    const double end,
+                    const double at_end)
+      {
+        return begin + (end - begin) / 3. * (at_begin + 2. * at_end) /
+                         (at_begin + at_end);
+      }
+
+      void
+      compare(const std::string   &name,
+              const ParameterFile &file,
+              const double         uplift,
+              const double         centre,
+              Verdicts            &verdicts,
+              const MPI_Comm       communicator) const
+      {
+        const auto parameters  = make_case(file);
+        const auto simulation  = make_simulation(*parameters, communicator);
+        const ContactSums sums = contact_sums(*simulation, 0);
+        verdicts.near(name + "resultant of the uplift [kN]",
+                      1e-3 * sums.given,
+                      1e-3 * uplift,
+                      1e-8);
+        double moment = 0.;
+        for (unsigned int k = 0; k < simulation->contact->points().size(); ++k)
+          moment += simulation->contact->points()[k].given_force *
+                    simulation->contact->positions()[k][0];
+        verdicts.near(name + "its place, from the heel [m]",
+                      Utilities::MPI::sum(moment, communicator) / sums.given,
+                      centre,
+                      0.02);
+        verdicts.near(name + "resultant of the contact pressure [kN]",
+                      1e-3 * sums.pressure,
+                      1e-3 * (weight - uplift),
+                      1e-8);
+        verdicts.near(name + "force of the joint on the block [kN]",
+                      1e-3 * (sums.force[2] + sums.given),
+                      1e-3 * weight,
+                      1e-8);
+      }
+
+      double length = 1., width = 1., weight = 1.;
+
+      Tensor<1, 2> heads{{1., 0.}}, drains{{0.25, 0.5}};
+    };
+
+    const Registry<Check>::Add<Uplift>
+      registered("contact uplift", "Water pressure under a block.");
+  } // namespace
+} // namespace Voussoir

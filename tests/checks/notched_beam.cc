@@ -1,0 +1,167 @@
+#include <voussoir/fem/nodal_values.h>
+
+#include <fstream>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * A beam of 2.1 m by 0.6 m, notched to half its height below the middle,
+     * with n cells over the height: a slice of cubes. It stands on 0.3 m at
+     * both ends and is pressed down on 0.1 m in the middle; the crack runs
+     * through the column of cells above the notch.
+     */
+    void
+    write_beam(const std::string &name, const unsigned int n)
+    {
+      const unsigned int columns = 7 * n / 2, rows = n, wide = n / 6;
+      const double       h = 0.6 / n;
+      const auto         node =
+        [&](const unsigned int i, const unsigned int j, const unsigned int k) {
+          return 1 + (j * (columns + 1) + i) * 2 + k;
+        };
+      std::vector<std::string> elements;
+      const auto               add = [&](const std::string &element) {
+        elements.push_back(std::to_string(elements.size() + 1) + element);
+      };
+      const auto quad = [&](const unsigned int                 set,
+                            const std::array<unsigned int, 4> &nodes) {
+        std::ostringstream text;
+        text << " 3 2 " << set << ' ' << set;
+        for (const unsigned int number : nodes)
+          text << ' ' << number;
+        add(text.str());
+      };
+      for (unsigned int j = 0; j < rows; ++j)
+        for (unsigned int i = 0; i < columns; ++i)
+          {
+            if (2 * i + 1 == columns && 2 * j < rows)
+              continue; // the notch
+            std::ostringstream text;
+            text << " 5 2 1 1";
+            for (const unsigned int k : {0, 1})
+              text << ' ' << node(i, j, k) << ' ' << node(i + 1, j, k) << ' '
+                   << node(i + 1, j + 1, k) << ' ' << node(i, j + 1, k);
+            add(text.str());
+            for (const unsigned int k : {0, 1})
+              quad(3,
+                   {{node(i, j, k),
+                     node(i + 1, j, k),
+                     node(i + 1, j + 1, k),
+                     node(i, j + 1, k)}});
+          }
+      for (unsigned int i = 0; i < columns; ++i)
+        {
+          if (i < wide || i >= columns - wide)
+            quad(2,
+                 {{node(i, 0, 0),
+                   node(i + 1, 0, 0),
+                   node(i + 1, 0, 1),
+                   node(i, 0, 1)}});
+          if (2 * i + 1 + wide >= columns && 2 * i + 1 <= columns + wide)
+            quad(4,
+                 {{node(i, rows, 0),
+                   node(i + 1, rows, 0),
+                   node(i + 1, rows, 1),
+                   node(i, rows, 1)}});
+        }
+      std::ofstream file(name);
+      file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n"
+              "3 1 \"beam\"\n2 2 \"supports\"\n2 3 \"sides\"\n2 4 \"load\"\n"
+              "$EndPhysicalNames\n$Nodes\n"
+           << 2 * (columns + 1) * (rows + 1) << '\n';
+      for (unsigned int j = 0; j <= rows; ++j)
+        for (unsigned int i = 0; i <= columns; ++i)
+          for (unsigned int k = 0; k < 2; ++k)
+            file << node(i, j, k) << ' ' << h * i << ' ' << -(h * k) << ' '
+                 << h * j << '\n';
+      file << "$EndNodes\n$Elements\n" << elements.size() << '\n';
+      for (const std::string &element : elements)
+        file << element << '\n';
+      file << "$EndElements\n";
+    }
+
+
+    /** Crack-band regularisation: load and energy do not depend on the cells.
+     */
+    class NotchedBeam : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        double peak = 0., lost = 0.; // of the first mesh
+        for (const unsigned int n : {18, 30, 42})
+          {
+            const std::string mesh = std::filesystem::current_path() /
+                                     ("beam_" + std::to_string(n) + ".msh");
+            write_beam(mesh, n);
+            const auto parameters = make_case(file.with({"Mesh/file/File=" + mesh}));
+            const auto simulation = make_simulation(*parameters, communicator);
+            const auto [load, energy] = press(*simulation, 0.6 / n);
+            std::ostringstream name;
+            name << " with " << n << " cells over the height";
+            if (peak == 0.)
+              {
+                peak = load;
+                lost = energy;
+              }
+            verdicts.near("largest load" + name.str(),
+                          1e-3 * load,
+                          1e-3 * peak,
+                          0.05,
+                          "kN per m");
+            verdicts.near("energy lost" + name.str(), energy, lost, 0.1, "J/m");
+            // the ligament is 0.3 m high, and its upper end hardly opens
+            verdicts.below("energy over that of the whole ligament, less 1" +
+                             name.str(),
+                           std::max(0., energy / (0.3 * 100.) - 1.),
+                           0.1);
+          }
+      }
+
+    private:
+      /** Largest load [N/m] and energy lost at the end [J/m]. */
+      std::pair<double, double>
+      press(Simulation &simulation, const double thickness) const
+      {
+        std::vector<unsigned int> pressed;
+        for (const Projection *projection : simulation.projections)
+          pressed = projection->nodes();
+        // the load as a mean over about a period of the beam
+        const unsigned int  last    = simulation.n_steps();
+        const unsigned int  window  = std::ceil(0.003 / simulation.time_step);
+        double              largest = 0., sum = 0.;
+        std::vector<double> loads;
+        Vector              force = simulation.discretization.create_vector();
+        while (simulation.state.step < last)
+          {
+            simulation.scheme.step(simulation.state);
+            if (simulation.state.step % 10 != 0)
+              continue;
+            simulation.internal_force.respond(force,
+                                              simulation.state.displacement);
+            double load = 0.;
+            for (const unsigned int node : pressed)
+              load -= node_value(force, node)[2];
+            loads.push_back(load / thickness);
+            sum += loads.back();
+            if (loads.size() > window / 10)
+              sum -= loads[loads.size() - 1 - window / 10];
+            largest = std::max(largest, sum / (window / 10));
+          }
+        return {largest, simulation.internal_force.dissipated() / thickness};
+      }
+    };
+
+    const Registry<Check>::Add<NotchedBeam>
+      registered("notched beam", "Crack in a beam on three meshes.");
+  } // namespace
+} // namespace Voussoir

@@ -28,8 +28,8 @@ namespace Voussoir
      */
     struct ConcreteDamage : IsotropicElasticity
     {
-      // equivalent strains in tension and compression, e_p
-      static constexpr unsigned int n_history = 8;
+      // equivalent strains in tension and compression, damages, e_p
+      static constexpr unsigned int n_history = 10;
 
       double tensile_strength      = 2.5e6;
       double fracture_energy       = 250.;
@@ -283,13 +283,12 @@ namespace Voussoir
             const double          time_step) const
       {
         // zero is a point that has never left the elastic range
-        const double limit  = curve.elastic_limit(band);
-        const double before = std::max(largest, limit);
+        const double before = std::max(largest, curve.elastic_limit(band));
         const auto   old    = curve.at(before, band);
         const double trial =
           equivalent_stress / young_modulus + old.irreversible;
         if (trial <= before)
-          return {1., largest == 0. ? 1. : 1. - old.damage(young_modulus), 0.};
+          return {1., 1. - old.damage(young_modulus), 0.};
         const double share = relaxation_time == 0. ?
                                1. :
                                time_step / (relaxation_time + time_step);
@@ -315,7 +314,7 @@ namespace Voussoir
       {
         SymmetricTensor3<Number> plastic;
         for (unsigned int i = 0; i < 6; ++i)
-          plastic.access_raw_entry(i) = history[2 + i];
+          plastic.access_raw_entry(i) = history[4 + i];
         const auto   split   = split_tension(stress(strain - plastic), *this);
         const auto  &pressed = split.compression;
         const Number largest = split.principal.values[0];
@@ -332,20 +331,38 @@ namespace Voussoir
           (1. - alpha);
 
         Number factor[2], intact[2], dissipation[2];
-        for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
-          for (const unsigned int sign : {0, 1})
-            {
-              const Progress progress =
-                go_on(sign == 0 ? tension : compression,
-                      lane_of(sign == 0 ? largest : equivalent_compression,
-                              lane),
-                      lane_of(history[sign], lane),
-                      lane_of(situation.element_length, lane),
-                      situation.time_step);
-              lane_of(factor[sign], lane)      = progress.effective;
-              lane_of(intact[sign], lane)      = progress.intact;
-              lane_of(dissipation[sign], lane) = progress.dissipation;
-            }
+        for (const unsigned int sign : {0, 1})
+          {
+            const SofteningCurve &curve = sign == 0 ? tension : compression;
+            const Number          equivalent =
+              sign == 0 ? largest : equivalent_compression;
+            factor[sign]      = 1.;
+            intact[sign]      = 1. - history[2 + sign];
+            dissipation[sign] = 0.;
+            // only where damage grows, or may: look up the curve
+            const Number before =
+              std::max(history[sign],
+                       Number(curve.elastic_limit(0.) *
+                              curve.strength_factor(situation.element_length)));
+            const bool irreversible =
+              (sign == 0 ? irreversible_tension : irreversible_crushing) > 0.;
+            for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
+              if (lane_of(equivalent, lane) >
+                    young_modulus * lane_of(before, lane) ||
+                  (irreversible && lane_of(history[sign], lane) > 0.))
+                {
+                  const Progress progress =
+                    go_on(curve,
+                          lane_of(equivalent, lane),
+                          lane_of(history[sign], lane),
+                          lane_of(situation.element_length, lane),
+                          situation.time_step);
+                  lane_of(factor[sign], lane)      = progress.effective;
+                  lane_of(intact[sign], lane)      = progress.intact;
+                  lane_of(dissipation[sign], lane) = progress.dissipation;
+                  lane_of(history[2 + sign], lane) = 1. - progress.intact;
+                }
+          }
 
         PointResponse<Number>    response;
         SymmetricTensor3<Number> effective[2];
@@ -362,7 +379,7 @@ namespace Voussoir
         for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
           if (lane_of(factor[0], lane) * lane_of(factor[1], lane) != 1.)
             for (unsigned int i = 0; i < 6; ++i)
-              lane_of(history[2 + i], lane) =
+              lane_of(history[4 + i], lane) =
                 lane_of(strain.access_raw_entry(i), lane) -
                 lane_of(response.elastic_strain.access_raw_entry(i), lane);
         return response;
@@ -377,13 +394,7 @@ namespace Voussoir
       std::vector<double>
       outputs(const double *history, const double element_length) const
       {
-        std::vector<double> result;
-        for (const unsigned int sign : {0, 1})
-          result.push_back(history[sign] == 0. ?
-                             0. :
-                             (sign == 0 ? tension : compression)
-                               .at(history[sign], element_length)
-                               .damage(young_modulus));
+        std::vector<double> result{history[2], history[3]};
         result.push_back(history[0] == 0. ?
                            0. :
                            1e3 * element_length *

@@ -138,7 +138,7 @@ namespace Voussoir
         verdicts.below("difference after a change of ranks",
                        difference(uninterrupted.state.displacement,
                                   shared_run.state.displacement),
-                       1e-10);
+                       1e-9);
         compare_tables("straight", "alone", verdicts);
         if (uninterrupted.contact)
           compare_energies(*uninterrupted.contact,

@@ -229,6 +229,12 @@ namespace Voussoir
                       "least one material and give it cell sets.");
     for (const auto &[name, material] : materials.objects)
       material->check("Section \"Materials/" + name + "\"");
+    if (discretization.quadrature == "one point" && discretization.degree > 1)
+      throw UserError("\"Quadrature\" in section \"Discretization\" is \"one "
+                      "point\", which cells of \"Degree\" " +
+                      std::to_string(discretization.degree) +
+                      " cannot do with; set \"Degree = 1\", or take \"Gauss\" "
+                      "or \"Gauss-Lobatto\".");
     interfaces.check();
     static_state.check(load_list(), interfaces);
     modes.check(material_names(), boundaries);

@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/fem/discretization.h>
+#include <voussoir/fem/one_point_cell.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_renumbering.h>
@@ -22,9 +23,16 @@ namespace Voussoir
     prm.add_parameter(
       "Quadrature",
       quadrature,
-      "Integration points of the stiffness, degree + 1 in each direction. "
-      "The mass is always lumped at the Gauss-Lobatto nodes.",
-      Patterns::Selection("Gauss|Gauss-Lobatto"));
+      "Integration points of the stiffness: Gauss or Gauss-Lobatto points, "
+      "degree + 1 in each direction, or one point in the centre of cells of "
+      "degree 1, stabilised by elastic stiffness against bending within the "
+      "cell. With one point a step costs about half, and walls of one or two "
+      "cells bend as they should, while full integration at degree 1 makes "
+      "them too stiff; but damage follows the mean strain of a cell only, and "
+      "a damaged cell keeps its stiffness against bending: let cracks have "
+      "full integration or several cells through the wall. The mass is always "
+      "lumped at the Gauss-Lobatto nodes.",
+      Patterns::Selection("Gauss|Gauss-Lobatto|one point"));
   }
 
 
@@ -63,15 +71,24 @@ namespace Voussoir
         data.cell_vectorization_category[cell->active_cell_index()] =
           material_of_cell(cell);
 
-    if (parameters.quadrature == "Gauss")
-      matrix_free.reinit(
-        mapping, dof_handler, hanging_nodes, QGauss<1>(degree + 1), data);
+    std::vector<Quadrature<1>> quadratures;
+    if (parameters.quadrature == "one point")
+      {
+        // the points of the second are the corners, for OnePointCell
+        static_assert(OnePointCell::corner_quadrature == 1);
+        quadratures = {QGauss<1>(1), QGaussLobatto<1>(2)};
+        data.mapping_update_flags |= update_quadrature_points;
+      }
+    else if (parameters.quadrature == "Gauss")
+      quadratures = {QGauss<1>(degree + 1)};
     else
-      matrix_free.reinit(mapping,
-                         dof_handler,
-                         hanging_nodes,
-                         QGaussLobatto<1>(degree + 1),
-                         data);
+      quadratures = {QGaussLobatto<1>(degree + 1)};
+    matrix_free.reinit(mapping,
+                       std::vector<const DoFHandler<3> *>{&dof_handler},
+                       std::vector<const AffineConstraints<double> *>{
+                         &hanging_nodes},
+                       quadratures,
+                       data);
 
     for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
       material_of_batch.push_back(

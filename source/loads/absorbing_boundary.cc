@@ -157,9 +157,10 @@ namespace Voussoir
     // springs and dashpots at the nodes, tractions at the points at which the
     // cells integrate, so that a column on the same levels is followed exactly
     const Quadrature<2> traction_points =
-      quadrature == "Gauss" ?
-        static_cast<Quadrature<2>>(QGauss<2>(discretization.degree + 1)) :
-        static_cast<Quadrature<2>>(QGaussLobatto<2>(discretization.degree + 1));
+      quadrature == "Gauss-Lobatto" ?
+        static_cast<Quadrature<2>>(
+          QGaussLobatto<2>(discretization.degree + 1)) :
+        static_cast<Quadrature<2>>(QGauss<2>(discretization.degree + 1));
     const auto flags = update_values | update_quadrature_points |
                        update_normal_vectors | update_JxW_values;
     FEFaceValues<3> at_nodes(discretization.mapping,

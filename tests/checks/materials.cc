@@ -296,7 +296,9 @@ namespace Voussoir
       }
 
 
-      /** The internal force from points by themselves. */
+      /** The internal force from points by themselves; of cells with one point,
+       *  which sees their mean strain, what it differs by from the elastic one.
+       */
       void
       respond_plainly(const Simulation              &simulation,
                       const Vector                  &u,
@@ -307,31 +309,49 @@ namespace Voussoir
         const Discretization &discretization = simulation.discretization;
         const auto           &fe             = discretization.fe;
         const Material       &material       = *simulation.materials[0];
-        FEValues<3>           values(discretization.mapping,
+        const auto &points    = discretization.matrix_free.get_quadrature();
+        const bool  one_point = points.size() == 1;
+        FEValues<3> values(discretization.mapping,
                            fe,
-                           discretization.matrix_free.get_quadrature(),
+                           one_point ? QGauss<3>(2) : points,
                            update_gradients | update_JxW_values);
         const FEValuesExtractors::Vector     displacement(0);
         std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
         std::vector<Tensor2> strains(values.n_quadrature_points);
-        result = 0.;
+        if (one_point)
+          simulation.internal_force.apply(result, u);
+        else
+          result = 0.;
         for (const auto &cell :
              discretization.dof_handler.active_cell_iterators())
           {
             values.reinit(cell);
             values[displacement].get_function_symmetric_gradients(u, strains);
+            if (one_point)
+              {
+                Tensor2 sum;
+                double  volume = 0.;
+                for (const unsigned int q : values.quadrature_point_indices())
+                  {
+                    sum += strains[q] * values.JxW(q);
+                    volume += values.JxW(q);
+                  }
+                std::fill(strains.begin(), strains.end(), sum / volume);
+              }
             cell->get_dof_indices(dofs);
             for (const unsigned int q : values.quadrature_point_indices())
               {
                 auto &history = histories[{cell->active_cell_index(), q}];
                 history.resize(material.n_history());
-                const auto stress = material
-                                      .respond(strains[q],
-                                               history.data(),
-                                               {std::cbrt(cell->measure()) /
-                                                  discretization.degree,
-                                                1e300})
-                                      .stress;
+                Tensor2 stress = material
+                                   .respond(strains[q],
+                                            history.data(),
+                                            {std::cbrt(cell->measure()) /
+                                               discretization.degree,
+                                             1e300})
+                                   .stress;
+                if (one_point)
+                  stress -= material.stress(strains[q]);
                 for (const unsigned int i : values.dof_indices())
                   result(dofs[i]) +=
                     stress * values[displacement].symmetric_gradient(i, q) *

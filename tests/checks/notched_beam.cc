@@ -103,7 +103,8 @@ namespace Voussoir
             const std::string mesh = std::filesystem::current_path() /
                                      ("beam_" + std::to_string(n) + ".msh");
             write_beam(mesh, n);
-            const auto parameters = make_case(file.with({"Mesh/file/File=" + mesh}));
+            const auto parameters =
+              make_case(file.with({"Mesh/file/File=" + mesh}));
             const auto simulation = make_simulation(*parameters, communicator);
             const auto [load, energy] = press(*simulation, 0.6 / n);
             std::ostringstream name;

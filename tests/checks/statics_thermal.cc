@@ -161,7 +161,7 @@ namespace Voussoir
       }
 
       /** Smallest and largest stress: along the bar if it is clamped, else of
-       *  all components, at the Gauss points. */
+       *  all components, at the integration points. */
       std::pair<double, double>
       stress_range(const Simulation &simulation) const
       {
@@ -175,7 +175,7 @@ namespace Voussoir
           }
         FEValues<3>                        values(discretization.mapping,
                            discretization.fe,
-                           QGauss<3>(discretization.degree + 1),
+                           discretization.matrix_free.get_quadrature(),
                            update_values | update_gradients);
         const FEValuesExtractors::Vector   all(0);
         std::vector<SymmetricTensor<2, 3>> strains(values.n_quadrature_points);

@@ -1,9 +1,8 @@
 #ifndef voussoir_materials_material_of_h
 #define voussoir_materials_material_of_h
 
+#include <voussoir/fem/one_point_cell.h>
 #include <voussoir/materials/material.h>
-
-#include <deal.II/matrix_free/fe_evaluation.h>
 
 namespace Voussoir
 {
@@ -133,20 +132,23 @@ namespace Voussoir
               const unsigned int begin,
               const unsigned int end) const override
     {
-      Evaluation cell(matrix_free);
-      for (unsigned int batch = begin; batch < end; ++batch)
-        {
-          cell.reinit(batch);
-          cell.read_dof_values(displacement);
-          if (memory != nullptr)
-            add_memory(cell, *memory);
-          cell.evaluate(dealii::EvaluationFlags::gradients);
-          for (const unsigned int q : cell.quadrature_point_indices())
-            cell.submit_symmetric_gradient(
-              stiffness_scale * law.stress(cell.get_symmetric_gradient(q)), q);
-          cell.integrate(dealii::EvaluationFlags::gradients);
-          cell.distribute_local_to_global(force);
-        }
+      with_cells(matrix_free, [&](auto &&cell) {
+        for (unsigned int batch = begin; batch < end; ++batch)
+          {
+            cell.reinit(batch);
+            cell.read_dof_values(displacement);
+            if (memory != nullptr)
+              add_memory(cell, *memory);
+            cell.evaluate(dealii::EvaluationFlags::gradients);
+            for (const unsigned int q : cell.quadrature_point_indices())
+              cell.submit_symmetric_gradient(
+                stiffness_scale * law.stress(cell.get_symmetric_gradient(q)),
+                q);
+            stabilise(cell);
+            cell.integrate(dealii::EvaluationFlags::gradients);
+            cell.distribute_local_to_global(force);
+          }
+      });
     }
 
     void
@@ -161,62 +163,65 @@ namespace Voussoir
     {
       if constexpr (has_memory)
         {
-          Evaluation cell(matrix_free), own(matrix_free);
-          for (unsigned int batch = begin; batch < end; ++batch)
-            {
-              const Lanes length = history.element_length(batch);
-              cell.reinit(batch);
-              cell.read_dof_values(displacement);
-              if (memory != nullptr)
-                add_memory(cell, *memory);
-              cell.evaluate(dealii::EvaluationFlags::gradients);
-              bool knows_own = false;
-              for (const unsigned int q : cell.quadrature_point_indices())
-                {
-                  SymmetricTensor3<Lanes> stress =
-                    stiffness_scale *
-                    law.stress(cell.get_symmetric_gradient(q));
-                  SymmetricTensor3<Lanes> trial = stress, offset_stress;
-                  if (history.has_offset)
-                    {
-                      offset_stress =
-                        law.stress(history.strain_offset(batch, q));
-                      trial += offset_stress;
-                    }
-                  if (history.is_active(batch, q) ||
-                      any_above(law.load_level(trial, length), watched))
-                    {
-                      // the law goes by the strain without damping
-                      if (!knows_own)
-                        {
-                          own.reinit(batch);
-                          own.gather_evaluate(
-                            displacement, dealii::EvaluationFlags::gradients);
-                          knows_own = true;
-                        }
-                      SymmetricTensor3<Lanes> strain =
-                        strain_factor * own.get_symmetric_gradient(q);
-                      const SymmetricTensor3<Lanes> damping_stress =
-                        stress - law.stress(strain);
-                      if (history.has_offset)
-                        strain += history.strain_offset(batch, q);
-                      const auto response =
-                        go_on(strain,
-                              batch,
-                              q,
-                              matrix_free.n_active_entries_per_cell_batch(
-                                batch),
-                              cell.JxW(q),
-                              time_step,
-                              history);
-                      stress = response.stress - offset_stress +
-                               response.damping_share * damping_stress;
-                    }
-                  cell.submit_symmetric_gradient(stress, q);
-                }
-              cell.integrate(dealii::EvaluationFlags::gradients);
-              cell.distribute_local_to_global(force);
-            }
+          with_cells(matrix_free, [&](auto &&cell) {
+            std::decay_t<decltype(cell)> own(matrix_free);
+            for (unsigned int batch = begin; batch < end; ++batch)
+              {
+                const Lanes length = history.element_length(batch);
+                cell.reinit(batch);
+                cell.read_dof_values(displacement);
+                if (memory != nullptr)
+                  add_memory(cell, *memory);
+                cell.evaluate(dealii::EvaluationFlags::gradients);
+                bool knows_own = false;
+                for (const unsigned int q : cell.quadrature_point_indices())
+                  {
+                    SymmetricTensor3<Lanes> stress =
+                      stiffness_scale *
+                      law.stress(cell.get_symmetric_gradient(q));
+                    SymmetricTensor3<Lanes> trial = stress, offset_stress;
+                    if (history.has_offset)
+                      {
+                        offset_stress =
+                          law.stress(history.strain_offset(batch, q));
+                        trial += offset_stress;
+                      }
+                    if (history.is_active(batch, q) ||
+                        any_above(law.load_level(trial, length), watched))
+                      {
+                        // the law goes by the strain without damping
+                        if (!knows_own)
+                          {
+                            own.reinit(batch);
+                            own.gather_evaluate(
+                              displacement, dealii::EvaluationFlags::gradients);
+                            knows_own = true;
+                          }
+                        SymmetricTensor3<Lanes> strain =
+                          strain_factor * own.get_symmetric_gradient(q);
+                        const SymmetricTensor3<Lanes> damping_stress =
+                          stress - law.stress(strain);
+                        if (history.has_offset)
+                          strain += history.strain_offset(batch, q);
+                        const auto response =
+                          go_on(strain,
+                                batch,
+                                q,
+                                matrix_free.n_active_entries_per_cell_batch(
+                                  batch),
+                                cell.JxW(q),
+                                time_step,
+                                history);
+                        stress = response.stress - offset_stress +
+                                 response.damping_share * damping_stress;
+                      }
+                    cell.submit_symmetric_gradient(stress, q);
+                  }
+                stabilise(cell);
+                cell.integrate(dealii::EvaluationFlags::gradients);
+                cell.distribute_local_to_global(force);
+              }
+          });
         }
       else
         (void)history, (void)time_step,
@@ -231,24 +236,27 @@ namespace Voussoir
                const unsigned int begin,
                const unsigned int end) const override
     {
-      Evaluation cell(matrix_free), warmth(matrix_free);
-      for (unsigned int batch = begin; batch < end; ++batch)
-        {
-          cell.reinit(batch);
-          cell.gather_evaluate(displacement,
-                               dealii::EvaluationFlags::gradients);
-          warmth.reinit(batch);
-          warmth.gather_evaluate(temperature, dealii::EvaluationFlags::values);
-          for (const unsigned int q : cell.quadrature_point_indices())
-            {
-              auto &offset = history.strain_offset(batch, q);
-              offset       = (static_factor - strain_factor) *
-                       cell.get_symmetric_gradient(q);
-              for (unsigned int d = 0; d < 3; ++d)
-                offset[d][d] -=
-                  static_factor * expansion * warmth.get_value(q)[d];
-            }
-        }
+      with_cells(matrix_free, [&](auto &&cell) {
+        std::decay_t<decltype(cell)> warmth(matrix_free);
+        for (unsigned int batch = begin; batch < end; ++batch)
+          {
+            cell.reinit(batch);
+            cell.gather_evaluate(displacement,
+                                 dealii::EvaluationFlags::gradients);
+            warmth.reinit(batch);
+            warmth.gather_evaluate(temperature,
+                                   dealii::EvaluationFlags::values);
+            for (const unsigned int q : cell.quadrature_point_indices())
+              {
+                auto &offset = history.strain_offset(batch, q);
+                offset       = (static_factor - strain_factor) *
+                         cell.get_symmetric_gradient(q);
+                for (unsigned int d = 0; d < 3; ++d)
+                  offset[d][d] -=
+                    static_factor * expansion * warmth.get_value(q)[d];
+              }
+          }
+      });
     }
 
     double
@@ -262,56 +270,58 @@ namespace Voussoir
       double total = 0.;
       if constexpr (has_memory)
         {
-          Evaluation cell(matrix_free), cell_static(matrix_free);
-          for (unsigned int batch = begin; batch < end; ++batch)
-            {
-              const auto points = cell.quadrature_point_indices();
-              if (std::none_of(points.begin(),
-                               points.end(),
-                               [&](const unsigned int q) {
-                                 return history.is_active(batch, q);
-                               }))
-                continue;
-              cell.reinit(batch);
-              cell.gather_evaluate(displacement,
-                                   dealii::EvaluationFlags::gradients);
-              if (u_static.size() > 0)
-                {
-                  cell_static.reinit(batch);
-                  cell_static.gather_evaluate(
-                    u_static, dealii::EvaluationFlags::gradients);
-                }
-              Lanes sum = 0.;
-              for (const unsigned int q : points)
-                if (history.is_active(batch, q))
+          with_cells(matrix_free, [&](auto &&cell) {
+            std::decay_t<decltype(cell)> cell_static(matrix_free);
+            for (unsigned int batch = begin; batch < end; ++batch)
+              {
+                const auto points = cell.quadrature_point_indices();
+                if (std::none_of(points.begin(),
+                                 points.end(),
+                                 [&](const unsigned int q) {
+                                   return history.is_active(batch, q);
+                                 }))
+                  continue;
+                cell.reinit(batch);
+                cell.gather_evaluate(displacement,
+                                     dealii::EvaluationFlags::gradients);
+                if (u_static.size() > 0)
                   {
-                    SymmetricTensor3<Lanes> moved =
-                      cell.get_symmetric_gradient(q);
-                    const auto now = look_at(
-                      moved, history.values(batch, q), history, batch, q);
-                    Lanes energy = 0.5 * (now.stress * now.elastic_strain);
-                    if (u_static.size() > 0)
-                      {
-                        const auto strain =
-                          cell_static.get_symmetric_gradient(q);
-                        const auto at_start =
-                          look_at(strain,
-                                  history.values_at_start(batch, q),
-                                  history,
-                                  batch,
-                                  q);
-                        moved -= strain;
-                        energy -= at_start.stress *
-                                  (0.5 * at_start.elastic_strain + moved);
-                      }
-                    // what the damping model takes off the moduli
-                    energy += 0.5 * (stiffness_scale - 1.) *
-                              history.damping_share(batch, q) *
-                              (law.stress(moved) * moved);
-                    sum += energy * cell.JxW(q);
+                    cell_static.reinit(batch);
+                    cell_static.gather_evaluate(
+                      u_static, dealii::EvaluationFlags::gradients);
                   }
-              total += sum_of_cells(matrix_free, batch, sum);
-            }
+                Lanes sum = 0.;
+                for (const unsigned int q : points)
+                  if (history.is_active(batch, q))
+                    {
+                      SymmetricTensor3<Lanes> moved =
+                        cell.get_symmetric_gradient(q);
+                      const auto now = look_at(
+                        moved, history.values(batch, q), history, batch, q);
+                      Lanes energy = 0.5 * (now.stress * now.elastic_strain);
+                      if (u_static.size() > 0)
+                        {
+                          const auto strain =
+                            cell_static.get_symmetric_gradient(q);
+                          const auto at_start =
+                            look_at(strain,
+                                    history.values_at_start(batch, q),
+                                    history,
+                                    batch,
+                                    q);
+                          moved -= strain;
+                          energy -= at_start.stress *
+                                    (0.5 * at_start.elastic_strain + moved);
+                        }
+                      // what the damping model takes off the moduli
+                      energy += 0.5 * (stiffness_scale - 1.) *
+                                history.damping_share(batch, q) *
+                                (law.stress(moved) * moved);
+                      sum += energy * cell.JxW(q);
+                    }
+                total += sum_of_cells(matrix_free, batch, sum);
+              }
+          });
         }
       else
         (void)matrix_free, (void)history, (void)displacement, (void)u_static,
@@ -326,22 +336,26 @@ namespace Voussoir
                       const unsigned int begin,
                       const unsigned int end) const override
     {
-      Evaluation cell(matrix_free);
-      for (unsigned int batch = begin; batch < end; ++batch)
-        {
-          cell.reinit(batch);
-          cell.gather_evaluate(temperature, dealii::EvaluationFlags::values);
-          for (const unsigned int q : cell.quadrature_point_indices())
-            {
-              SymmetricTensor3<Lanes> strain;
-              for (unsigned int d = 0; d < 3; ++d)
-                strain[d][d] = expansion * cell.get_value(q)[d];
-              cell.submit_symmetric_gradient(stiffness_scale *
-                                               law.stress(strain),
-                                             q);
-            }
-          cell.integrate_scatter(dealii::EvaluationFlags::gradients, force);
-        }
+      with_cells(matrix_free, [&](auto &&cell) {
+        for (unsigned int batch = begin; batch < end; ++batch)
+          {
+            cell.reinit(batch);
+            cell.gather_evaluate(temperature, dealii::EvaluationFlags::values);
+            for (const unsigned int q : cell.quadrature_point_indices())
+              {
+                SymmetricTensor3<Lanes> strain;
+                for (unsigned int d = 0; d < 3; ++d)
+                  strain[d][d] = expansion * cell.get_value(q)[d];
+                cell.submit_symmetric_gradient(stiffness_scale *
+                                                 law.stress(strain),
+                                               q);
+              }
+            if constexpr (is_one_point<decltype(cell)>)
+              cell.expand(expansion);
+            stabilise(cell);
+            cell.integrate_scatter(dealii::EvaluationFlags::gradients, force);
+          }
+      });
     }
 
     double
@@ -353,35 +367,42 @@ namespace Voussoir
          const PointHistory &history,
          const Inelastic     inelastic) const override
     {
-      Evaluation cell_u(matrix_free), cell_v(matrix_free);
-      double     total = 0.;
-      for (unsigned int batch = begin; batch < end; ++batch)
-        {
-          cell_u.reinit(batch);
-          cell_u.read_dof_values(u);
-          cell_u.evaluate(dealii::EvaluationFlags::gradients);
-          Evaluation *other = &cell_u;
-          if (&u != &v)
-            {
-              cell_v.reinit(batch);
-              cell_v.read_dof_values(v);
-              cell_v.evaluate(dealii::EvaluationFlags::gradients);
-              other = &cell_v;
-            }
-          Lanes sum = 0.;
-          for (const unsigned int q : cell_u.quadrature_point_indices())
-            {
-              Lanes part = stiffness_scale *
-                           law.stress(cell_u.get_symmetric_gradient(q)) *
-                           other->get_symmetric_gradient(q) * cell_u.JxW(q);
-              if (has_memory && history.is_active(batch, q))
-                part *= inelastic == Inelastic::not_at_all ?
-                          Lanes(0.) :
-                          history.damping_share(batch, q);
-              sum += part;
-            }
-          total += sum_of_cells(matrix_free, batch, sum);
-        }
+      double total = 0.;
+      with_cells(matrix_free, [&](auto &&cell_u) {
+        std::decay_t<decltype(cell_u)> cell_v(matrix_free);
+        for (unsigned int batch = begin; batch < end; ++batch)
+          {
+            cell_u.reinit(batch);
+            cell_u.read_dof_values(u);
+            cell_u.evaluate(dealii::EvaluationFlags::gradients);
+            auto *other = &cell_u;
+            if (&u != &v)
+              {
+                cell_v.reinit(batch);
+                cell_v.read_dof_values(v);
+                cell_v.evaluate(dealii::EvaluationFlags::gradients);
+                other = &cell_v;
+              }
+            Lanes sum = 0.;
+            for (const unsigned int q : cell_u.quadrature_point_indices())
+              {
+                Lanes part = stiffness_scale *
+                             law.stress(cell_u.get_symmetric_gradient(q)) *
+                             other->get_symmetric_gradient(q) * cell_u.JxW(q);
+                if (has_memory && history.is_active(batch, q))
+                  part *= inelastic == Inelastic::not_at_all ?
+                            Lanes(0.) :
+                            history.damping_share(batch, q);
+                sum += part;
+              }
+            if constexpr (is_one_point<decltype(cell_u)>)
+              {
+                stabilise(cell_u);
+                sum += cell_u.stabilisation_work(*other);
+              }
+            total += sum_of_cells(matrix_free, batch, sum);
+          }
+      });
       return total;
     }
 
@@ -392,33 +413,36 @@ namespace Voussoir
       const dealii::AlignedVector<Lanes> &masses) const override
     {
       // power iteration, which 30 products bring within one or two per cent
-      Evaluation cell(matrix_free);
-      cell.reinit(batch);
-      const unsigned int           n = masses.size();
-      dealii::AlignedVector<Lanes> mode(3 * n);
-      for (unsigned int i = 0; i < 3 * n; ++i)
-        mode[i] = std::cos(2.3 * i * i + 0.7 * i);
       Lanes eigenvalue = 0.;
-      for (unsigned int iteration = 0; iteration < 30; ++iteration)
-        {
-          Lanes norm = 0.;
-          for (unsigned int i = 0; i < 3 * n; ++i)
-            norm += mode[i] * mode[i] * masses[i % n];
-          norm = 1. / std::sqrt(norm);
-          for (unsigned int i = 0; i < 3 * n; ++i)
-            cell.begin_dof_values()[i] = mode[i] *= norm;
-          cell.evaluate(dealii::EvaluationFlags::gradients);
-          for (const unsigned int q : cell.quadrature_point_indices())
-            cell.submit_symmetric_gradient(
-              stiffness_scale * law.stress(cell.get_symmetric_gradient(q)), q);
-          cell.integrate(dealii::EvaluationFlags::gradients);
-          eigenvalue = 0.;
-          for (unsigned int i = 0; i < 3 * n; ++i)
-            {
-              eigenvalue += mode[i] * cell.begin_dof_values()[i];
-              mode[i] = cell.begin_dof_values()[i] / masses[i % n];
-            }
-        }
+      with_cells(matrix_free, [&](auto &&cell) {
+        cell.reinit(batch);
+        const unsigned int           n = masses.size();
+        dealii::AlignedVector<Lanes> mode(3 * n);
+        for (unsigned int i = 0; i < 3 * n; ++i)
+          mode[i] = std::cos(2.3 * i * i + 0.7 * i);
+        for (unsigned int iteration = 0; iteration < 30; ++iteration)
+          {
+            Lanes norm = 0.;
+            for (unsigned int i = 0; i < 3 * n; ++i)
+              norm += mode[i] * mode[i] * masses[i % n];
+            norm = 1. / std::sqrt(norm);
+            for (unsigned int i = 0; i < 3 * n; ++i)
+              cell.begin_dof_values()[i] = mode[i] *= norm;
+            cell.evaluate(dealii::EvaluationFlags::gradients);
+            for (const unsigned int q : cell.quadrature_point_indices())
+              cell.submit_symmetric_gradient(
+                stiffness_scale * law.stress(cell.get_symmetric_gradient(q)),
+                q);
+            stabilise(cell);
+            cell.integrate(dealii::EvaluationFlags::gradients);
+            eigenvalue = 0.;
+            for (unsigned int i = 0; i < 3 * n; ++i)
+              {
+                eigenvalue += mode[i] * cell.begin_dof_values()[i];
+                mode[i] = cell.begin_dof_values()[i] / masses[i % n];
+              }
+          }
+      });
       return eigenvalue;
     }
 
@@ -427,7 +451,34 @@ namespace Voussoir
     // template arguments, and one instantiation serves all degrees
     using Evaluation = dealii::FEEvaluation<3, -1, 0, 3, double>;
 
+    template <typename Cell>
+    static constexpr bool is_one_point =
+      std::is_same_v<std::decay_t<Cell>, OnePointCell>;
+
     static constexpr bool has_memory = Law::n_history > 0;
+
+    /** Calls work(cell) with the kind of cells of the discretization. */
+    template <typename Work>
+    static void
+    with_cells(const MatrixFree &matrix_free, const Work &work)
+    {
+      if (OnePointCell::serves(matrix_free))
+        work(OnePointCell(matrix_free));
+      else
+        work(Evaluation(matrix_free));
+    }
+
+    /** Full integration needs no more than the stress at its points. */
+    template <typename Cell>
+    void
+    stabilise(Cell &cell) const
+    {
+      if constexpr (is_one_point<Cell>)
+        cell.submit_stabilisation(stiffness_scale * law.young_modulus,
+                                  law.poisson_ratio);
+      else
+        (void)cell;
+    }
 
     // load level from which the law itself is asked: below one, as damping adds
     // to the stress or takes from it
@@ -507,8 +558,9 @@ namespace Voussoir
                                                0.});
     }
 
+    template <typename Cell>
     void
-    add_memory(Evaluation &cell, const Vector &memory) const
+    add_memory(Cell &cell, const Vector &memory) const
     {
       std::array<Lanes, 3 * 125> values; // up to degree 4
       const unsigned int         n = cell.dofs_per_cell;

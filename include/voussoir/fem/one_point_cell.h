@@ -1,0 +1,194 @@
+#ifndef voussoir_fem_one_point_cell_h
+#define voussoir_fem_one_point_cell_h
+
+#include <voussoir/fem/point_history.h>
+
+#include <deal.II/matrix_free/fe_evaluation.h>
+
+namespace Voussoir
+{
+  /**
+   * Trilinear cells with one integration point and physical stabilisation, in
+   * the place of FEEvaluation.
+   *
+   * With the unit coordinates xi_k from -1 to 1 the displacement of a cell is
+   *
+   *   u = u_0 + sum_k u_k xi_k + sum_k v_k xi_l xi_m + v_3 xi_0 xi_1 xi_2 ,
+   *
+   * where l and m are the directions beside k. The point sees the mean gradient
+   * G over the cell, exact in cells of any shape, so that the patch test is
+   * passed (Flanagan and Belytschko 1981). Of the rest, what G leaves of the
+   * hourglass motion, q_k = v_k - G x_k with the like parts x_k of the cell's
+   * shape, the strain that cells of one layer need to bend is kept
+   * (Belytschko and Bindeman 1993, Puso 2000):
+   *
+   * - In the plane of the edges l and m, the strain that varies along xi_k,
+   *   with the stress of a plate, which is zero across the plane. That is the
+   *   plane's exact stiffness against bending and twisting; no shear across it
+   *   and no change of volume go with the bending, so that thin layers do not
+   *   lock, nor do cells with a Poisson's ratio near 1/2.
+   * - For q_3, the strain along each edge, with the stress of a bar.
+   *
+   * These six fields leave a cell no motion without energy but the rigid ones;
+   * in parallelepipeds they are orthogonal to each other and to the mean
+   * strain.
+   *
+   * Their stiffness is that of an isotropic elastic material, always. So it
+   * makes or loses no energy, and a cracked cell keeps its shape, but its own
+   * resistance to bending as well: 1/n^2 of that of a wall of n cells. A wall
+   * of one cell, whose point lies where bending makes no strain, cannot crack
+   * in bending anyway.
+   */
+  class OnePointCell
+  {
+  public:
+    using MatrixFree = Discretization::MatrixFree;
+
+    /** Whether cells of this discretization have one integration point. */
+    static bool
+    serves(const MatrixFree &matrix_free)
+    {
+      return matrix_free.get_n_q_points() == 1;
+    }
+
+    explicit OnePointCell(const MatrixFree &matrix_free)
+      : nodes(matrix_free, 0, corner_quadrature)
+      , dof_info(matrix_free.get_dof_info())
+      , local_size(matrix_free.get_vector_partitioner()->locally_owned_size() +
+                   matrix_free.get_vector_partitioner()->n_ghost_indices())
+    {}
+
+    static constexpr unsigned int dofs_per_cell = 24;
+
+    void
+    reinit(const unsigned int batch);
+
+    void
+    read_dof_values(const Vector &vector);
+
+    Lanes *
+    begin_dof_values()
+    {
+      return nodes.begin_dof_values();
+    }
+
+    /** Evaluates what the flags name, gradients or values. */
+    void
+    evaluate(const dealii::EvaluationFlags::EvaluationFlags flags);
+
+    void
+    gather_evaluate(const Vector                                  &vector,
+                    const dealii::EvaluationFlags::EvaluationFlags flags)
+    {
+      read_dof_values(vector);
+      evaluate(flags);
+    }
+
+    dealii::std_cxx20::ranges::iota_view<unsigned int, unsigned int>
+    quadrature_point_indices() const
+    {
+      return {0U, 1U};
+    }
+
+    const SymmetricTensor3<Lanes> &
+    get_symmetric_gradient(const unsigned int) const
+    {
+      return mean_strain;
+    }
+
+    const dealii::Tensor<1, 3, Lanes> &
+    get_value(const unsigned int) const
+    {
+      return mean_value;
+    }
+
+    const Lanes &
+    JxW(const unsigned int) const
+    {
+      return volume;
+    }
+
+    void
+    submit_symmetric_gradient(const SymmetricTensor3<Lanes> &stress,
+                              const unsigned int)
+    {
+      mean_stress = stress;
+    }
+
+    /** The stabilising stress of these elastic constants, for `integrate`. */
+    void
+    submit_stabilisation(const double young_modulus,
+                         const double poisson_ratio);
+
+    /** Puts the thermal strain of the temperature, whose values have been
+     *  evaluated, into the place of the stabilised strain. */
+    void
+    expand(const double expansion);
+
+    /** Work of the submitted stabilising stress on the strain of another
+     *  evaluation of the same cells [J]. */
+    Lanes
+    stabilisation_work(const OnePointCell &other) const;
+
+    void
+    integrate(const dealii::EvaluationFlags::EvaluationFlags);
+
+    void
+    distribute_local_to_global(Vector &vector);
+
+    void
+    integrate_scatter(const dealii::EvaluationFlags::EvaluationFlags flags,
+                      Vector                                        &vector)
+    {
+      integrate(flags);
+      distribute_local_to_global(vector);
+    }
+
+    /** Number of the quadrature whose points are the corners of the cells. */
+    static constexpr unsigned int corner_quadrature = 1;
+
+  private:
+    using Vector3 = dealii::Tensor<1, 3, Lanes>;
+
+    /** Strain or stress in the planes of two edges and along the edges, in
+     *  components of the edges. */
+    struct Fields
+    {
+      struct Plane
+      {
+        Lanes ll, mm, lm;
+      };
+      std::array<Plane, 3> planes;
+      std::array<Lanes, 3> bars;
+    };
+
+    /** Finds the nodes of the batch in vectors if they can be read and written
+     *  whole, which takes a third of the time that `nodes` needs entry by
+     * entry.
+     */
+    void
+    find_nodes(const unsigned int batch);
+
+    dealii::FEEvaluation<3, -1, 0, 3, double>             nodes;
+    const dealii::internal::MatrixFreeFunctions::DoFInfo &dof_info;
+    const unsigned int                                    local_size;
+
+    // first entry of each node in each lane, or null
+    const unsigned int *first_entries = nullptr;
+
+    // the cells' shape
+    std::array<Vector3, 3>       edges;                 // half the mean edges
+    std::array<Vector3, 4>       warps;                 // x_k
+    std::array<Vector3, 3>       b_linear, b_hourglass; // G = sum u_k b_k + ...
+    std::array<Fields::Plane, 3> inverse_metric;
+    std::array<Lanes, 3>         inverse_length_square;
+    Lanes                        volume;
+
+    // their state
+    SymmetricTensor3<Lanes> mean_strain, mean_stress;
+    Vector3                 mean_value, value_gradient;
+    Fields                  strain, stress;
+  };
+} // namespace Voussoir
+
+#endif

@@ -146,6 +146,48 @@ namespace Voussoir
           supports.push_back({set, kind == "roller"});
       return supports;
     }
+
+
+    /**
+     * Equilibrium with cracks and plastic flow by the method of initial
+     * stresses (Zienkiewicz et al. 1969), u += K^-1 (F - f(u)) with the elastic
+     * K. It comes from the side of too little displacement, while damped motion
+     * overshoots and so brings more flow than slowly growing loads would.
+     *
+     * @param springs of the absorbing boundary, or null if it is held
+     * @return whether the residual is below the tolerance times the force; it
+     *   may not be close to collapse, or where cracks run
+     */
+    bool
+    correct_by_initial_stresses(const ElasticSolver &solver,
+                                InternalForce       &internal_force,
+                                const NodalTerms    *springs,
+                                Vector              &displacement,
+                                const Vector        &force,
+                                const double         tolerance,
+                                unsigned int        &iterations)
+    {
+      constexpr unsigned int max_corrections = 200;
+      Vector                 goal = force, residual = force, change = force;
+      solver.clear_held(goal);
+      for (unsigned int i = 0; i < max_corrections; ++i)
+        {
+          internal_force.uses_memory = true;
+          internal_force.respond(residual, displacement);
+          if (springs != nullptr)
+            springs->add_to(residual, displacement, 0.);
+          residual.sadd(-1., 1., force);
+          solver.clear_held(residual);
+          if (residual.l2_norm() <= tolerance * goal.l2_norm())
+            return true;
+          internal_force.uses_memory = false;
+          change                     = 0.;
+          iterations += solver.solve(change, residual, 0.01);
+          displacement += change;
+        }
+      internal_force.uses_memory = true;
+      return false;
+    }
   } // namespace
 
 
@@ -218,15 +260,20 @@ namespace Voussoir
           }
         Vector right_side = applied;
         model.internal_force.add_thermal_force(right_side, state.temperature);
+        // a state with cracks goes on from where it is
+        unsigned int iterations          = 0;
         model.internal_force.uses_memory = false;
-        const unsigned int iterations =
-          solver ? solver->solve(state.displacement,
-                                 right_side,
-                                 parameters.tolerance) :
-                   relaxation->find_equilibrium(state.displacement,
-                                                right_side,
-                                                parameters.rest,
-                                                log);
+        const bool elastic_so_far =
+          Utilities::MPI::max(model.internal_force.dissipated(),
+                              discretization.grid.communicator()) == 0.;
+        if (!solver)
+          iterations = relaxation->find_equilibrium(state.displacement,
+                                                    right_side,
+                                                    parameters.rest,
+                                                    log);
+        else if (elastic_so_far)
+          iterations =
+            solver->solve(state.displacement, right_side, parameters.tolerance);
         if (has_memory)
           {
             model.internal_force.uses_memory = true;
@@ -235,10 +282,23 @@ namespace Voussoir
             model.internal_force.respond(state.force, state.displacement);
             if (Utilities::MPI::max(model.internal_force.dissipated(),
                                     discretization.grid.communicator()) > 0.)
-              log.line("  cracks or yields; at rest again after ",
-                       relaxation->find_equilibrium(
-                         state.displacement, right_side, parameters.rest, log),
-                       " steps");
+              {
+                log.line("  cracks or yields");
+                if (!solver || !correct_by_initial_stresses(
+                                 *solver,
+                                 model.internal_force,
+                                 springs ? &model.terms : nullptr,
+                                 state.displacement,
+                                 right_side,
+                                 std::max(parameters.tolerance, 1e-8),
+                                 iterations))
+                  log.line("  by damped motion at rest again after ",
+                           relaxation->find_equilibrium(state.displacement,
+                                                        right_side,
+                                                        parameters.rest,
+                                                        log),
+                           " steps");
+              }
           }
 
         // f(u) minus loads and contact is what the supports bring

@@ -6,8 +6,6 @@
 #include <voussoir/materials/softening_curve.h>
 #include <voussoir/materials/tension_split.h>
 
-#include <iomanip>
-
 namespace Voussoir
 {
   using namespace dealii;
@@ -123,14 +121,11 @@ namespace Voussoir
       void
       check(const std::string &place)
       {
-        alpha = (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
-        // across an open crack the stress no longer contracts the material
-        // sideways: e = ((1 - k) s + k sigma)/E with k = 2 nu^2/(1 - nu)
+        alpha       = (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
         tension     = SofteningCurve(increased(tension_nodes(place)),
                                  young_modulus,
                                  irreversible_tension,
-                                 2. * poisson_ratio * poisson_ratio /
-                                   (1. - poisson_ratio));
+                                 lateral_relief(*this));
         compression = SofteningCurve(increased(compression_nodes(place)),
                                      young_modulus,
                                      irreversible_crushing);
@@ -160,16 +155,7 @@ namespace Voussoir
         if (tension_law == "linear")
           nodes = {{ft, 0., 0.}, {0., 0., 1.}};
         else if (tension_law == "exponential")
-          {
-            // sigma = ft exp(-w ft / Gf), to 1 % of ft
-            const unsigned int n = 24;
-            for (unsigned int i = 0; i < n; ++i)
-              {
-                const double stress = std::pow(0.01, double(i) / (n - 1));
-                nodes.push_back({ft * stress, 0., -std::log(stress)});
-              }
-            nodes.push_back({0., 0., nodes.back().displacement + 2.});
-          }
+          return SofteningCurve::exponential(ft, fracture_energy);
         else
           {
             // GB 50010-2010, C.2.3, stresses in MPa, to 40 times the strain of
@@ -405,23 +391,7 @@ namespace Voussoir
       std::string
       remark(const double element_length) const
       {
-        std::ostringstream text;
-        text << std::setprecision(3) << "cells of up to " << element_length
-             << " m are longer than ";
-        if (element_length > tension.widest_band())
-          text << tension.widest_band()
-               << " m, beyond which a crack would snap back; to keep the "
-                  "fracture energy their tensile strength is lowered by up to "
-               << 100. * (1. - tension.strength_factor(element_length))
-               << " %.";
-        else if (element_length > tension.widest_band_of_curve())
-          text << tension.widest_band_of_curve()
-               << " m, beyond which a crack would snap back at first; in them "
-                  "the stress falls in a straighter line, with the same "
-                  "strength and fracture energy.";
-        else
-          return {};
-        return text.str();
+        return tension.remark(element_length);
       }
     };
 

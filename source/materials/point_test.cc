@@ -65,9 +65,13 @@ namespace Voussoir
                           "strength. Control the strain of the failing "
                           "component instead.");
         FullMatrix<double> tangent(unknown.size(), unknown.size());
-        const double       difference = 1e-9;
+        // small beside what misses and away from the wanted stress, as a law
+        // may have a kink there
+        const double size =
+          std::max(1e-14, std::min(1e-9, 0.1 * residual.l2_norm() / modulus));
         for (unsigned int k = 0; k < unknown.size(); ++k)
           {
+            const double difference        = residual(k) < 0. ? -size : size;
             SymmetricTensor3<double> moved = strain;
             moved.access_raw_entry(unknown[k]) += difference;
             const auto changed = miss(moved);

@@ -5,6 +5,8 @@
 #include <deal.II/base/utilities.h>
 
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace Voussoir
 {
@@ -104,6 +106,43 @@ namespace Voussoir
     for (Node &node : nodes)
       node.displacement *= factor;
     return nodes;
+  }
+
+
+  std::vector<SofteningCurve::Node>
+  SofteningCurve::exponential(const double strength, const double energy)
+  {
+    std::vector<Node>  nodes;
+    const unsigned int n = 24;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const double share = std::pow(0.01, double(i) / (n - 1));
+        nodes.push_back({strength * share, 0., -std::log(share)});
+      }
+    nodes.push_back({0., 0., nodes.back().displacement + 2.});
+    return scaled_to(nodes, energy);
+  }
+
+
+  std::string
+  SofteningCurve::remark(const double element_length) const
+  {
+    std::ostringstream text;
+    text << std::setprecision(3) << "cells of up to " << element_length
+         << " m are longer than ";
+    if (element_length > widest)
+      text << widest
+           << " m, beyond which a crack would snap back; to keep the fracture "
+              "energy their tensile strength is lowered by up to "
+           << 100. * (1. - strength_factor(element_length)) << " %.";
+    else if (element_length > widest_of_curve)
+      text << widest_of_curve
+           << " m, beyond which a crack would snap back at first; in them the "
+              "stress falls in a straighter line, with the same strength and "
+              "fracture energy.";
+    else
+      return {};
+    return text.str();
   }
 
 

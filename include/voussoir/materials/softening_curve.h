@@ -106,6 +106,16 @@ namespace Voussoir
     static std::vector<Node>
     scaled_to(std::vector<Node> nodes, const double energy);
 
+    /** sigma = f exp(-w f / G) for a strength f [Pa] and an energy G [J/m2], to
+     *  1 % of f and then straight to zero. */
+    static std::vector<Node>
+    exponential(const double strength, const double energy);
+
+    /** A sentence about cells of this length [m] if a crack in them snaps
+     *  back; else empty. */
+    std::string
+    remark(const double element_length) const;
+
     /** From "strain or displacement: stress, ...", beginning at 0, for a
      *  message named by @p place. */
     static std::vector<std::pair<double, double>>

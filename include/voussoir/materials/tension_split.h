@@ -6,6 +6,19 @@
 
 namespace Voussoir
 {
+  /**
+   * Across an open crack the stress no longer contracts the material sideways:
+   * a uniaxial test with the effective stress s has the strain
+   * ((1 - k) s + k sigma)/E. This is k.
+   */
+  inline double
+  lateral_relief(const IsotropicElasticity &elasticity)
+  {
+    const double nu = elasticity.poisson_ratio;
+    return 2. * nu * nu / (1. - nu);
+  }
+
+
   /** Principal values of an elastic stress, largest first, their directions,
    *  and their parts in tension and compression. */
   template <typename Number>

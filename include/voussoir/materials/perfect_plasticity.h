@@ -1,0 +1,73 @@
+#ifndef voussoir_materials_perfect_plasticity_h
+#define voussoir_materials_perfect_plasticity_h
+
+#include <voussoir/materials/isotropic_elasticity.h>
+#include <voussoir/materials/material.h>
+
+namespace Voussoir
+{
+  /**
+   * What laws of rock with friction and cohesion, which yield without hardening
+   * or softening, have in common. They remember the plastic strain and the
+   * equivalent plastic strain, the sum of sqrt(2/3 de : de).
+   */
+  struct PerfectPlasticity : IsotropicElasticity
+  {
+    static constexpr unsigned int n_history = 7;
+
+    double cohesion       = 1.5e6; // c [Pa]
+    double friction_angle = 45.;   // phi [degrees]
+    double dilation_angle = 10.;   // psi [degrees]
+    double cut_off        = 0.5e6; // [Pa]
+
+    PerfectPlasticity();
+
+    void
+    declare_parameters(dealii::ParameterHandler &prm);
+
+    void
+    check(const std::string &place) const;
+
+    template <typename Number>
+    static SymmetricTensor3<Number>
+    plastic_strain(const Number *history)
+    {
+      SymmetricTensor3<Number> plastic;
+      for (unsigned int i = 0; i < 6; ++i)
+        plastic.access_raw_entry(i) = history[i];
+      return plastic;
+    }
+
+    /** Flow that takes @p excess off the elastic @p trial stress of a strain.
+     */
+    template <typename Number>
+    PointResponse<Number>
+    flow(const SymmetricTensor3<Number> &strain,
+         const SymmetricTensor3<Number> &trial,
+         const SymmetricTensor3<Number> &excess,
+         Number                         *history) const
+    {
+      const SymmetricTensor3<Number> increment = this->strain(excess);
+      for (unsigned int i = 0; i < 6; ++i)
+        history[i] += increment.access_raw_entry(i);
+      history[6] += std::sqrt(Number(2. / 3. * (increment * increment)));
+
+      PointResponse<Number> response;
+      response.stress         = trial - excess;
+      response.elastic_strain = strain - plastic_strain(history);
+      response.dissipation    = response.stress * increment;
+      return response;
+    }
+
+    static std::vector<std::string>
+    output_names();
+
+    std::vector<double>
+    outputs(const double *history, const double element_length) const;
+
+    std::string
+    remark(const double element_length) const;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,397 @@
+// Concrete of the plastic-damage model that dams are compared by.
+
+#include <voussoir/base/error.h>
+#include <voussoir/materials/isotropic_elasticity.h>
+#include <voussoir/materials/material_of.h>
+#include <voussoir/materials/spectral.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Lee and Fenves (1998). Plastic strain e_p develops in the effective
+     * stress s = C : (e - e_p) on the surface of Lubliner et al. (1989),
+     *   [alpha I1 + sqrt(3 J2) + beta <s_max>] / (1 - alpha) <= fc ,
+     *   beta = (1 - alpha) fc / ft - (1 + alpha) ,
+     * along the gradient of |dev s| + a_p I1. With the weight r of tension
+     * among the principal stresses, the plastic strains
+     *   d k_t = r d e_p,max ,   d k_c = -(1 - r) d e_p,min
+     * give the strengths and the damages,
+     *   sigma_t = ft0 exp(-b_t k_t) ,   D_t = 1 - exp(-q_t b_t k_t) ,
+     *   sigma_c = fc0 [(1 + a) exp(-b_c k_c) - a exp(-2 b_c k_c)] ,
+     *   D_c = 1 - exp(-q_c b_c k_c) ,   f = sigma / (1 - D) ,
+     * where b_t and b_c make the plastic work over the cell's length that of
+     * the fracture and the crushing energy. The stress is
+     *   sigma = (1 - D_c) (1 - s_c D_t) s ,   s_c = 1 - w (1 - r) ,
+     * so that w of the stiffness comes back when a crack closes.
+     *
+     * The deviator of s keeps its direction on the way back to the surface and
+     * its trace falls in proportion, which leaves one equation. Beyond the
+     * apex, the way goes on along the axis to zero, and its end is always
+     * inside: the root is bracketed for every trial stress.
+     */
+    struct LeeFenves : IsotropicElasticity
+    {
+      // e_p, k_t, k_c
+      static constexpr unsigned int n_history = 8;
+
+      using Principal = std::array<double, 3>;
+
+      double tensile_strength = 2.9e6;  // ft0 [Pa]
+      double fracture_energy  = 200.;   // [N/m]
+      double yield_strength   = 13e6;   // fc0 [Pa]
+      double peak_strength    = 24.1e6; // [Pa]
+      double crushing_energy  = 30e3;   // [N/m]
+      double biaxial_ratio    = 1.16;
+      double dilatancy        = 0.09; // a_p
+      double tension_ratio    = 1.2;  // q_t
+      double crushing_ratio   = 1.;   // q_c
+      double recovery         = 0.;   // w
+
+      double alpha = 0., hump = 0.; // a
+
+      void
+      declare_parameters(ParameterHandler &prm)
+      {
+        IsotropicElasticity::declare_parameters(prm);
+        prm.add_parameter("Tensile strength",
+                          tensile_strength,
+                          "Uniaxial tensile strength ft0 [Pa].",
+                          Patterns::Double(1.));
+        prm.add_parameter("Fracture energy",
+                          fracture_energy,
+                          "Plastic work that a crack takes per area, the "
+                          "integral of the stress over the plastic opening "
+                          "[N/m]. The loss of stiffness takes "
+                          "energy besides, in proportion to the size of the "
+                          "cells.",
+                          Patterns::Double(1e-3));
+        prm.add_parameter("Yield strength in compression",
+                          yield_strength,
+                          "Uniaxial stress fc0 where crushing begins [Pa].",
+                          Patterns::Double(1.));
+        prm.add_parameter("Compressive strength",
+                          peak_strength,
+                          "Largest uniaxial stress [Pa].",
+                          Patterns::Double(1.));
+        prm.add_parameter("Crushing energy",
+                          crushing_energy,
+                          "Plastic work of crushing per area [N/m].",
+                          Patterns::Double(1e-3));
+        prm.add_parameter("Biaxial ratio",
+                          biaxial_ratio,
+                          "Yield strength under equal compression in two "
+                          "directions over the uniaxial one.",
+                          Patterns::Double(1.01, 1.5));
+        prm.add_parameter(
+          "Dilatancy",
+          dilatancy,
+          "Coefficient a_p of the first invariant in the plastic potential. "
+          "Lee and Fenves take 0.2; above 0.099 (with a biaxial ratio of 1.16) "
+          "plastic flow under high confinement makes energy.",
+          Patterns::Double(0., 0.4));
+        prm.add_parameter(
+          "Damage ratio in tension",
+          tension_ratio,
+          "Rate of the damage over that of the stress as a crack opens; with 1 "
+          "the effective strength stays and all softening is loss of "
+          "stiffness. Below 1 large cells would snap back.",
+          Patterns::Double(1., 1.9));
+        prm.add_parameter("Damage ratio in compression",
+                          crushing_ratio,
+                          "The same in compression.",
+                          Patterns::Double(1., 1.9));
+        prm.add_parameter("Stiffness recovery",
+                          recovery,
+                          "Share w of the stiffness that comes back when a "
+                          "crack closes; Lee and Fenves take 1. Where the "
+                          "principal stresses then have both signs, the "
+                          "recovery takes or makes energy, as a single damage "
+                          "with recovery has no potential.",
+                          Patterns::Double(0., 1.));
+      }
+
+      void
+      check(const std::string &place)
+      {
+        if (peak_strength < yield_strength)
+          throw UserError(place +
+                          ": the \"Compressive strength\" is below the \"Yield "
+                          "strength in compression\"; it must be as large or "
+                          "larger.");
+        alpha = (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
+        // the largest sigma_c is fc0 (1 + a)^2 / (4 a)
+        const double ratio = peak_strength / yield_strength;
+        hump = 2. * ratio - 1. + 2. * std::sqrt(ratio * (ratio - 1.));
+      }
+
+      /** What has become of the uniaxial curves. */
+      struct Strengths
+      {
+        double tension, crushing;               // effective [Pa]
+        double tension_intact, crushing_intact; // 1 - D
+      };
+
+      Strengths
+      strengths(const double opening,
+                const double crushing,
+                const double length) const
+      {
+        const double t =
+          std::exp(-tensile_strength * length * opening / fracture_energy);
+        const double c = std::exp(-yield_strength * (1. + 0.5 * hump) * length *
+                                  crushing / crushing_energy);
+        Strengths    result;
+        result.tension_intact  = std::pow(t, tension_ratio);
+        result.crushing_intact = std::pow(c, crushing_ratio);
+        result.tension  = tensile_strength * std::pow(t, 1. - tension_ratio);
+        result.crushing = yield_strength * std::pow(c, 1. - crushing_ratio) *
+                          (1. + hump - hump * c);
+        return result;
+      }
+
+      /** Share of tension among principal stresses. */
+      static double
+      tension_weight(const Principal &s)
+      {
+        double positive = 0., all = 0.;
+        for (const double value : s)
+          {
+            positive += std::max(value, 0.);
+            all += std::abs(value);
+          }
+        return all > 0. ? positive / all : 0.;
+      }
+
+      /** The uniaxial compression as severe as this stress. */
+      template <typename Number>
+      Number
+      severity(const Number &first,
+               const Number &second,
+               const Number &largest,
+               const double  tension,
+               const double  crushing) const
+      {
+        const double beta =
+          std::max(0., (1. - alpha) * crushing / tension - (1. + alpha));
+        return (alpha * first + std::sqrt(Number(3. * second)) +
+                beta * std::max(largest, Number(0.))) /
+               (1. - alpha);
+      }
+
+      template <typename Number>
+      Number
+      load_level(const SymmetricTensor3<Number> &stress, const Number &) const
+      {
+        const auto [first, second] = invariants(stress);
+        return severity(first,
+                        second,
+                        Number(first / 3. +
+                               2. * std::sqrt(Number(second / 3.))),
+                        tensile_strength,
+                        yield_strength) /
+               yield_strength;
+      }
+
+      /** One point on the way back. */
+      struct Place
+      {
+        Principal stress;
+        double    opening, crushing; // k_t, k_c
+        double    excess;            // over the yield surface [Pa]
+      };
+
+      /**
+       * @param way 0 at the trial stress, 1 where its deviator has gone, 2 at
+       *   zero stress
+       */
+      Place
+      on_the_way(const Principal &trial,
+                 const double     opening,
+                 const double     crushing,
+                 const double     length,
+                 const double     way) const
+      {
+        const double mean = (trial[0] + trial[1] + trial[2]) / 3.;
+        double       norm = 0.;
+        for (const double value : trial)
+          norm += (value - mean) * (value - mean);
+        const double axis = mean - 3. * bulk_modulus() * dilatancy *
+                                     std::sqrt(norm) / (2. * shear_modulus());
+        const double first_leg  = std::min(way, 1.),
+                     second_leg = std::max(way - 1., 0.);
+        const double new_mean =
+          (mean + first_leg * (axis - mean)) * (1. - second_leg);
+
+        Place        place;
+        double       largest_strain = -1e300, least_strain = 1e300;
+        const double dilation = (mean - new_mean) / (3. * bulk_modulus());
+        for (unsigned int i = 0; i < 3; ++i)
+          {
+            const double deviator = trial[i] - mean;
+            const double strain =
+              first_leg * deviator / (2. * shear_modulus()) + dilation;
+            largest_strain  = std::max(largest_strain, strain);
+            least_strain    = std::min(least_strain, strain);
+            place.stress[i] = new_mean + (1. - first_leg) * deviator;
+          }
+        const double weight = tension_weight(place.stress);
+        place.opening       = opening + weight * std::max(largest_strain, 0.);
+        place.crushing = crushing - (1. - weight) * std::min(least_strain, 0.);
+        const Strengths now = strengths(place.opening, place.crushing, length);
+        const double    scale = 1. - first_leg;
+        place.excess =
+          severity(3. * new_mean,
+                   0.5 * scale * scale * norm,
+                   *std::max_element(place.stress.begin(), place.stress.end()),
+                   now.tension,
+                   now.crushing) -
+          now.crushing;
+        return place;
+      }
+
+      /** Where the way meets the surface, by regula falsi (Illinois). */
+      Place
+      returned(const Principal &trial,
+               const double     opening,
+               const double     crushing,
+               const double     length) const
+      {
+        const auto at = [&](const double way) {
+          return on_the_way(trial, opening, crushing, length, way);
+        };
+        double left = 0., right = 1.;
+        Place  place       = at(left);
+        double left_excess = place.excess;
+        if (left_excess <= 0.)
+          return place;
+        place               = at(right);
+        double right_excess = place.excess;
+        if (right_excess > 0.)
+          {
+            left         = right;
+            left_excess  = right_excess;
+            right        = 2.;
+            place        = at(right);
+            right_excess = place.excess;
+          }
+        const double tolerance = 1e-13 * (yield_strength + left_excess);
+        int          side      = 0; // of the last point
+        while (std::abs(place.excess) > tolerance &&
+               right - left > 1e-15 * right)
+          {
+            const double way = (left * right_excess - right * left_excess) /
+                               (right_excess - left_excess);
+            place = at(way);
+            if (place.excess > 0.)
+              {
+                left        = way;
+                left_excess = place.excess;
+                if (side > 0)
+                  right_excess *= 0.5;
+                side = 1;
+              }
+            else
+              {
+                right        = way;
+                right_excess = place.excess;
+                if (side < 0)
+                  left_excess *= 0.5;
+                side = -1;
+              }
+          }
+        return place;
+      }
+
+      /** 1 - D at a weight r of tension. */
+      double
+      intact(const Strengths &strengths, const double weight) const
+      {
+        const double closing = 1. - recovery * (1. - weight);
+        return strengths.crushing_intact *
+               (1. - closing * (1. - strengths.tension_intact));
+      }
+
+      template <typename Number>
+      PointResponse<Number>
+      respond(const SymmetricTensor3<Number> &strain,
+              Number                         *history,
+              const PointSituation<Number>   &situation) const
+      {
+        SymmetricTensor3<Number> plastic;
+        for (unsigned int i = 0; i < 6; ++i)
+          plastic.access_raw_entry(i) = history[i];
+        const SymmetricTensor3<Number> trial     = stress(strain - plastic);
+        const auto                     principal = spectrum(trial);
+
+        std::array<Number, 3> excess;
+        Number                before = 1., now = 1.;
+        for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
+          {
+            const double length  = lane_of(situation.element_length, lane);
+            double      &opening = lane_of(history[6], lane),
+                   &crushing     = lane_of(history[7], lane);
+            Principal s;
+            for (unsigned int i = 0; i < 3; ++i)
+              s[i] = lane_of(principal.values[i], lane);
+            const Place  place  = returned(s, opening, crushing, length);
+            const double weight = tension_weight(place.stress);
+            lane_of(before, lane) =
+              intact(strengths(opening, crushing, length), weight);
+            lane_of(now, lane) =
+              intact(strengths(place.opening, place.crushing, length), weight);
+            for (unsigned int i = 0; i < 3; ++i)
+              lane_of(excess[i], lane) = s[i] - place.stress[i];
+            opening  = place.opening;
+            crushing = place.crushing;
+          }
+
+        const SymmetricTensor3<Number> effective_excess =
+          principal.compose(excess);
+        const SymmetricTensor3<Number> effective = trial - effective_excess;
+        const SymmetricTensor3<Number> increment =
+          this->strain(effective_excess);
+        for (unsigned int i = 0; i < 6; ++i)
+          history[i] += increment.access_raw_entry(i);
+
+        PointResponse<Number> response;
+        response.stress         = now * effective;
+        response.elastic_strain = strain - plastic - increment;
+        response.damping_share  = now;
+        response.dissipation =
+          0.5 * (before + now) * (effective * increment) +
+          0.5 * (before - now) * (effective * response.elastic_strain);
+        return response;
+      }
+
+      static std::vector<std::string>
+      output_names()
+      {
+        return {"tension damage", "compression damage", "crack opening [mm]"};
+      }
+
+      std::vector<double>
+      outputs(const double *history, const double element_length) const
+      {
+        const Strengths now = strengths(history[6], history[7], element_length);
+        return {1. - now.tension_intact,
+                1. - now.crushing_intact,
+                1e3 * element_length * history[6]};
+      }
+
+      std::string
+      remark(const double) const
+      {
+        return {};
+      }
+    };
+
+    const Registry<Material>::Add<MaterialOf<LeeFenves>> registered(
+      "lee-fenves",
+      "Concrete with plastic strain and damage in tension and compression, the "
+      "reference law for dams.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,186 @@
+// Concrete with a single damage.
+
+#include <voussoir/base/error.h>
+#include <voussoir/materials/isotropic_elasticity.h>
+#include <voussoir/materials/material_of.h>
+#include <voussoir/materials/softening_curve.h>
+#include <voussoir/materials/spectral.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * The model of Mazars (1986): one damage D of the whole stiffness,
+     *   sigma = (1 - D) C : e ,   D = a_t D_t + a_c D_c ,
+     * driven by the largest of sqrt(sum <e_i>^2) over the principal strains.
+     * Of these, a_t is the share that the tensile principal stresses bring.
+     * D_t follows the exponential curve of a crack band; in compression
+     *   D_c = 1 - (1 - A) k0 / k - A exp(-B (k - k0)) ,   k0 = ft / E.
+     * A crack that closes does not get its stiffness back: the model is for
+     * loads that grow, not for cycles.
+     */
+    struct Mazars : IsotropicElasticity
+    {
+      // largest equivalent strain, damage
+      static constexpr unsigned int n_history = 2;
+
+      double tensile_strength = 2.5e6;
+      double fracture_energy  = 250.;
+      double share            = 1.1;   // A
+      double rate             = 1500.; // B
+
+      SofteningCurve tension;
+
+      void
+      declare_parameters(ParameterHandler &prm)
+      {
+        IsotropicElasticity::declare_parameters(prm);
+        prm.add_parameter("Tensile strength",
+                          tensile_strength,
+                          "Uniaxial tensile strength ft [Pa].",
+                          Patterns::Double(1.));
+        prm.add_parameter("Fracture energy",
+                          fracture_energy,
+                          "Energy Gf that a crack takes per area [N/m].",
+                          Patterns::Double(1e-3));
+        prm.add_parameter("Compression A",
+                          share,
+                          "Coefficient A of the damage in compression, usually "
+                          "1 to 1.5.",
+                          Patterns::Double(0., 3.));
+        prm.add_parameter("Compression B",
+                          rate,
+                          "Coefficient B of the damage in compression, usually "
+                          "1000 to 2000.",
+                          Patterns::Double(1.));
+      }
+
+      void
+      check(const std::string &place)
+      {
+        tension = SofteningCurve(SofteningCurve::exponential(tensile_strength,
+                                                             fracture_energy),
+                                 young_modulus,
+                                 0.);
+        const double threshold = tensile_strength / young_modulus;
+        if (share - 1. > share * rate * threshold)
+          throw UserError(
+            place + ": with these values of \"Compression A\" and "
+                    "\"Compression B\" the damage would begin below zero; "
+                    "raise B or lower A.");
+      }
+
+      template <typename Number>
+      Number
+      load_level(const SymmetricTensor3<Number> &stress,
+                 const Number                   &element_length) const
+      {
+        // principal strains lie within mean +- 2 sqrt(J2 / 3) / (2 G)
+        const auto [first, second] = invariants(stress);
+        const Number largest       = first / (9. * bulk_modulus()) +
+                               std::sqrt(Number(second / 3.)) / shear_modulus();
+        return std::sqrt(3.) * largest * young_modulus /
+               (tensile_strength * tension.strength_factor(element_length));
+      }
+
+      double
+      damage_in_compression(const double strain, const double threshold) const
+      {
+        return std::max(0.,
+                        1. - (1. - share) * threshold / strain -
+                          share * std::exp(-rate * (strain - threshold)));
+      }
+
+      template <typename Number>
+      PointResponse<Number>
+      respond(const SymmetricTensor3<Number> &strain,
+              Number                         *history,
+              const PointSituation<Number>   &situation) const
+      {
+        const SymmetricTensor3<Number> effective = stress(strain);
+        const auto                     principal = spectrum(effective);
+
+        Number positive_trace = 0., squares = 0., in_tension = 0.;
+        for (unsigned int i = 0; i < 3; ++i)
+          positive_trace += std::max(principal.values[i], Number(0.));
+        const Number trace =
+          principal.values[0] + principal.values[1] + principal.values[2];
+        for (unsigned int i = 0; i < 3; ++i)
+          {
+            // strain of a stress along its direction i
+            const auto along = [&](const Number &value, const Number &sum) {
+              return Number(
+                ((1. + poisson_ratio) * value - poisson_ratio * sum) /
+                young_modulus);
+            };
+            const Number extension =
+              std::max(along(principal.values[i], trace), Number(0.));
+            squares += extension * extension;
+            in_tension +=
+              extension *
+              along(std::max(principal.values[i], Number(0.)), positive_trace);
+          }
+
+        Number intact = 1., lost = 0.;
+        for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
+          {
+            const double band       = lane_of(situation.element_length, lane),
+                         equivalent = std::sqrt(lane_of(squares, lane)),
+                         threshold  = tension.elastic_limit(band);
+            double &largest         = lane_of(history[0], lane),
+                   &damage          = lane_of(history[1], lane);
+            if (equivalent > std::max(largest, threshold))
+              {
+                const double start = std::max(largest, threshold);
+                largest            = equivalent;
+                const double weight =
+                  std::max(0.,
+                           std::min(1.,
+                                    lane_of(in_tension, lane) /
+                                      lane_of(squares, lane)));
+                const double before = damage;
+                damage              = std::max(
+                  damage,
+                  weight * tension.at(largest, band).damage(young_modulus) +
+                    (1. - weight) * damage_in_compression(largest, threshold));
+                lane_of(lost, lane) = (damage - before) * start / largest;
+              }
+            lane_of(intact, lane) = 1. - damage;
+          }
+
+        PointResponse<Number> response;
+        response.stress         = intact * effective;
+        response.elastic_strain = strain;
+        response.dissipation    = 0.5 * lost * (effective * strain);
+        response.damping_share  = intact;
+        return response;
+      }
+
+      static std::vector<std::string>
+      output_names()
+      {
+        return {"damage"};
+      }
+
+      std::vector<double>
+      outputs(const double *history, const double) const
+      {
+        return {history[1]};
+      }
+
+      std::string
+      remark(const double element_length) const
+      {
+        return tension.remark(element_length);
+      }
+    };
+
+    const Registry<Material>::Add<MaterialOf<Mazars>> registered(
+      "mazars",
+      "Concrete with one damage by Mazars, for growing loads: cracks that close "
+      "do not get their stiffness back.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,65 @@
+#include <voussoir/base/error.h>
+#include <voussoir/materials/perfect_plasticity.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  PerfectPlasticity::PerfectPlasticity()
+  {
+    young_modulus = 15e9;
+    poisson_ratio = 0.25;
+  }
+
+
+  void
+  PerfectPlasticity::declare_parameters(ParameterHandler &prm)
+  {
+    IsotropicElasticity::declare_parameters(prm);
+    prm.add_parameter("Cohesion",
+                      cohesion,
+                      "Shear strength c without normal stress [Pa].",
+                      Patterns::Double(1.));
+    prm.add_parameter("Friction angle",
+                      friction_angle,
+                      "Angle phi of internal friction [degrees].",
+                      Patterns::Double(0., 70.));
+    prm.add_parameter("Dilation angle",
+                      dilation_angle,
+                      "Angle psi by which plastic flow gains volume, from 0 to "
+                      "the friction angle [degrees].",
+                      Patterns::Double(0., 70.));
+  }
+
+
+  void
+  PerfectPlasticity::check(const std::string &place) const
+  {
+    if (dilation_angle > friction_angle)
+      throw UserError(place +
+                      ": the \"Dilation angle\" is larger than the \"Friction "
+                      "angle\", so that plastic flow would make energy; lower "
+                      "it.");
+  }
+
+
+  std::vector<std::string>
+  PerfectPlasticity::output_names()
+  {
+    return {"equivalent plastic strain"};
+  }
+
+
+  std::vector<double>
+  PerfectPlasticity::outputs(const double *history, const double) const
+  {
+    return {history[6]};
+  }
+
+
+  std::string
+  PerfectPlasticity::remark(const double) const
+  {
+    return {};
+  }
+} // namespace Voussoir

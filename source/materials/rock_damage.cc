@@ -1,0 +1,202 @@
+// Rock that cracks in tension and loses its cohesion in shear.
+
+#include <voussoir/materials/isotropic_elasticity.h>
+#include <voussoir/materials/material_of.h>
+#include <voussoir/materials/softening_curve.h>
+#include <voussoir/materials/tension_split.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Two scalar damages on the effective stress s = C : e, split into tension
+     * and compression (see split_tension),
+     *   sigma = (1 - d+) s+ + (1 - d-) s- .
+     * The largest principal stress drives d+. The Mohr-Coulomb stress of s-,
+     *   t = s1 (1 + sin phi) / (1 - sin phi) - s3   (s1 >= s3) ,
+     * drives d-; its limit is the uniaxial compressive strength fc = 2 c cos
+     * phi / (1 - sin phi). As t grows in proportion with s-, the stress of the
+     * damaged rock has t = (1 - d-) t(s-), the softened fc: cohesion is lost,
+     * while the friction of confined rock stays.
+     */
+    struct RockDamage : IsotropicElasticity
+    {
+      // largest equivalent strains in tension and shear
+      static constexpr unsigned int n_history = 2;
+
+      double tensile_strength  = 1e6;
+      double fracture_energy   = 100.;
+      double cohesion          = 1.5e6;
+      double friction_angle    = 45.;
+      double shear_energy      = 10e3;
+      double residual_cohesion = 0.1;
+
+      SofteningCurve tension, shear;
+      double         friction = 0.; // (1 + sin phi) / (1 - sin phi)
+
+      RockDamage()
+      {
+        young_modulus = 15e9;
+        poisson_ratio = 0.25;
+      }
+
+      void
+      declare_parameters(ParameterHandler &prm)
+      {
+        IsotropicElasticity::declare_parameters(prm);
+        prm.add_parameter("Tensile strength",
+                          tensile_strength,
+                          "Uniaxial tensile strength ft [Pa].",
+                          Patterns::Double(1.));
+        prm.add_parameter("Fracture energy",
+                          fracture_energy,
+                          "Energy Gf that a crack takes per area [N/m].",
+                          Patterns::Double(1e-3));
+        prm.add_parameter("Cohesion",
+                          cohesion,
+                          "Shear strength c without normal stress [Pa].",
+                          Patterns::Double(1.));
+        prm.add_parameter("Friction angle",
+                          friction_angle,
+                          "Angle phi of internal friction [degrees].",
+                          Patterns::Double(0., 70.));
+        prm.add_parameter(
+          "Shear energy",
+          shear_energy,
+          "Energy that the loss of cohesion takes per area of a "
+          "shear band, in uniaxial compression [N/m].",
+          Patterns::Double(1e-3));
+        prm.add_parameter("Residual cohesion",
+                          residual_cohesion,
+                          "Share of the cohesion that stays.",
+                          Patterns::Double(0., 0.95));
+      }
+
+      void
+      check(const std::string &)
+      {
+        const double sine = std::sin(friction_angle * numbers::PI / 180.);
+        friction          = (1. + sine) / (1. - sine);
+        tension = SofteningCurve(SofteningCurve::exponential(tensile_strength,
+                                                             fracture_energy),
+                                 young_modulus,
+                                 0.,
+                                 lateral_relief(*this));
+        // 2 c sqrt(friction) = 2 c cos phi / (1 - sin phi)
+        const double strength = 2. * cohesion * std::sqrt(friction);
+        auto         nodes =
+          SofteningCurve::exponential((1. - residual_cohesion) * strength,
+                                      shear_energy);
+        for (auto &node : nodes)
+          node.stress += residual_cohesion * strength;
+        shear = SofteningCurve(nodes, young_modulus, 0.);
+      }
+
+      template <typename Number>
+      Number
+      load_level(const SymmetricTensor3<Number> &stress,
+                 const Number                   &element_length) const
+      {
+        // principal values lie within mean -+ 2 sqrt(J2 / 3)
+        const auto [first, second] = invariants(stress);
+        const Number mean          = first / 3.,
+                     radius        = 2. * std::sqrt(Number(second / 3.));
+        const Number ft            = young_modulus * tension.elastic_limit(0.) *
+                          tension.strength_factor(element_length);
+        const Number fc = young_modulus * shear.elastic_limit(0.) *
+                          shear.strength_factor(element_length);
+        return std::max(Number((mean + radius) / ft),
+                        Number((friction *
+                                  std::min(Number(mean + radius), Number(0.)) -
+                                (mean - radius)) /
+                               fc));
+      }
+
+      /** Lets one of the damages go on; returns 1 - d and what is lost, over
+       *  the elastic energy of its part of s. */
+      std::pair<double, double>
+      go_on(const SofteningCurve &curve,
+            const double          equivalent_stress,
+            double               &largest,
+            const double          band) const
+      {
+        const double before = std::max(largest, curve.elastic_limit(band)),
+                     now    = equivalent_stress / young_modulus;
+        const double old    = curve.at(before, band).damage(young_modulus);
+        if (now <= before)
+          return {largest == 0. ? 1. : 1. - old, 0.};
+        largest           = now;
+        const double next = curve.at(now, band).damage(young_modulus);
+        // along a straight piece of the curve
+        return {1. - next, (next - old) * before / now};
+      }
+
+      template <typename Number>
+      PointResponse<Number>
+      respond(const SymmetricTensor3<Number> &strain,
+              Number                         *history,
+              const PointSituation<Number>   &situation) const
+      {
+        const auto split = split_tension(stress(strain), *this);
+        // the compressed part is ordered as the whole is
+        const Number drive[2] = {split.principal.values[0],
+                                 friction * split.compression[0] -
+                                   split.compression[2]};
+
+        PointResponse<Number> response;
+        response.elastic_strain = strain;
+        response.dissipation    = 0.;
+        response.damping_share  = 1.;
+        for (const unsigned int sign : {0, 1})
+          {
+            Number intact, lost;
+            for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
+              std::tie(lane_of(intact, lane), lane_of(lost, lane)) =
+                go_on(sign == 0 ? tension : shear,
+                      lane_of(drive[sign], lane),
+                      lane_of(history[sign], lane),
+                      lane_of(situation.element_length, lane));
+            const SymmetricTensor3<Number> effective = split.principal.compose(
+              sign == 0 ? split.tension : split.compression);
+            response.stress += intact * effective;
+            response.damping_share *= intact;
+            response.dissipation += 0.5 * lost * (effective * strain);
+          }
+        return response;
+      }
+
+      static std::vector<std::string>
+      output_names()
+      {
+        return {"tension damage", "shear damage"};
+      }
+
+      std::vector<double>
+      outputs(const double *history, const double element_length) const
+      {
+        std::vector<double> result;
+        for (const unsigned int sign : {0, 1})
+          result.push_back(history[sign] == 0. ?
+                             0. :
+                             (sign == 0 ? tension : shear)
+                               .at(history[sign], element_length)
+                               .damage(young_modulus));
+        return result;
+      }
+
+      std::string
+      remark(const double element_length) const
+      {
+        return tension.remark(element_length);
+      }
+    };
+
+    const Registry<Material>::Add<MaterialOf<RockDamage>> registered(
+      "rock damage",
+      "Rock that cracks in tension and loses its cohesion, not its friction, in "
+      "shear.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,40 @@
+#ifndef voussoir_tests_point_path_h
+#define voussoir_tests_point_path_h
+
+#include <voussoir/materials/point_test.h>
+
+#include <functional>
+
+namespace Voussoir
+{
+  /** What is given of xx, yy, zz. */
+  using NormalControls = std::array<PointTest::Control, 3>;
+
+  /** On to strains or stresses in equal steps, without shear stress; @p look is
+   *  called after each. */
+  inline void
+  advance(
+    PointTest                   &test,
+    const NormalControls        &target,
+    const unsigned int           steps,
+    const std::function<void()> &look = [] {})
+  {
+    const auto strain = test.strain, stress = test.stress;
+    for (unsigned int i = 1; i <= steps; ++i)
+      {
+        const double        share = double(i) / steps;
+        PointTest::Controls controls;
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            const double start =
+              target[d].is_strain ? strain[d][d] : stress[d][d];
+            controls[d] = {target[d].is_strain,
+                           start + share * (target[d].value - start)};
+          }
+        test.advance(controls);
+        look();
+      }
+  }
+} // namespace Voussoir
+
+#endif

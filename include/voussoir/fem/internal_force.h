@@ -39,12 +39,14 @@ namespace Voussoir
 
     /**
      * Like add_force, but by the law with its memory, which goes one step on:
-     *   f = sum B^T ( sigma(e) - D e_0 + b D (k B (u + s w) - m B u) ) ,
+     *   f = sum B^T ( sigma(e) - D e_0
+     *                 + b D (k B (u + s w) - m B u - (k - m) e_p) ) ,
      *   e = m B u + e_0 ,
      * with the stiffness scale k of the damping model, the factor m on strains
      * (one, but in the static stage) and the strain offset e_0 of the history.
      * The last term is the stress of damping alone, of which damage leaves the
-     * share b. While the law is elastic, this is add_force.
+     * share b, and in which the plastic strain e_p takes no part. While the law
+     * is elastic, this is add_force.
      */
     virtual void
     add_response(const MatrixFree  &matrix_free,

@@ -212,8 +212,13 @@ namespace Voussoir
                                 cell.JxW(q),
                                 time_step,
                                 history);
-                        stress = response.stress - offset_stress +
-                                 response.damping_share * damping_stress;
+                        // what has flowed takes no part in damping
+                        stress =
+                          response.stress - offset_stress +
+                          response.damping_share *
+                            (damping_stress -
+                             (stiffness_scale - strain_factor) *
+                               law.stress(strain - response.elastic_strain));
                       }
                     cell.submit_symmetric_gradient(stress, q);
                   }
@@ -299,6 +304,7 @@ namespace Voussoir
                       const auto now = look_at(
                         moved, history.values(batch, q), history, batch, q);
                       Lanes energy = 0.5 * (now.stress * now.elastic_strain);
+                      SymmetricTensor3<Lanes> stretched = now.elastic_strain;
                       if (u_static.size() > 0)
                         {
                           const auto strain =
@@ -312,11 +318,12 @@ namespace Voussoir
                           moved -= strain;
                           energy -= at_start.stress *
                                     (0.5 * at_start.elastic_strain + moved);
+                          stretched -= at_start.elastic_strain;
                         }
                       // what the damping model takes off the moduli
                       energy += 0.5 * (stiffness_scale - 1.) *
                                 history.damping_share(batch, q) *
-                                (law.stress(moved) * moved);
+                                (law.stress(stretched) * stretched);
                       sum += energy * cell.JxW(q);
                     }
                 total += sum_of_cells(matrix_free, batch, sum);

@@ -24,6 +24,34 @@ namespace Voussoir
           begin = end;
         }
     }
+
+
+    using CellLoop =
+      std::function<void(const Discretization::MatrixFree &,
+                         Vector &,
+                         const Vector &,
+                         const std::pair<unsigned int, unsigned int> &)>;
+
+    // What a cell loop does: run(matrix_free, dst, src, material, begin, end)
+    // for the runs of batches of one material.
+    template <typename Run>
+    CellLoop
+    on_runs(const std::vector<unsigned int> &material_of_batch, const Run &run)
+    {
+      return [&](const Discretization::MatrixFree            &matrix_free,
+                 Vector                                      &dst,
+                 const Vector                                &src,
+                 const std::pair<unsigned int, unsigned int> &range) {
+        for_each_run(material_of_batch,
+                     range.first,
+                     range.second,
+                     [&](const unsigned int material,
+                         const unsigned int begin,
+                         const unsigned int end) {
+                       run(matrix_free, dst, src, material, begin, end);
+                     });
+      };
+    }
   } // namespace
 
 
@@ -62,34 +90,25 @@ namespace Voussoir
                        const RangeWork &before,
                        const RangeWork &after)
   {
-    const std::function<void(const Discretization::MatrixFree &,
-                             Vector &,
-                             const Vector &,
-                             const std::pair<unsigned int, unsigned int> &)>
-      cells = [&](const Discretization::MatrixFree            &matrix_free,
-                  Vector                                      &dst,
-                  const Vector                                &src,
-                  const std::pair<unsigned int, unsigned int> &range) {
-        for_each_run(discretization.material_of_batch,
-                     range.first,
-                     range.second,
-                     [&](const unsigned int material,
+    const auto run = [&](const auto        &matrix_free,
+                         Vector            &dst,
+                         const Vector      &src,
+                         const unsigned int material,
                          const unsigned int begin,
                          const unsigned int end) {
-                       if (uses_memory && !histories[material].empty())
-                         kernels[material]->add_response(matrix_free,
-                                                         dst,
-                                                         src,
-                                                         memory,
-                                                         begin,
-                                                         end,
-                                                         histories[material],
-                                                         time_step);
-                       else
-                         kernels[material]->add_force(
-                           matrix_free, dst, src, memory, begin, end);
-                     });
-      };
+      if (uses_memory && !histories[material].empty())
+        kernels[material]->add_response(matrix_free,
+                                        dst,
+                                        src,
+                                        memory,
+                                        begin,
+                                        end,
+                                        histories[material],
+                                        time_step);
+      else
+        kernels[material]->add_force(matrix_free, dst, src, memory, begin, end);
+    };
+    const CellLoop cells = on_runs(discretization.material_of_batch, run);
 
     // The library overlaps the exchange of one source vector with the cell
     // work; a second one is exchanged beforehand.
@@ -114,21 +133,16 @@ namespace Voussoir
   {
     if (memory != nullptr)
       memory->update_ghost_values();
-    discretization.matrix_free.cell_loop<Vector, Vector>(
-      [&](const auto                                  &matrix_free,
-          Vector                                      &dst,
-          const Vector                                &src,
-          const std::pair<unsigned int, unsigned int> &range) {
-        for_each_run(discretization.material_of_batch,
-                     range.first,
-                     range.second,
-                     [&](const unsigned int material,
+    const auto run = [&](const auto        &matrix_free,
+                         Vector            &dst,
+                         const Vector      &src,
+                         const unsigned int material,
                          const unsigned int begin,
                          const unsigned int end) {
-                       kernels[material]->add_force(
-                         matrix_free, dst, src, memory, begin, end);
-                     });
-      },
+      kernels[material]->add_force(matrix_free, dst, src, memory, begin, end);
+    };
+    discretization.matrix_free.cell_loop(
+      on_runs(discretization.material_of_batch, run),
       force,
       displacement,
       true);
@@ -196,23 +210,16 @@ namespace Voussoir
   InternalForce::add_thermal_force(Vector       &force,
                                    const Vector &temperature) const
   {
-    discretization.matrix_free.cell_loop<Vector, Vector>(
-      [&](const auto                                  &matrix_free,
-          Vector                                      &dst,
-          const Vector                                &src,
-          const std::pair<unsigned int, unsigned int> &range) {
-        for_each_run(discretization.material_of_batch,
-                     range.first,
-                     range.second,
-                     [&](const unsigned int material,
+    const auto run = [&](const auto        &matrix_free,
+                         Vector            &dst,
+                         const Vector      &src,
+                         const unsigned int material,
                          const unsigned int begin,
                          const unsigned int end) {
-                       kernels[material]->add_thermal_force(
-                         matrix_free, dst, src, begin, end);
-                     });
-      },
-      force,
-      temperature);
+      kernels[material]->add_thermal_force(matrix_free, dst, src, begin, end);
+    };
+    discretization.matrix_free.cell_loop(
+      on_runs(discretization.material_of_batch, run), force, temperature);
   }
 
 

@@ -253,45 +253,6 @@ namespace Voussoir
                         Number((radius - mean) / fc));
       }
 
-      /** One of the damages goes one step on. */
-      struct Progress
-      {
-        double effective;   // factor on s for the irreversible strain
-        double intact;      // 1 - d
-        double dissipation; // over the elastic energy of s
-      };
-
-      Progress
-      go_on(const SofteningCurve &curve,
-            const double          equivalent_stress,
-            double               &largest,
-            const double          band,
-            const double          time_step) const
-      {
-        // zero is a point that has never left the elastic range
-        const double before = std::max(largest, curve.elastic_limit(band));
-        const auto   old    = curve.at(before, band);
-        const double trial =
-          equivalent_stress / young_modulus + old.irreversible;
-        if (trial <= before)
-          return {1., 1. - old.damage(young_modulus), 0.};
-        const double share = relaxation_time == 0. ?
-                               1. :
-                               time_step / (relaxation_time + time_step);
-        largest            = before + share * (trial - before);
-        const auto now     = curve.at(largest, band);
-
-        // along straight pieces of the curve the work less what is stored is
-        // (sigma_old e - sigma e_old)/2 + (sigma_old + sigma)/2 dp
-        const double lost =
-          0.5 * (old.stress * now.elastic - now.stress * old.elastic) +
-          0.5 * (old.stress + now.stress) *
-            (now.irreversible - old.irreversible);
-        return {now.elastic / (largest - old.irreversible),
-                1. - now.damage(young_modulus),
-                lost / (0.5 * young_modulus * now.elastic * now.elastic)};
-      }
-
       template <typename Number>
       PointResponse<Number>
       respond(const SymmetricTensor3<Number> &strain,
@@ -316,6 +277,11 @@ namespace Voussoir
           (alpha * first + std::sqrt(Number(0.5 * squares)) + 3. * pressed[0]) /
           (1. - alpha);
 
+        // share of what damage lags behind by that this step makes up for
+        const double followed =
+          relaxation_time == 0. ?
+            1. :
+            situation.time_step / (relaxation_time + situation.time_step);
         Number factor[2], intact[2], dissipation[2];
         for (const unsigned int sign : {0, 1})
           {
@@ -337,12 +303,11 @@ namespace Voussoir
                     young_modulus * lane_of(before, lane) ||
                   (irreversible && lane_of(history[sign], lane) > 0.))
                 {
-                  const Progress progress =
-                    go_on(curve,
-                          lane_of(equivalent, lane),
-                          lane_of(history[sign], lane),
-                          lane_of(situation.element_length, lane),
-                          situation.time_step);
+                  const auto progress =
+                    curve.go_on(lane_of(equivalent, lane),
+                                lane_of(history[sign], lane),
+                                lane_of(situation.element_length, lane),
+                                followed);
                   lane_of(factor[sign], lane)      = progress.effective;
                   lane_of(intact[sign], lane)      = progress.intact;
                   lane_of(dissipation[sign], lane) = progress.dissipation;

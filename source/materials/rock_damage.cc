@@ -115,25 +115,6 @@ namespace Voussoir
                                fc));
       }
 
-      /** Lets one of the damages go on; returns 1 - d and what is lost, over
-       *  the elastic energy of its part of s. */
-      std::pair<double, double>
-      go_on(const SofteningCurve &curve,
-            const double          equivalent_stress,
-            double               &largest,
-            const double          band) const
-      {
-        const double before = std::max(largest, curve.elastic_limit(band)),
-                     now    = equivalent_stress / young_modulus;
-        const double old    = curve.at(before, band).damage(young_modulus);
-        if (now <= before)
-          return {largest == 0. ? 1. : 1. - old, 0.};
-        largest           = now;
-        const double next = curve.at(now, band).damage(young_modulus);
-        // along a straight piece of the curve
-        return {1. - next, (next - old) * before / now};
-      }
-
       template <typename Number>
       PointResponse<Number>
       respond(const SymmetricTensor3<Number> &strain,
@@ -154,11 +135,15 @@ namespace Voussoir
           {
             Number intact, lost;
             for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
-              std::tie(lane_of(intact, lane), lane_of(lost, lane)) =
-                go_on(sign == 0 ? tension : shear,
-                      lane_of(drive[sign], lane),
-                      lane_of(history[sign], lane),
-                      lane_of(situation.element_length, lane));
+              {
+                const auto progress =
+                  (sign == 0 ? tension : shear)
+                    .go_on(lane_of(drive[sign], lane),
+                           lane_of(history[sign], lane),
+                           lane_of(situation.element_length, lane));
+                lane_of(intact, lane) = progress.intact;
+                lane_of(lost, lane)   = progress.dissipation;
+              }
             const SymmetricTensor3<Number> effective = split.principal.compose(
               sign == 0 ? split.tension : split.compression);
             response.stress += intact * effective;

@@ -88,6 +88,31 @@ namespace Voussoir
   }
 
 
+  SofteningCurve::Progress
+  SofteningCurve::go_on(const double equivalent_stress,
+                        double      &largest,
+                        const double band,
+                        const double followed) const
+  {
+    const double before = std::max(largest, elastic_limit(band));
+    const Point  old    = at(before, band);
+    const double trial  = equivalent_stress / young_modulus + old.irreversible;
+    if (trial <= before)
+      return {1., largest == 0. ? 1. : 1. - old.damage(young_modulus), 0.};
+    largest         = before + followed * (trial - before);
+    const Point now = at(largest, band);
+
+    // along straight pieces of the curve the work less what is stored is
+    // (sigma_old e - sigma e_old)/2 + (sigma_old + sigma)/2 dp
+    const double lost =
+      0.5 * (old.stress * now.elastic - now.stress * old.elastic) +
+      0.5 * (old.stress + now.stress) * (now.irreversible - old.irreversible);
+    return {now.elastic / (largest - old.irreversible),
+            1. - now.damage(young_modulus),
+            lost / (0.5 * young_modulus * now.elastic * now.elastic)};
+  }
+
+
   double
   SofteningCurve::energy(const std::vector<Node> &nodes)
   {

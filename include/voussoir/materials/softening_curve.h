@@ -57,6 +57,29 @@ namespace Voussoir
     Point
     at(const double strain, const double band) const;
 
+    /** What a step does to a point. */
+    struct Progress
+    {
+      double effective;   // factor on the effective stress: irreversible strain
+      double intact;      // 1 - damage
+      double dissipation; // over the elastic energy of the effective stress
+    };
+
+    /**
+     * Lets the damage of a point go one step on.
+     *
+     * @param equivalent_stress effective stress of a uniaxial test [Pa]
+     * @param largest effective strain so far; zero if it has always been
+     * elastic
+     * @param band width of the band [m]
+     * @param followed share of the growth that this step takes in
+     */
+    Progress
+    go_on(const double equivalent_stress,
+          double      &largest,
+          const double band,
+          const double followed = 1.) const;
+
     /** Strain of the elastic limit. */
     double
     elastic_limit(const double band) const
@@ -84,19 +107,6 @@ namespace Voussoir
      */
     double
     straightness(const double band) const;
-
-    /** Widest band with the curve as it is, and with its strength [m]. */
-    double
-    widest_band_of_curve() const
-    {
-      return widest_of_curve;
-    }
-
-    double
-    widest_band() const
-    {
-      return widest;
-    }
 
     /** Energy of the displacements, per area of the crack [J/m2]. */
     static double

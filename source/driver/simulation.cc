@@ -95,8 +95,12 @@ namespace Voussoir
     scaled_materials(Case &parameters, const Damping &damping)
     {
       for (auto &item : parameters.materials.objects)
-        item.second->stiffness_scale =
-          damping.stiffness_scale(item.second->damping_factor());
+        {
+          Material    &material     = *item.second;
+          const double factor       = material.damping_factor();
+          material.stiffness_scale  = damping.stiffness_scale(factor);
+          material.filter_stiffness = damping.filter_stiffness(factor);
+        }
       return parameters.material_list();
     }
 

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <iomanip>
+#include <numeric>
 
 namespace Voussoir
 {
@@ -171,10 +172,15 @@ namespace Voussoir
   double
   Damping::stiffening(const double dt) const
   {
-    double sum = 2. * stiffness_coefficient / dt;
-    for (const double D : coefficients)
-      sum += D;
-    return sum;
+    return 2. * stiffness_coefficient / dt + filter_stiffness(1.);
+  }
+
+
+  double
+  Damping::filter_stiffness(const double factor) const
+  {
+    return factor *
+           std::accumulate(coefficients.begin(), coefficients.end(), 0.);
   }
 
 

@@ -105,10 +105,26 @@ namespace Voussoir
   }
 
 
+  const SymmetricTensor3<Lanes> &
+  PointHistory::static_strain(const unsigned int batch,
+                              const unsigned int q) const
+  {
+    return static_strains[index(batch, q)];
+  }
+
+
+  SymmetricTensor3<Lanes> &
+  PointHistory::static_strain(const unsigned int batch, const unsigned int q)
+  {
+    return static_strains[index(batch, q)];
+  }
+
+
   void
   PointHistory::make_offsets()
   {
     offsets.resize(active.size());
+    static_strains.resize(active.size());
     has_offset = true;
   }
 
@@ -174,9 +190,11 @@ namespace Voussoir
   KeyedValues
   PointHistory::checkpoint_values()
   {
-    packed.resize(places.size() * n_points * width);
+    // with the damping share
+    const unsigned int n_numbers = n_points * (width + 1);
+    packed.resize(places.size() * n_numbers);
     exchange(false);
-    KeyedValues values{n_points * width, {}};
+    KeyedValues values{n_numbers, {}};
     for (unsigned int i = 0; i < places.size(); ++i)
       values.items.emplace_back(Grid::global_key(places[i].first),
                                 packed.data() + i * values.width);
@@ -195,20 +213,26 @@ namespace Voussoir
   void
   PointHistory::exchange(const bool load)
   {
-    auto item = packed.begin();
+    auto       item  = packed.begin();
+    const auto trade = [&](double &number) {
+      if (load)
+        number = *item++;
+      else
+        *item++ = number;
+    };
     for (const auto &place : places)
       for (unsigned int q = 0; q < n_points; ++q)
         {
           const auto [batch, lane] = place.second;
-          for (unsigned int i = 0; i < width; ++i, ++item)
-            if (load)
-              {
-                values(batch, q)[i][lane] = *item;
-                if (*item != 0.)
-                  activate(batch, q);
-              }
-            else
-              *item = values(batch, q)[i][lane];
+          bool is_new              = true;
+          for (unsigned int i = 0; i < width; ++i)
+            {
+              trade(values(batch, q)[i][lane]);
+              is_new = is_new && values(batch, q)[i][lane] == 0.;
+            }
+          if (!is_new)
+            activate(batch, q);
+          trade(damping_shares[index(batch, q)][lane]);
         }
   }
 } // namespace Voussoir

@@ -330,9 +330,14 @@ namespace Voussoir
         for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
           if (lane_of(factor[0], lane) * lane_of(factor[1], lane) != 1.)
             for (unsigned int i = 0; i < 6; ++i)
-              lane_of(history[4 + i], lane) =
-                lane_of(strain.access_raw_entry(i), lane) -
-                lane_of(response.elastic_strain.access_raw_entry(i), lane);
+              {
+                const double flowed =
+                  lane_of(strain.access_raw_entry(i), lane) -
+                  lane_of(response.elastic_strain.access_raw_entry(i), lane);
+                lane_of(response.plastic_increment.access_raw_entry(i), lane) =
+                  flowed - lane_of(plastic.access_raw_entry(i), lane);
+                lane_of(history[4 + i], lane) = flowed;
+              }
         return response;
       }
 

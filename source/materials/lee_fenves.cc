@@ -3,7 +3,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/materials/isotropic_elasticity.h>
 #include <voussoir/materials/material_of.h>
-#include <voussoir/materials/spectral.h>
+#include <voussoir/materials/tension_split.h>
 
 namespace Voussoir
 {
@@ -25,8 +25,11 @@ namespace Voussoir
      *   D_c = 1 - exp(-q_c b_c k_c) ,   f = sigma / (1 - D) ,
      * where b_t and b_c make the plastic work over the cell's length that of
      * the fracture and the crushing energy. The stress is
-     *   sigma = (1 - D_c) (1 - s_c D_t) s ,   s_c = 1 - w (1 - r) ,
-     * so that w of the stiffness comes back when a crack closes.
+     *   sigma = (1 - D_c) [(1 - D_t) s + w D_t s_c] ,
+     * where s_c is what a material that bears no tension keeps of s: w of the
+     * stiffness comes back when a crack closes. Lee and Fenves put
+     * (1 - D_c) (1 - D_t + w (1 - r) D_t) s, which has no potential: a block
+     * that rocks and slides on its crack gains energy at every turn.
      *
      * The deviator of s keeps its direction on the way back to the surface and
      * its trace falls in proportion, which leaves one equation. Beyond the
@@ -49,7 +52,7 @@ namespace Voussoir
       double dilatancy        = 0.09; // a_p
       double tension_ratio    = 1.2;  // q_t
       double crushing_ratio   = 1.;   // q_c
-      double recovery         = 0.;   // w
+      double recovery         = 1.;   // w
 
       double alpha = 0., hump = 0.; // a
 
@@ -107,10 +110,10 @@ namespace Voussoir
         prm.add_parameter("Stiffness recovery",
                           recovery,
                           "Share w of the stiffness that comes back when a "
-                          "crack closes; Lee and Fenves take 1. Where the "
-                          "principal stresses then have both signs, the "
-                          "recovery takes or makes energy, as a single damage "
-                          "with recovery has no potential.",
+                          "crack closes; Lee and Fenves take 1. With 0 a body "
+                          "that has been cut through falls through itself. "
+                          "With 1 a crack takes 4 % more energy, as it is "
+                          "relieved of lateral stress too.",
                           Patterns::Double(0., 1.));
       }
 
@@ -306,15 +309,6 @@ namespace Voussoir
         return place;
       }
 
-      /** 1 - D at a weight r of tension. */
-      double
-      intact(const Strengths &strengths, const double weight) const
-      {
-        const double closing = 1. - recovery * (1. - weight);
-        return strengths.crushing_intact *
-               (1. - closing * (1. - strengths.tension_intact));
-      }
-
       template <typename Number>
       PointResponse<Number>
       respond(const SymmetricTensor3<Number> &strain,
@@ -325,10 +319,12 @@ namespace Voussoir
         for (unsigned int i = 0; i < 6; ++i)
           plastic.access_raw_entry(i) = history[i];
         const SymmetricTensor3<Number> trial     = stress(strain - plastic);
-        const auto                     principal = spectrum(trial);
+        auto                           principal = spectrum(trial);
 
         std::array<Number, 3> excess;
-        Number                before = 1., now = 1.;
+        // 1 - D before and after the step
+        Number tension_before = 1., tension_now = 1., crushing_before = 1.,
+               crushing_now = 1.;
         for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
           {
             const double length  = lane_of(situation.element_length, lane);
@@ -337,12 +333,14 @@ namespace Voussoir
             Principal s;
             for (unsigned int i = 0; i < 3; ++i)
               s[i] = lane_of(principal.values[i], lane);
-            const Place  place  = returned(s, opening, crushing, length);
-            const double weight = tension_weight(place.stress);
-            lane_of(before, lane) =
-              intact(strengths(opening, crushing, length), weight);
-            lane_of(now, lane) =
-              intact(strengths(place.opening, place.crushing, length), weight);
+            const Place     place  = returned(s, opening, crushing, length);
+            const Strengths before = strengths(opening, crushing, length),
+                            now =
+                              strengths(place.opening, place.crushing, length);
+            lane_of(tension_before, lane)  = before.tension_intact;
+            lane_of(tension_now, lane)     = now.tension_intact;
+            lane_of(crushing_before, lane) = before.crushing_intact;
+            lane_of(crushing_now, lane)    = now.crushing_intact;
             for (unsigned int i = 0; i < 3; ++i)
               lane_of(excess[i], lane) = s[i] - place.stress[i];
             opening  = place.opening;
@@ -357,13 +355,28 @@ namespace Voussoir
         for (unsigned int i = 0; i < 6; ++i)
           history[i] += increment.access_raw_entry(i);
 
+        for (unsigned int i = 0; i < 3; ++i)
+          principal.values[i] -= excess[i];
+        const auto                     split = split_tension(principal, *this);
+        const SymmetricTensor3<Number> closed =
+          recovery * split.principal.compose(split.compression);
+        const auto weakened = [&](const Number &tension_intact,
+                                  const Number &crushing_intact) {
+          return SymmetricTensor3<Number>(
+            crushing_intact *
+            (tension_intact * effective + (1. - tension_intact) * closed));
+        };
+
         PointResponse<Number> response;
-        response.stress         = now * effective;
+        response.stress         = weakened(tension_now, crushing_now);
         response.elastic_strain = strain - plastic - increment;
-        response.damping_share  = now;
+        response.damping_share  = tension_now * crushing_now;
+        const SymmetricTensor3<Number> before =
+          weakened(tension_before, crushing_before);
         response.dissipation =
-          0.5 * (before + now) * (effective * increment) +
-          0.5 * (before - now) * (effective * response.elastic_strain);
+          0.5 * ((before + response.stress) * increment +
+                 (before - response.stress) * response.elastic_strain);
+        response.plastic_increment = increment;
         return response;
       }
 

@@ -78,6 +78,11 @@ namespace Voussoir
     double
     stiffness_scale(const double factor) const;
 
+    /** Stiffness of all branches' springs over that at rest, for a material of
+     *  factor s. */
+    double
+    filter_stiffness(const double factor) const;
+
     /** Prints the achieved damping ratio over the frequency. */
     void
     print(std::ostream &out) const;

@@ -64,9 +64,17 @@ namespace Voussoir
     SymmetricTensor3<Lanes> &
     strain_offset(const unsigned int batch, const unsigned int q);
 
+    /** Elastic strain of the static state, before which damping does not
+     *  reach back. */
+    const SymmetricTensor3<Lanes> &
+    static_strain(const unsigned int batch, const unsigned int q) const;
+
+    SymmetricTensor3<Lanes> &
+    static_strain(const unsigned int batch, const unsigned int q);
+
     bool has_offset = false;
 
-    /** Gives every point a strain offset of zero. */
+    /** Gives every point a strain offset and a static strain of zero. */
     void
     make_offsets();
 
@@ -122,7 +130,7 @@ namespace Voussoir
     std::vector<std::pair<Discretization::Cell, Place>> places;
     std::vector<unsigned int>                           item_of_cell;
     dealii::AlignedVector<Lanes> numbers, at_start, lengths, damping_shares;
-    dealii::AlignedVector<SymmetricTensor3<Lanes>> offsets;
+    dealii::AlignedVector<SymmetricTensor3<Lanes>> offsets, static_strains;
     std::vector<char>                              active;
     std::vector<double>                            packed;
   };

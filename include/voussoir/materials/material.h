@@ -92,6 +92,9 @@ namespace Voussoir
 
     /** Share that damage leaves of the stress of damping. */
     Number damping_share = Number(1.);
+
+    /** Plastic flow of this step. */
+    SymmetricTensor3<Number> plastic_increment = SymmetricTensor3<Number>();
   };
 
   /**
@@ -174,6 +177,10 @@ namespace Voussoir
      *  dynamic load what lets the moduli hold at the reference frequency of
      *  the damping model. */
     double stiffness_scale = 1.;
+
+    /** Stiffness of the springs of the damping filters together, over the
+     *  material's own; 0 without. */
+    double filter_stiffness = 0.;
 
     /** Factor on the strain that the law sees: the static factor in the static
      *  stage. */

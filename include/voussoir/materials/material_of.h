@@ -179,17 +179,12 @@ namespace Voussoir
                     SymmetricTensor3<Lanes> stress =
                       stiffness_scale *
                       law.stress(cell.get_symmetric_gradient(q));
-                    SymmetricTensor3<Lanes> trial = stress, offset_stress;
+                    SymmetricTensor3<Lanes> trial = stress;
                     if (history.has_offset)
-                      {
-                        offset_stress =
-                          law.stress(history.strain_offset(batch, q));
-                        trial += offset_stress;
-                      }
+                      trial += law.stress(history.strain_offset(batch, q));
                     if (history.is_active(batch, q) ||
                         any_above(law.load_level(trial, length), watched))
                       {
-                        // the law goes by the strain without damping
                         if (!knows_own)
                           {
                             own.reinit(batch);
@@ -197,14 +192,9 @@ namespace Voussoir
                               displacement, dealii::EvaluationFlags::gradients);
                             knows_own = true;
                           }
-                        SymmetricTensor3<Lanes> strain =
-                          strain_factor * own.get_symmetric_gradient(q);
-                        const SymmetricTensor3<Lanes> damping_stress =
-                          stress - law.stress(strain);
-                        if (history.has_offset)
-                          strain += history.strain_offset(batch, q);
-                        const auto response =
-                          go_on(strain,
+                        stress =
+                          go_on(cell.get_symmetric_gradient(q),
+                                own.get_symmetric_gradient(q),
                                 batch,
                                 q,
                                 matrix_free.n_active_entries_per_cell_batch(
@@ -212,13 +202,6 @@ namespace Voussoir
                                 cell.JxW(q),
                                 time_step,
                                 history);
-                        // what has flowed takes no part in damping
-                        stress =
-                          response.stress - offset_stress +
-                          response.damping_share *
-                            (damping_stress -
-                             (stiffness_scale - strain_factor) *
-                               law.stress(strain - response.elastic_strain));
                       }
                     cell.submit_symmetric_gradient(stress, q);
                   }
@@ -253,12 +236,23 @@ namespace Voussoir
                                    dealii::EvaluationFlags::values);
             for (const unsigned int q : cell.quadrature_point_indices())
               {
-                auto &offset = history.strain_offset(batch, q);
-                offset       = (static_factor - strain_factor) *
-                         cell.get_symmetric_gradient(q);
+                const auto strain = cell.get_symmetric_gradient(q);
+                auto      &offset = history.strain_offset(batch, q);
+                offset            = (static_factor - strain_factor) * strain;
                 for (unsigned int d = 0; d < 3; ++d)
                   offset[d][d] -=
                     static_factor * expansion * warmth.get_value(q)[d];
+                auto &elastic = history.static_strain(batch, q);
+                elastic       = strain;
+                if constexpr (has_memory)
+                  if (history.is_active(batch, q))
+                    elastic -= strain_factor * strain + offset -
+                               look_at(strain,
+                                       history.values(batch, q),
+                                       history,
+                                       batch,
+                                       q)
+                                 .elastic_strain;
               }
           }
       });
@@ -321,7 +315,7 @@ namespace Voussoir
                           stretched -= at_start.elastic_strain;
                         }
                       // what the damping model takes off the moduli
-                      energy += 0.5 * (stiffness_scale - 1.) *
+                      energy += 0.5 * (stiffness_scale - strain_factor) *
                                 history.damping_share(batch, q) *
                                 (law.stress(stretched) * stretched);
                       sum += energy * cell.JxW(q);
@@ -514,9 +508,22 @@ namespace Voussoir
       return sum;
     }
 
-    /** Lets the memory of the points go one step on. */
-    PointResponse<Lanes>
-    go_on(const SymmetricTensor3<Lanes> &strain,
+    /**
+     * Lets the memory of the points go one step on. The law sees the strain
+     * e = m B u + e_0 without the filters w of damping. They act on the elastic
+     * strain since the static state e_s by a stress of their own,
+     *   b D : [k B w + (k - m) (B u - e_p - e_s)] ,
+     * of which damage leaves the share b. The sum is k D : B (u + w) as long as
+     * the law is elastic. With b go the energies that these stresses have
+     * stored; that of the filters is at least k B w : D : B w / (2 sum D_i) and
+     * comes to this for a fast crack, which all filters follow.
+     *
+     * @param filtered B (u + w)
+     * @param own_strain B u
+     */
+    SymmetricTensor3<Lanes>
+    go_on(const SymmetricTensor3<Lanes> &filtered,
+          const SymmetricTensor3<Lanes> &own_strain,
           const unsigned int             batch,
           const unsigned int             q,
           const unsigned int             n_cells,
@@ -524,23 +531,52 @@ namespace Voussoir
           const double                   time_step,
           PointHistory                  &history) const
     {
+      SymmetricTensor3<Lanes> strain = strain_factor * own_strain, offset,
+                              elastic_static;
+      if (history.has_offset)
+        {
+          offset         = history.strain_offset(batch, q);
+          elastic_static = history.static_strain(batch, q);
+          strain += offset;
+        }
       Lanes     *values = history.values(batch, q);
       const auto response =
         law.respond(strain,
                     values,
                     PointSituation<Lanes>{history.element_length(batch),
                                           time_step});
-      history.damping_share(batch, q) = response.damping_share;
+
+      const double difference = stiffness_scale - strain_factor;
+      const SymmetricTensor3<Lanes> stretch =
+        own_strain - (strain - response.elastic_strain) - elastic_static;
+      const SymmetricTensor3<Lanes> filter = filtered - own_strain,
+                                    filter_stress =
+                                      stiffness_scale * law.stress(filter),
+                                    stretch_stress =
+                                      difference * law.stress(stretch);
+      const Lanes before = history.damping_share(batch, q),
+                  now    = response.damping_share;
+      Lanes lost =
+        response.dissipation +
+        0.5 * (before + now) * (stretch_stress * response.plastic_increment) +
+        0.5 * (before - now) * (stretch_stress * stretch);
+      if (filter_stiffness > 0.)
+        lost +=
+          0.5 * (before - now) * (filter_stress * filter) / filter_stiffness;
+
+      history.damping_share(batch, q) = now;
       bool active                     = false;
       for (unsigned int lane = 0; lane < n_cells; ++lane)
         {
-          history.dissipated += response.dissipation[lane] * weight[lane];
+          history.dissipated += lost[lane] * weight[lane];
           for (unsigned int i = 0; i < Law::n_history; ++i)
             active = active || values[i][lane] != 0.;
         }
       if (active)
         history.activate(batch, q);
-      return response;
+      return response.stress -
+             law.stress(offset - difference * elastic_static) +
+             now * (filter_stress + stretch_stress);
     }
 
     /** Response to a strain of the displacement with this memory (null: none

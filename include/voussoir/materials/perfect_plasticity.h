@@ -53,9 +53,10 @@ namespace Voussoir
       history[6] += std::sqrt(Number(2. / 3. * (increment * increment)));
 
       PointResponse<Number> response;
-      response.stress         = trial - excess;
-      response.elastic_strain = strain - plastic_strain(history);
-      response.dissipation    = response.stress * increment;
+      response.stress            = trial - excess;
+      response.elastic_strain    = strain - plastic_strain(history);
+      response.dissipation       = response.stress * increment;
+      response.plastic_increment = increment;
       return response;
     }
 

@@ -35,16 +35,18 @@ namespace Voussoir
    * parts are orthogonal in the energy, so that damage of either has a
    * potential and no closed path of strains makes energy. A split by the signs
    * of principal stresses alone has none unless Poisson's ratio is zero.
+   *
+   * @param stress principal values and directions, in any order
    */
   template <typename Number>
   TensionSplit<Number>
-  split_tension(const SymmetricTensor3<Number> &stress,
-                const IsotropicElasticity      &elasticity)
+  split_tension(const Spectrum<Number>    &stress,
+                const IsotropicElasticity &elasticity)
   {
     using dealii::compare_and_apply_mask;
     using Comparison = dealii::SIMDComparison;
     TensionSplit<Number> split;
-    split.principal  = spectrum(stress);
+    split.principal  = stress;
     auto      &s     = split.principal.values;
     const auto order = [&](const unsigned int i, const unsigned int j) {
       const Number first = s[i], second = s[j];
@@ -89,6 +91,15 @@ namespace Voussoir
     for (unsigned int i = 0; i < 3; ++i)
       split.tension[i] = s[i] - split.compression[i];
     return split;
+  }
+
+
+  template <typename Number>
+  TensionSplit<Number>
+  split_tension(const SymmetricTensor3<Number> &stress,
+                const IsotropicElasticity      &elasticity)
+  {
+    return split_tension(spectrum(stress), elasticity);
   }
 } // namespace Voussoir
 

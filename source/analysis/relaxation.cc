@@ -1,5 +1,6 @@
 #include <voussoir/analysis/relaxation.h>
 #include <voussoir/base/error.h>
+#include <voussoir/base/mpi.h>
 #include <voussoir/fem/nodal_values.h>
 #include <voussoir/fem/stable_step.h>
 
@@ -76,29 +77,24 @@ namespace Voussoir
 
 
   double
-  Relaxation::quarter_period(State &state, unsigned int &steps)
+  Relaxation::natural_frequency(const std::array<Vector, 3> &velocity,
+                                const double mass_coefficient) const
   {
-    CentralDifference scheme  = make_scheme(0.);
-    double            largest = 0.;
-    if (contact != nullptr)
-      contact->start(state);
-    while (steps < max_steps)
+    double stiffness = 0., inertia = 0.;
+    for (unsigned int i = 0; i < mass.mass.locally_owned_size(); ++i)
       {
-        scheme.step(state);
-        ++steps;
-        double kinetic = 0.;
-        for (unsigned int i = 0; i < state.velocity.locally_owned_size(); ++i)
-          kinetic += mass.mass.local_element(i) *
-                     state.velocity.local_element(i) *
-                     state.velocity.local_element(i);
-        kinetic =
-          Utilities::MPI::sum(kinetic, discretization.grid.communicator());
-        largest = std::max(largest, kinetic);
-        // a little below the top, so that fast small modes do not end it
-        if (kinetic < 0.8 * largest || kinetic == 0.)
-          break;
+        const double before = velocity[0].local_element(i),
+                     now    = velocity[1].local_element(i),
+                     after  = velocity[2].local_element(i),
+                     m      = mass.mass.local_element(i);
+        stiffness -= m * now *
+                     ((after - 2. * now + before) / (time_step * time_step) +
+                      mass_coefficient * (after - before) / (2. * time_step));
+        inertia += m * now * now;
       }
-    return state.time;
+    const auto sums = sum_over_ranks(std::vector<double>{stiffness, inertia},
+                                     discretization.grid.communicator());
+    return sums[1] > 0. ? std::sqrt(std::max(sums[0] / sums[1], 0.)) : 0.;
   }
 
 
@@ -110,21 +106,36 @@ namespace Voussoir
   {
     loaded.displacement = displacement;
     loaded.force        = force;
-    unsigned int steps  = 0;
-    State        state  = make_scheme(0.).state_at_rest();
-    const double period = 4. * quarter_period(state, steps);
 
-    // critical damping 2 omega of the period; the motion goes on from here
-    CentralDifference scheme = make_scheme(4. * numbers::PI / period);
-    state.velocity           = 0.;
+    // from rest, undamped until the first look
+    double frequency = 0., mass_coefficient = 0.;
+    auto   scheme = std::make_unique<CentralDifference>(make_scheme(0.));
+    State  state  = scheme->state_at_rest();
     if (contact != nullptr)
       contact->start(state);
-    for (; steps < max_steps; ++steps)
+    std::array<Vector, 3> velocity;
+    for (unsigned int steps = 1; steps <= max_steps; ++steps)
       {
-        scheme.step(state);
-        if (steps % look_interval != 0)
+        scheme->step(state);
+        const unsigned int to_look =
+          (look_interval - steps % look_interval) % look_interval;
+        if (to_look < 3)
+          velocity[2 - to_look] = state.velocity;
+        if (to_look > 0)
           continue;
-        const double moving = largest_amount(state.velocity) * period;
+
+        const double speed = largest_amount(state.velocity);
+        if (!std::isfinite(speed))
+          break;
+        // friction and joints that open may seem to push the motion on: then
+        // the last one holds
+        const double measured = natural_frequency(velocity, mass_coefficient);
+        if (measured > 0.)
+          frequency = frequency == 0. ?
+                        measured :
+                        std::clamp(measured, 0.7 * frequency, 1.4 * frequency);
+        const double period = 2. * numbers::PI / frequency;
+        const double moving = speed == 0. ? 0. : speed * period;
         if (moving <= tolerance * largest_amount(state.displacement))
           {
             displacement = state.displacement;
@@ -132,8 +143,6 @@ namespace Voussoir
               contact->forget_approach();
             return steps;
           }
-        if (!std::isfinite(moving))
-          break;
         if (steps % (100 * look_interval) == 0)
           log.line("    after ",
                    steps,
@@ -142,6 +151,14 @@ namespace Voussoir
                    " mm in a period of ",
                    period,
                    " s");
+
+        // critical damping of what still moves
+        const double wanted = std::min(2. * frequency, 1. / time_step);
+        if (std::abs(wanted - mass_coefficient) > 0.2 * mass_coefficient)
+          {
+            mass_coefficient = wanted;
+            scheme = std::make_unique<CentralDifference>(make_scheme(wanted));
+          }
       }
     throw UserError("The static state has not come to rest within 50000 steps: "
                     "under the static loads a block slides or falls, or cracks "

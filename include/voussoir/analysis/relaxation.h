@@ -9,10 +9,11 @@ namespace Voussoir
 {
   /**
    * Equilibrium with contact by damped motion: the explicit steps of the run,
-   * with the contact of the run, first undamped for a quarter of a period,
-   * which measures the period, then with the critical damping of that period
-   * until nothing moves any more. No stiffness is assembled, so joints may open
-   * and slip as they like.
+   * with the contact of the run and, until nothing moves any more, with the
+   * critical damping of the frequency that Rayleigh's quotient of the velocity
+   * gives: high as long as many modes move, then that of the slowest (adaptive
+   * dynamic relaxation, Underwood 1983). No stiffness is assembled, so joints
+   * may open and slip as they like.
    */
   class Relaxation
   {
@@ -48,9 +49,15 @@ namespace Voussoir
     CentralDifference
     make_scheme(const double mass_coefficient);
 
-    /** Undamped until the kinetic energy stops growing; returns that time. */
+    /**
+     * Root of v K v / (v M v) [rad/s], where K v is what the damped motion
+     * makes of its own change: M a' + c M a + K v = 0.
+     *
+     * @param velocity of the last three steps
+     */
     double
-    quarter_period(State &state, unsigned int &steps);
+    natural_frequency(const std::array<Vector, 3> &velocity,
+                      const double                 mass_coefficient) const;
 
     const Discretization &discretization;
     InternalForce        &internal_force;

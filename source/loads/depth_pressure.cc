@@ -1,0 +1,154 @@
+#include <voussoir/base/error.h>
+#include <voussoir/loads/face_forces.h>
+#include <voussoir/loads/load.h>
+
+#include <deal.II/base/numbers.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** A pressure that grows with the depth below a level. */
+    class DepthPressure : public Load
+    {
+    public:
+      /** @param surface what lies at the level */
+      explicit DepthPressure(const std::string &surface)
+        : surface(surface)
+      {}
+
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Face sets",
+                          face_sets,
+                          "Face sets it presses on, at right angles to them: "
+                          "one side of the dam, and the canyon by choice.");
+        prm.add_parameter("Level",
+                          level,
+                          "Elevation of the " + surface +
+                            " [m]; must be given.");
+      }
+
+      bool
+      steady() const override
+      {
+        return true;
+      }
+
+      void
+      prepare(const LoadedModel &model,
+              NodalTerms &,
+              const std::string &place) override
+      {
+        if (model.file.given(place + "/Level").empty())
+          throw UserError("Section \"" + place +
+                          "\" has no \"Level\"; give the elevation of the " +
+                          surface + " [m].");
+        forces =
+          depth_pressure_forces(model.discretization,
+                                split_list(face_sets),
+                                "\"Face sets\" in section \"" + place + "\"",
+                                level,
+                                gradient());
+      }
+
+      void
+      add_steady_force(Vector &force) const override
+      {
+        add_to(force, forces);
+      }
+
+    private:
+      /** Growth of the pressure with depth [Pa/m]. */
+      virtual double
+      gradient() const = 0;
+
+      const std::string       surface;
+      std::string             face_sets = "upstream face";
+      double                  level     = 0.;
+      std::vector<NodalForce> forces;
+    };
+
+
+    /** p = rho g h. */
+    class Water : public DepthPressure
+    {
+    public:
+      Water()
+        : DepthPressure("water surface")
+      {}
+
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        DepthPressure::declare_parameters(prm);
+        prm.add_parameter("Density",
+                          density,
+                          "Of the water [kg/m3].",
+                          Patterns::Double(0.));
+        prm.add_parameter("Gravity",
+                          gravity,
+                          "Acceleration of gravity [m/s2].",
+                          Patterns::Double(0.));
+      }
+
+    private:
+      double
+      gradient() const override
+      {
+        return density * gravity;
+      }
+
+      double density = 1000., gravity = 9.81;
+    };
+
+    const Registry<Load>::Add<Water>
+      registered_water("water",
+                       "Hydrostatic pressure of the reservoir or tailwater.");
+
+
+    /** Rankine's active pressure of a soil without cohesion,
+     *  p = gamma' h tan^2(45 deg - phi/2). */
+    class Silt : public DepthPressure
+    {
+    public:
+      Silt()
+        : DepthPressure("top of the silt")
+      {}
+
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        DepthPressure::declare_parameters(prm);
+        prm.add_parameter(
+          "Buoyant unit weight",
+          unit_weight,
+          "Weight of the silt under water less its buoyancy [N/m3]; 8e3 to "
+          "11e3. The water in it belongs to the load of the water.",
+          Patterns::Double(0.));
+        prm.add_parameter("Friction angle",
+                          friction_angle,
+                          "Of the silt [degrees]; 10 to 20, 0 for a liquid.",
+                          Patterns::Double(0., 60.));
+      }
+
+    private:
+      double
+      gradient() const override
+      {
+        const double root =
+          std::tan((45. - 0.5 * friction_angle) * numbers::PI / 180.);
+        return unit_weight * root * root;
+      }
+
+      double unit_weight = 9e3, friction_angle = 15.;
+    };
+
+    const Registry<Load>::Add<Silt>
+      registered_silt("silt",
+                      "Active pressure of the sediment before the dam.");
+  } // namespace
+} // namespace Voussoir

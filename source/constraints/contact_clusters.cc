@@ -1,10 +1,9 @@
 #include <voussoir/base/error.h>
 #include <voussoir/constraints/contact_clusters.h>
+#include <voussoir/fem/face_nodes.h>
 #include <voussoir/mesh/interfaces.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 
 #include <algorithm>
 #include <array>
@@ -122,38 +121,27 @@ namespace Voussoir
     records_of_owned_faces(const Discretization           &discretization,
                            const std::vector<std::string> &interfaces)
     {
-      const auto     &scalar = discretization.fe.base_element(0);
-      FEFaceValues<3> values(discretization.mapping,
-                             scalar,
-                             QGaussLobatto<2>(discretization.degree + 1),
-                             update_values | update_quadrature_points |
-                               update_normal_vectors | update_JxW_values);
-
+      FaceNodes           face_nodes(discretization.mapping,
+                           discretization.fe.base_element(0));
       std::vector<Record> records;
       for (unsigned int i = 0; i < interfaces.size(); ++i)
         for (const unsigned int side : {0, 1})
           discretization.grid.for_each_face(
             interfaces[i] + (side == 0 ? "" : other_side),
             [&](const auto &cell, const unsigned int face) {
-              values.reinit(cell, face);
               const auto nodes =
                 discretization.cell_nodes(discretization.dof_cell(cell));
-              for (unsigned int j = 0; j < nodes.size(); ++j)
-                if (scalar.has_support_on_face(j, face))
-                  // the point of the quadrature that is this node
-                  for (const unsigned int q : values.quadrature_point_indices())
-                    if (values.shape_value(j, q) > 0.5)
-                      records.push_back(
-                        {values.quadrature_point(q),
-                         cell->face(face)->center(),
-                         values.JxW(q) * values.normal_vector(q),
-                         {Grid::global_key(cell), j},
-                         nodes[j],
-                         i,
-                         side,
-                         face,
-                         discretization.hanging_nodes.is_constrained(
-                           3 * nodes[j])});
+              for (const FaceNode &node : face_nodes.of(cell, face))
+                records.push_back({node.position,
+                                   cell->face(face)->center(),
+                                   node.area * node.normal,
+                                   {Grid::global_key(cell), node.number},
+                                   nodes[node.number],
+                                   i,
+                                   side,
+                                   face,
+                                   discretization.hanging_nodes.is_constrained(
+                                     3 * nodes[node.number])});
             });
       return records;
     }

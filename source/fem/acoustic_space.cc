@@ -1,4 +1,5 @@
 #include <voussoir/fem/acoustic_space.h>
+#include <voussoir/fem/face_nodes.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -92,10 +93,7 @@ namespace Voussoir
   Vector
   AcousticSpace::areas(const FacePredicate &wanted) const
   {
-    FEFaceValues<3>                      values(mapping,
-                           fe,
-                           QGaussLobatto<2>(fe.degree + 1),
-                           update_values | update_JxW_values);
+    FaceNodes                            face_nodes(mapping, fe);
     Vector                               full = create_ghosted_vector();
     std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
     for (const auto &cell : dof_handler.active_cell_iterators())
@@ -103,13 +101,9 @@ namespace Voussoir
         for (const unsigned int face : cell->face_indices())
           if (cell->at_boundary(face) && wanted(cell, face))
             {
-              values.reinit(cell, face);
               cell->get_dof_indices(dofs);
-              for (const unsigned int j : values.dof_indices())
-                if (fe.has_support_on_face(j, face))
-                  for (const unsigned int q : values.quadrature_point_indices())
-                    if (values.shape_value(j, q) > 0.5)
-                      full(dofs[j]) += values.JxW(q);
+              for (const FaceNode &node : face_nodes.of(cell, face))
+                full(dofs[node.number]) += node.area;
             }
     full.compress(VectorOperation::add);
     Vector result = create_vector();

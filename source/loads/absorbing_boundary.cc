@@ -1,9 +1,10 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/fem/face_nodes.h>
 #include <voussoir/loads/absorbing_boundary.h>
 
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 
 #include <set>
 
@@ -161,103 +162,72 @@ namespace Voussoir
         static_cast<Quadrature<2>>(
           QGaussLobatto<2>(discretization.degree + 1)) :
         static_cast<Quadrature<2>>(QGauss<2>(discretization.degree + 1));
-    const auto flags = update_values | update_quadrature_points |
-                       update_normal_vectors | update_JxW_values;
-    FEFaceValues<3> at_nodes(discretization.mapping,
-                             scalar,
-                             QGaussLobatto<2>(discretization.degree + 1),
-                             flags);
+    FaceNodes       face_nodes(discretization.mapping, scalar);
     FEFaceValues<3> at_points(discretization.mapping,
                               scalar,
                               traction_points,
-                              flags);
+                              update_values | update_quadrature_points |
+                                update_normal_vectors | update_JxW_values);
 
     struct Stiffness
     {
-      double spring[6], dashpot[6];
+      NodalTerms::Matrix spring, dashpot;
     };
-    struct Traction
-    {
-      double point[3], area[3], middle;
-    };
+    using Traction = BoundaryGeometry::Contribution;
     std::vector<std::pair<types::global_dof_index, Stiffness>> stiffnesses;
     std::vector<std::pair<types::global_dof_index, Traction>>  tractions;
     std::set<unsigned int>                                     touching;
     Point<3> lower(1e300, 1e300, 1e300), upper(-1e300, -1e300, -1e300);
 
     const auto visit = [&](const auto &cell, const unsigned int face) {
-      const unsigned int     material = material_of_cell(cell);
-      const ElasticConstants rock = materials[material]->elastic_constants();
-      const auto             coefficients =
+      const unsigned int material = material_of_cell(cell);
+      const auto         coefficients =
         BoundaryCoefficients::of(parameters.absorbing_type,
                                  parameters.coefficients,
-                                 rock);
-      const auto nodes =
-        discretization.cell_nodes(discretization.dof_cell(cell));
+                                 materials[material]->elastic_constants());
       touching.insert(material);
 
-      at_nodes.reinit(cell, face);
       at_points.reinit(cell, face);
-      for (unsigned int j = 0; j < nodes.size(); ++j)
-        if (scalar.has_support_on_face(j, face))
+      const auto nodes =
+        discretization.cell_nodes(discretization.dof_cell(cell));
+      for (const auto &[j, x, n, face_area] : face_nodes.of(cell, face))
+        {
+          const double r = parameters.radius > 0. ?
+                             parameters.radius :
+                             x.distance(parameters.source);
+          if (coefficients.normal_spring > 0. && r < 1e-6)
+            throw UserError(
+              "\"Source point\" in section \"Boundaries\" lies on "
+              "the absorbing boundary, where its springs would be "
+              "infinite; move it to the dam, or give a \"Radius\".");
+          for (unsigned int d = 0; d < 3; ++d)
+            {
+              lower[d] = std::min(lower[d], x[d]);
+              upper[d] = std::max(upper[d], x[d]);
+            }
+          const NodalTerms::Matrix normal = symmetrize(outer_product(n, n));
+          const NodalTerms::Matrix tangential =
+            unit_symmetric_tensor<3>() - normal;
           for (const auto &share : discretization.carriers(nodes[j]))
             {
-              for (const unsigned int q : at_nodes.quadrature_point_indices())
-                if (at_nodes.shape_value(j, q) > 0.5)
-                  {
-                    const Tensor<1, 3> n    = at_nodes.normal_vector(q);
-                    const double       area = at_nodes.JxW(q) * share.weight;
-                    const Point<3>    &x    = at_nodes.quadrature_point(q);
-                    const double       r    = parameters.radius > 0. ?
-                                                parameters.radius :
-                                                x.distance(parameters.source);
-                    if (coefficients.normal_spring > 0. && r < 1e-6)
-                      throw UserError(
-                        "\"Source point\" in section \"Boundaries\" lies on "
-                        "the absorbing boundary, where its springs would be "
-                        "infinite; move it to the dam, or give a \"Radius\".");
-                    const double spring_area = r > 0. ? area / r : 0.;
-                    // t I + (n - t) n n^T
-                    NodalTerms::Matrix spring, dashpot;
-                    for (unsigned int d = 0; d < 3; ++d)
-                      for (unsigned int e = d; e < 3; ++e)
-                        {
-                          const double nn = n[d] * n[e];
-                          const double tt = (d == e ? 1. : 0.) - nn;
-                          spring[d][e] =
-                            spring_area * (coefficients.normal_spring * nn +
-                                           coefficients.tangential_spring * tt);
-                          dashpot[d][e] =
-                            area * (coefficients.normal_dashpot * nn +
-                                    coefficients.tangential_dashpot * tt);
-                        }
-                    Stiffness record;
-                    for (unsigned int i = 0; i < 6; ++i)
-                      {
-                        record.spring[i]  = spring.access_raw_entry(i);
-                        record.dashpot[i] = dashpot.access_raw_entry(i);
-                      }
-                    stiffnesses.emplace_back(share.node, record);
-                    for (unsigned int d = 0; d < 3; ++d)
-                      {
-                        lower[d] = std::min(lower[d], x[d]);
-                        upper[d] = std::max(upper[d], x[d]);
-                      }
-                  }
+              const double area        = face_area * share.weight;
+              const double spring_area = r > 0. ? area / r : 0.;
+              stiffnesses.push_back(
+                {share.node,
+                 {spring_area * (coefficients.normal_spring * normal +
+                                 coefficients.tangential_spring * tangential),
+                  area * (coefficients.normal_dashpot * normal +
+                          coefficients.tangential_dashpot * tangential)}});
               for (const unsigned int q : at_points.quadrature_point_indices())
-                {
-                  Traction record;
-                  record.middle = cell->face(face)->center()[2];
-                  for (unsigned int d = 0; d < 3; ++d)
-                    {
-                      record.point[d] = at_points.quadrature_point(q)[d];
-                      record.area[d] =
-                        share.weight * at_points.shape_value(j, q) *
-                        at_points.normal_vector(q)[d] * at_points.JxW(q);
-                    }
-                  tractions.emplace_back(share.node, record);
-                }
+                tractions.push_back(
+                  {share.node,
+                   {0,
+                    at_points.quadrature_point(q),
+                    share.weight * at_points.shape_value(j, q) *
+                      at_points.normal_vector(q) * at_points.JxW(q),
+                    cell->face(face)->center()[2]}});
             }
+        }
     };
     for (const std::string &set : split_list(parameters.absorbing))
       grid.for_each_face(set, visit);
@@ -275,34 +245,30 @@ namespace Voussoir
             springs.emplace_back();
             dashpots.emplace_back();
           }
-        for (unsigned int i = 0; i < 6; ++i)
-          {
-            springs[place->second].access_raw_entry(i) += record.spring[i];
-            dashpots[place->second].access_raw_entry(i) += record.dashpot[i];
-          }
+        springs[place->second] += record.spring;
+        dashpots[place->second] += record.dashpot;
       }
     for (unsigned int i = 0; i < slots.size(); ++i)
       {
         terms.springs[slots[i]] += springs[i];
         terms.dashpots[slots[i]] += dashpots[i];
       }
-    for (const auto &[node, record] : discretization.send_to_owners(tractions))
-      boundary.contributions.push_back(
-        {boundary_number.at(node),
-         Point<3>(record.point[0], record.point[1], record.point[2]),
-         Tensor<1, 3>({record.area[0], record.area[1], record.area[2]}),
-         record.middle});
+    for (auto [node, contribution] : discretization.send_to_owners(tractions))
+      {
+        contribution.node = boundary_number.at(node);
+        boundary.contributions.push_back(contribution);
+      }
 
     for (unsigned int d = 0; d < 3; ++d)
       {
         box.first[d]  = Utilities::MPI::min(lower[d], grid.communicator());
         box.second[d] = Utilities::MPI::max(upper[d], grid.communicator());
       }
-    for (const auto &others :
-         Utilities::MPI::all_gather(grid.communicator(),
-                                    std::vector<unsigned int>(touching.begin(),
-                                                              touching.end())))
-      touching.insert(others.begin(), others.end());
+    const std::vector<unsigned int> touching_here(touching.begin(),
+                                                  touching.end());
+    for (const auto material :
+         join_over_ranks(touching_here, grid.communicator()))
+      touching.insert(material);
     touching_materials.assign(touching.begin(), touching.end());
 
     // Levels of the sides, from the absorbing faces if they reach around the
@@ -330,18 +296,7 @@ namespace Voussoir
           for (const unsigned int face : cell->face_indices())
             if (cell->at_boundary(face))
               collect(cell, face);
-    std::vector<double> packed;
-    for (const SideFace &side : sides)
-      packed.insert(packed.end(),
-                    {side.lower, side.upper, side.area, double(side.material)});
-    sides.clear();
-    for (const auto &part :
-         Utilities::MPI::all_gather(grid.communicator(), packed))
-      for (unsigned int i = 0; i < part.size(); i += 4)
-        sides.push_back({part[i],
-                         part[i + 1],
-                         part[i + 2],
-                         static_cast<unsigned int>(part[i + 3])});
+    sides = join_over_ranks(sides, grid.communicator());
   }
 
 

@@ -1,9 +1,8 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/fem/face_nodes.h>
 #include <voussoir/loads/added_mass.h>
-
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 
 namespace Voussoir
 {
@@ -30,12 +29,8 @@ namespace Voussoir
     facets_of(const Discretization           &discretization,
               const std::vector<std::string> &sets)
     {
-      const auto        &scalar = discretization.fe.base_element(0);
-      FEFaceValues<3>    values(discretization.mapping,
-                             scalar,
-                             QGaussLobatto<2>(discretization.degree + 1),
-                             update_values | update_quadrature_points |
-                               update_normal_vectors | update_JxW_values);
+      FaceNodes          face_nodes(discretization.mapping,
+                           discretization.fe.base_element(0));
       std::vector<Facet> facets;
       for (const std::string &set : sets)
         {
@@ -43,7 +38,6 @@ namespace Voussoir
                                              "\"Face sets\" in " + section);
           discretization.grid.for_each_face(
             set, [&](const auto &cell, const unsigned int face) {
-              values.reinit(cell, face);
               const auto nodes =
                 discretization.cell_nodes(discretization.dof_cell(cell));
               double begin = 1e300, end = -1e300;
@@ -52,20 +46,17 @@ namespace Voussoir
                   begin = std::min(begin, cell->face(face)->vertex(v)[0]);
                   end   = std::max(end, cell->face(face)->vertex(v)[0]);
                 }
-              for (unsigned int j = 0; j < nodes.size(); ++j)
-                if (scalar.has_support_on_face(j, face))
-                  for (const unsigned int q : values.quadrature_point_indices())
-                    if (values.shape_value(j, q) > 0.5)
-                      for (const auto &share :
-                           discretization.carriers(nodes[j]))
-                        facets.push_back({share.node,
-                                          share.weight,
-                                          values.quadrature_point(q)[0],
-                                          values.quadrature_point(q)[2],
-                                          values.normal_vector(q),
-                                          values.JxW(q),
-                                          begin,
-                                          end});
+              for (const FaceNode &node : face_nodes.of(cell, face))
+                for (const auto &share :
+                     discretization.carriers(nodes[node.number]))
+                  facets.push_back({share.node,
+                                    share.weight,
+                                    node.position[0],
+                                    node.position[2],
+                                    node.normal,
+                                    node.area,
+                                    begin,
+                                    end});
             });
         }
       return facets;
@@ -81,8 +72,7 @@ namespace Voussoir
         std::vector<std::pair<double, double>> mine;
         for (const Facet &facet : facets)
           mine.emplace_back(facet.x, facet.z);
-        for (const auto &part : Utilities::MPI::all_gather(communicator, mine))
-          points.insert(points.end(), part.begin(), part.end());
+        points = join_over_ranks(mine, communicator);
         std::sort(points.begin(), points.end());
         points.erase(std::unique(points.begin(), points.end()), points.end());
       }
@@ -157,12 +147,8 @@ namespace Voussoir
     const MPI_Comm           communicator = discretization.grid.communicator();
     const Bed                bed(facets, communicator);
 
-    struct Record
-    {
-      double mass[6];
-    };
-    std::vector<std::pair<types::global_dof_index, Record>> records;
-    double                                                  total = 0.;
+    std::vector<std::pair<types::global_dof_index, NodalTerms::Matrix>> records;
+    double total = 0.;
     for (const Facet &facet : facets)
       if (facet.z < parameters.level)
         {
@@ -171,12 +157,9 @@ namespace Voussoir
           const double h    = parameters.level - facet.z;
           const double mass = facet.weight * parameters.reduction * 7. / 8. *
                               density * std::sqrt(H * h) * facet.area;
-          const NodalTerms::Matrix tensor =
-            mass * direction_of(facet.normal, parameters.direction);
-          Record record;
-          for (unsigned int i = 0; i < 6; ++i)
-            record.mass[i] = tensor.access_raw_entry(i);
-          records.emplace_back(facet.node, record);
+          records.emplace_back(facet.node,
+                               mass * direction_of(facet.normal,
+                                                   parameters.direction));
           total += mass;
         }
     total = Utilities::MPI::sum(total, communicator);
@@ -184,12 +167,8 @@ namespace Voussoir
       throw UserError("\"Level\" in " + section +
                       " lies below the faces with water on them; give the "
                       "height z of the water's surface.");
-    for (const auto &[node, record] : discretization.send_to_owners(records))
-      {
-        auto &tensor = terms.added_mass[terms.add_node(node)];
-        for (unsigned int i = 0; i < 6; ++i)
-          tensor.access_raw_entry(i) += record.mass[i];
-      }
+    for (const auto &[node, mass] : discretization.send_to_owners(records))
+      terms.added_mass[terms.add_node(node)] += mass;
     return total;
   }
 } // namespace Voussoir

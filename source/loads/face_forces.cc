@@ -84,11 +84,7 @@ namespace Voussoir
                             QTrapezoid<2>(),
                             update_quadrature_points);
 
-    struct Force
-    {
-      double components[3];
-    };
-    std::vector<std::pair<types::global_dof_index, Force>> forces;
+    std::vector<std::pair<types::global_dof_index, Tensor<1, 3>>> forces;
 
     const auto add_face = [&](const FEFaceValues<3> &values,
                               const auto            &cell,
@@ -106,10 +102,7 @@ namespace Voussoir
             for (const unsigned int q : values.quadrature_point_indices())
               sum += values.shape_value(j, q) * values.JxW(q) * tractions[q];
             for (const auto &share : discretization.carriers(nodes[j]))
-              forces.push_back({share.node,
-                                {{share.weight * sum[0],
-                                  share.weight * sum[1],
-                                  share.weight * sum[2]}}});
+              forces.emplace_back(share.node, share.weight * sum);
           }
     };
 
@@ -145,7 +138,7 @@ namespace Voussoir
       }
     std::vector<NodalForce> result;
     for (const auto &[node, force] : discretization.send_to_owners(forces))
-      result.push_back({node, Tensor<1, 3>(force.components)});
+      result.push_back({node, force});
     return result;
   }
 

@@ -1,11 +1,11 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/fem/face_nodes.h>
 #include <voussoir/fem/lanczos.h>
 #include <voussoir/loads/reservoir.h>
 #include <voussoir/mesh/reservoir_mesh.h>
 
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 #include <deal.II/numerics/data_out.h>
 #include <deal.II/numerics/rtree.h>
 
@@ -53,41 +53,31 @@ namespace Voussoir
     {
       explicit WetNodes(const AcousticSpace &space)
       {
-        FEFaceValues<3>                      values(space.mapping,
-                               space.fe,
-                               QGaussLobatto<2>(space.fe.degree + 1),
-                               update_values | update_quadrature_points);
+        FaceNodes face_nodes(space.mapping, space.fe);
         std::vector<types::global_dof_index> dofs(space.fe.n_dofs_per_cell());
-        std::vector<double>                  mine;
+        std::vector<std::pair<types::global_dof_index, Point<3>>> mine;
         double edge = std::numeric_limits<double>::max();
         for (const auto &cell : space.dof_handler.active_cell_iterators())
           if (cell->is_locally_owned())
             for (const unsigned int face : cell->face_indices())
               if (space.grid.in_face_set(cell, face, wet_wall))
                 {
-                  values.reinit(cell, face);
                   cell->get_dof_indices(dofs);
-                  for (const unsigned int j : values.dof_indices())
-                    for (const unsigned int q :
-                         values.quadrature_point_indices())
-                      if (values.shape_value(j, q) > 0.5)
-                        {
-                          const Point<3> &x = values.quadrature_point(q);
-                          mine.insert(mine.end(),
-                                      {double(dofs[j]), x[0], x[1], x[2]});
-                        }
+                  for (const auto &[j, x, normal, area] :
+                       face_nodes.of(cell, face))
+                    mine.emplace_back(dofs[j], x);
                   for (unsigned int line = 0; line < 4; ++line)
                     edge =
                       std::min(edge, cell->face(face)->line(line)->diameter());
                 }
         const MPI_Comm communicator = space.grid.communicator();
         tolerance = coincidence * Utilities::MPI::min(edge, communicator);
-        for (const auto &part : Utilities::MPI::all_gather(communicator, mine))
-          for (std::size_t i = 0; i < part.size(); i += 4)
-            {
-              unknowns.push_back(part[i]);
-              positions.emplace_back(part[i + 1], part[i + 2], part[i + 3]);
-            }
+        for (const auto &[unknown, position] :
+             join_over_ranks(mine, communicator))
+          {
+            unknowns.push_back(unknown);
+            positions.push_back(position);
+          }
       }
 
       double                               tolerance;
@@ -175,63 +165,45 @@ namespace Voussoir
     const WetNodes wet(space);
     const auto     tree = pack_rtree_of_indices(wet.positions);
 
-    const auto     &scalar = solid.fe.base_element(0);
-    FEFaceValues<3> values(solid.mapping,
-                           scalar,
-                           QGaussLobatto<2>(solid.degree + 1),
-                           update_values | update_quadrature_points |
-                             update_normal_vectors | update_JxW_values);
+    FaceNodes face_nodes(solid.mapping, solid.fe.base_element(0));
     struct Record
     {
       types::global_dof_index water;
-      double                  area[3];
+      Tensor<1, 3>            area;
     };
     std::vector<std::pair<types::global_dof_index, Record>> records;
-    std::vector<double>                                     lonely;
+    std::vector<Point<3>>                                   lonely;
     solid.grid.for_each_face(
       wet_wall, [&](const auto &cell, const unsigned int face) {
-        values.reinit(cell, face);
         const auto nodes = solid.cell_nodes(solid.dof_cell(cell));
-        for (unsigned int j = 0; j < nodes.size(); ++j)
-          if (scalar.has_support_on_face(j, face))
-            for (const unsigned int q : values.quadrature_point_indices())
-              if (values.shape_value(j, q) > 0.5)
-                {
-                  const Point<3>          &x = values.quadrature_point(q);
-                  std::vector<std::size_t> nearest;
-                  tree.query(boost::geometry::index::nearest(x, 1),
-                             std::back_inserter(nearest));
-                  if (x.distance(wet.positions[nearest[0]]) > wet.tolerance)
-                    {
-                      lonely.assign({x[0], x[1], x[2]});
-                      continue;
-                    }
-                  Record record;
-                  record.water = wet.unknowns[nearest[0]];
-                  for (unsigned int d = 0; d < 3; ++d)
-                    record.area[d] =
-                      -values.JxW(q) * values.normal_vector(q)[d];
-                  records.emplace_back(nodes[j], record);
-                }
+        for (const auto &[j, x, normal, area] : face_nodes.of(cell, face))
+          {
+            std::vector<std::size_t> nearest;
+            tree.query(boost::geometry::index::nearest(x, 1),
+                       std::back_inserter(nearest));
+            if (x.distance(wet.positions[nearest[0]]) > wet.tolerance)
+              lonely.assign(1, x);
+            else
+              records.push_back(
+                {nodes[j], {wet.unknowns[nearest[0]], -area * normal}});
+          }
       });
-    for (const auto &x :
-         Utilities::MPI::all_gather(space.grid.communicator(), lonely))
-      if (!x.empty())
-        {
-          std::ostringstream text;
-          text << "At (" << Point<3>(x[0], x[1], x[2])
-               << ") m a node of the solid on the wall of the reservoir meets "
-                  "no node of the water; keep \"Local refinement\" in section "
-                  "\"Mesh\" away from the water.";
-          throw UserError(text.str());
-        }
+    for (const Point<3> &x : join_over_ranks(lonely, space.grid.communicator()))
+      {
+        std::ostringstream text;
+        text << "At (" << x
+             << ") m a node of the solid on the wall of the reservoir meets "
+                "no node of the water; keep \"Local refinement\" in section "
+                "\"Mesh\" away from the water.";
+        throw UserError(text.str());
+      }
 
     std::map<std::pair<unsigned int, types::global_dof_index>, Tensor<1, 3>>
              area_of_pair;
     IndexSet unknowns(space.owned_dofs.size());
     for (const auto &[node, record] : solid.send_to_owners(records))
       {
-        area_of_pair[{node, record.water}] += Tensor<1, 3>(record.area);
+        area_of_pair[{node, record.water}] += record.area;
         unknowns.add_index(record.water);
       }
     flux.reinit(space.owned_dofs, unknowns, space.grid.communicator());

@@ -1,7 +1,6 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/mpi.h>
 #include <voussoir/mesh/face_distance.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <algorithm>
 
@@ -43,26 +42,35 @@ namespace Voussoir
   } // namespace
 
 
-  FaceDistance::FaceDistance(const Grid                     &grid,
-                             const std::vector<std::string> &sets,
-                             const std::string              &place)
+  std::vector<FaceCorners>
+  gather_faces(const Grid                     &grid,
+               const std::vector<std::string> &sets,
+               const std::string              &place)
   {
     if (sets.empty())
       throw UserError(place + " is empty; name the face sets.");
-    std::vector<Point<3>> own;
+    std::vector<FaceCorners> faces;
     for (const std::string &set : sets)
       {
         grid.check_face_set(set, place);
         grid.for_each_face(set, [&](const auto &cell, const unsigned int f) {
-          for (const unsigned int v : {0, 1, 3, 2})
-            own.push_back(cell->face(f)->vertex(v));
+          const auto face = cell->face(f);
+          faces.push_back({{face->vertex(0),
+                            face->vertex(1),
+                            face->vertex(2),
+                            face->vertex(3)}});
         });
       }
-    for (const auto &corners :
-         Utilities::MPI::all_gather(grid.communicator(), own))
-      for (auto v = corners.begin(); v != corners.end(); v += 4)
-        faces.push_back(
-          {{v[0], v[1], v[2], v[3], (v[0] + v[1] + v[2] + v[3]) / 4.}});
+    return join_over_ranks(faces, grid.communicator());
+  }
+
+
+  FaceDistance::FaceDistance(const Grid                     &grid,
+                             const std::vector<std::string> &sets,
+                             const std::string              &place)
+  {
+    for (const auto &[a, b, c, d] : gather_faces(grid, sets, place))
+      faces.push_back({{a, b, d, c, (a + b + d + c) / 4.}});
     if (faces.empty())
       throw UserError(place + " names face sets without faces.");
     add_box(0, faces.size());

@@ -168,7 +168,7 @@ namespace Voussoir
       {
         const auto  requests = parse_sections(sections_text, place);
         const Grid &grid     = model.discretization.grid;
-        const std::array<std::vector<std::array<Point<3>, 4>>, 2> faces{
+        const std::array<std::vector<FaceCorners>, 2> faces{
           {gather_faces(grid,
                         split_list(upstream_sets),
                         "\"Upstream\" in section \"Output/section forces\""),

@@ -11,12 +11,11 @@ namespace Voussoir
 
   namespace
   {
-    using Corners = std::array<Point<3>, 4>;
 
     /** The bilinear surface between four corners in lexicographic order. */
     struct Surface
     {
-      explicit Surface(const Corners &c)
+      explicit Surface(const FaceCorners &c)
         : origin(c[0])
         , s(c[1] - c[0])
         , t(c[2] - c[0])
@@ -151,7 +150,7 @@ namespace Voussoir
       const Point<3>       end = begin + length * direction;
       const BoundingBox<3> around(
         std::vector<Point<3>>{begin, end, begin, end});
-      std::vector<double> own;
+      std::vector<double> own{0., length};
       for (const auto &cell :
            discretization.dof_handler.active_cell_iterators())
         if (cell->is_locally_owned())
@@ -170,20 +169,17 @@ namespace Voussoir
             for (const unsigned int f : cell->face_indices())
               {
                 const auto    face = cell->face(f);
-                const Surface surface(Corners{{face->vertex(0),
-                                               face->vertex(1),
-                                               face->vertex(2),
-                                               face->vertex(3)}});
+                const Surface surface(FaceCorners{{face->vertex(0),
+                                                   face->vertex(1),
+                                                   face->vertex(2),
+                                                   face->vertex(3)}});
                 const Hit     hit = pierce(surface, begin, direction);
                 if (hit.distance > 1e-6 * length &&
                     hit.distance < (1. - 1e-6) * length)
                   own.push_back(hit.distance);
               }
           }
-      std::vector<double> breaks{0., length};
-      for (const auto &list :
-           Utilities::MPI::all_gather(discretization.grid.communicator(), own))
-        breaks.insert(breaks.end(), list.begin(), list.end());
+      auto breaks = join_over_ranks(own, discretization.grid.communicator());
       std::sort(breaks.begin(), breaks.end());
       breaks.erase(std::unique(breaks.begin(),
                                breaks.end(),
@@ -232,35 +228,10 @@ namespace Voussoir
   }
 
 
-  std::vector<std::array<Point<3>, 4>>
-  gather_faces(const Grid                     &grid,
-               const std::vector<std::string> &sets,
-               const std::string              &place)
-  {
-    if (sets.empty())
-      throw UserError(place + " is empty; name the face sets.");
-    std::vector<Point<3>> own;
-    for (const std::string &set : sets)
-      {
-        grid.check_face_set(set, place);
-        grid.for_each_face(set, [&](const auto &cell, const unsigned int f) {
-          for (unsigned int v = 0; v < 4; ++v)
-            own.push_back(cell->face(f)->vertex(v));
-        });
-      }
-    std::vector<std::array<Point<3>, 4>> faces;
-    for (const auto &list :
-         Utilities::MPI::all_gather(grid.communicator(), own))
-      for (std::size_t i = 0; i < list.size(); i += 4)
-        faces.push_back({{list[i], list[i + 1], list[i + 2], list[i + 3]}});
-    return faces;
-  }
-
-
-  SectionLine::SectionLine(const ObservedModel                       &model,
-                           const SectionRequest                      &request,
-                           const std::array<std::vector<Corners>, 2> &faces,
-                           const std::string                         &place)
+  SectionLine::SectionLine(const ObservedModel  &model,
+                           const SectionRequest &request,
+                           const std::array<std::vector<FaceCorners>, 2> &faces,
+                           const std::string                             &place)
     : name(request.name)
   {
     const auto refuse = [&](const std::string &reason) {
@@ -272,7 +243,7 @@ namespace Voussoir
 
     // the nearest point; where faces meet in it, the mean of their normals
     double distance = std::numeric_limits<double>::infinity(), size = 0.;
-    for (const Corners &corners : faces[0])
+    for (const FaceCorners &corners : faces[0])
       {
         const Hit hit =
           nearest(Surface(corners), request.position, request.along_river);
@@ -286,7 +257,7 @@ namespace Voussoir
     if (distance > size)
       refuse("lies beside the upstream face; correct its coordinates.");
     Tensor<1, 3> sum;
-    for (const Corners &corners : faces[0])
+    for (const FaceCorners &corners : faces[0])
       {
         const Surface surface(corners);
         const Hit     hit = nearest(surface, upstream, false);
@@ -303,7 +274,7 @@ namespace Voussoir
 
     // outward is away from the downstream face, wherever that is met
     double ahead = std::numeric_limits<double>::infinity(), behind = ahead;
-    for (const Corners &corners : faces[1])
+    for (const FaceCorners &corners : faces[1])
       {
         const double along =
           pierce(Surface(corners), upstream, normal).distance;

@@ -1,6 +1,7 @@
 #include "contact_mesh.h"
 
 #include <voussoir/base/error.h>
+#include <voussoir/base/mpi.h>
 
 #include <algorithm>
 #include <cmath>
@@ -45,9 +46,7 @@ namespace Voussoir
       AssertThrow(discretization.owned_dofs.is_element(3 *
                                                        cluster.nodes.front()),
                   ExcMessage("A cluster is not with its first node."));
-    std::vector<ContactCluster> all;
-    for (const auto &part : Utilities::MPI::all_gather(communicator, mine))
-      all.insert(all.end(), part.begin(), part.end());
+    auto all = join_over_ranks(mine, communicator);
     std::sort(all.begin(), all.end(), lies_before);
     return all;
   }

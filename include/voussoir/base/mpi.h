@@ -16,6 +16,18 @@ namespace Voussoir
     dealii::Utilities::MPI::sum(values, communicator, sums);
     return sums;
   }
+
+  /** The lists of all ranks, one after the other. */
+  template <typename T>
+  std::vector<T>
+  join_over_ranks(const std::vector<T> &list, const MPI_Comm communicator)
+  {
+    std::vector<T> joined;
+    for (const auto &part :
+         dealii::Utilities::MPI::all_gather(communicator, list))
+      joined.insert(joined.end(), part.begin(), part.end());
+    return joined;
+  }
 } // namespace Voussoir
 
 #endif

@@ -33,6 +33,13 @@ namespace Voussoir
     double       lower, upper; // [m]
     double       area;         // [m2]
     unsigned int material;
+
+    template <typename Archive>
+    void
+    serialize(Archive &archive, const unsigned int)
+    {
+      archive &lower &upper &area &material;
+    }
   };
 
   /**

@@ -5,6 +5,16 @@
 
 namespace Voussoir
 {
+  /** In deal.II's order [m]. */
+  using FaceCorners = std::array<dealii::Point<3>, 4>;
+
+  /** All faces of some sets, each checked, of all ranks; @p place names the
+   *  entry. */
+  std::vector<FaceCorners>
+  gather_faces(const Grid                     &grid,
+               const std::vector<std::string> &sets,
+               const std::string              &place);
+
   /**
    * Distance of points to the faces of some face sets, wherever in the mesh
    * both are: all ranks hold all faces, in a search tree.

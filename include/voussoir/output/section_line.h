@@ -1,6 +1,7 @@
 #ifndef voussoir_output_section_line_h
 #define voussoir_output_section_line_h
 
+#include <voussoir/mesh/face_distance.h>
 #include <voussoir/output/stress_points.h>
 
 namespace Voussoir
@@ -31,12 +32,11 @@ namespace Voussoir
    */
   struct SectionLine
   {
-    /** @param faces the upstream and the downstream faces, see below */
-    SectionLine(
-      const ObservedModel  &model,
-      const SectionRequest &request,
-      const std::array<std::vector<std::array<dealii::Point<3>, 4>>, 2> &faces,
-      const std::string                                                 &place);
+    /** @param faces the upstream and the downstream faces */
+    SectionLine(const ObservedModel                           &model,
+                const SectionRequest                          &request,
+                const std::array<std::vector<FaceCorners>, 2> &faces,
+                const std::string                             &place);
 
     std::string          name;
     dealii::Point<3>     upstream; // its point on the face [m]
@@ -54,11 +54,6 @@ namespace Voussoir
     std::vector<LinePoint> points;
   };
 
-  /** Corners of all faces of some sets, each checked, on all ranks. */
-  std::vector<std::array<dealii::Point<3>, 4>>
-  gather_faces(const Grid                     &grid,
-               const std::vector<std::string> &sets,
-               const std::string              &place);
 } // namespace Voussoir
 
 #endif

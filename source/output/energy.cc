@@ -1,8 +1,6 @@
 #include <voussoir/base/mpi.h>
 #include <voussoir/output/energy.h>
 
-#include <iomanip>
-
 namespace Voussoir
 {
   using namespace dealii;
@@ -36,27 +34,20 @@ namespace Voussoir
                       const double       start_time,
                       const bool         restarted)
   {
-    if (Utilities::MPI::this_mpi_process(discretization.grid.communicator()) !=
-        0)
-      return;
-    const std::string        name = folder + "/energy.csv";
-    std::vector<std::string> kept;
-    if (restarted)
-      {
-        std::ifstream old(name);
-        for (std::string line; std::getline(old, line);)
-          if (kept.empty() || std::strtod(line.c_str(), nullptr) <
-                                start_time - 0.5 * scheme.time_step)
-            kept.push_back(line);
-      }
-    file.open(name);
-    file << std::setprecision(9);
-    if (kept.empty())
-      kept.push_back(
-        "time [s],kinetic [J],strain [J],memory [J],damping [J],"
-        "boundary [J],material [J],input [J],constraints [J],unaccounted [J]");
-    for (const std::string &line : kept)
-      file << line << '\n';
+    table.open(discretization.grid.communicator(),
+               folder + "/energy.csv",
+               {"kinetic [J]",
+                "strain [J]",
+                "memory [J]",
+                "damping [J]",
+                "boundary [J]",
+                "material [J]",
+                "input [J]",
+                "constraints [J]",
+                "unaccounted [J]"},
+               scheme.time_step,
+               start_time,
+               restarted);
   }
 
 
@@ -143,12 +134,17 @@ namespace Voussoir
       largest_error =
         std::max(largest_error,
                  std::abs(terms_now.error(initial)) / largest_turnover);
-    if (file.is_open())
-      file << state.time << ',' << terms_now.kinetic << ',' << terms_now.strain
-           << ',' << terms_now.memory << ',' << terms_now.damping << ','
-           << terms_now.boundary << ',' << terms_now.material << ','
-           << terms_now.input << ',' << terms_now.constraints << ','
-           << terms_now.error(initial) << std::endl;
+    table.write(state.time,
+                {terms_now.kinetic,
+                 terms_now.strain,
+                 terms_now.memory,
+                 terms_now.damping,
+                 terms_now.boundary,
+                 terms_now.material,
+                 terms_now.input,
+                 terms_now.constraints,
+                 terms_now.error(initial)});
+    table.flush();
     return terms_now;
   }
 

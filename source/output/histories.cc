@@ -11,6 +11,8 @@ namespace Voussoir
   namespace
   {
     const std::string place = "\"Points\" in section \"Output/histories\"";
+    const std::string reference_place =
+      "\"Relative to\" in section \"Output/histories\"";
 
     /** Displacement, velocity and acceleration of named points, as columns of
      *  histories.csv. */
@@ -45,9 +47,7 @@ namespace Voussoir
       check(const ObservedModel &model) const override
       {
         const auto parsed = parse_points(points_text, place);
-        find_point(reference_name,
-                   parsed,
-                   "\"Relative to\" in section \"Output/histories\"");
+        find_point(reference_name, parsed, reference_place);
         PointWeights(model.discretization, parsed, place);
       }
 
@@ -56,17 +56,11 @@ namespace Voussoir
               const double         start_time,
               const bool           restarted) override
       {
-        points = parse_points(points_text, place);
-        reference =
-          find_point(reference_name,
-                     points,
-                     "\"Relative to\" in section \"Output/histories\"");
+        points    = parse_points(points_text, place);
+        reference = find_point(reference_name, points, reference_place);
         recorder =
           std::make_unique<PointRecorder>(model, points, place, interval);
         largest.assign(points.size(), {{0., 0., 0.}});
-        if (Utilities::MPI::this_mpi_process(
-              model.discretization.grid.communicator()) != 0)
-          return;
         std::vector<std::string> columns;
         for (const NamedPoint &point : points)
           for (unsigned int d = 0; d < 3; ++d)
@@ -76,7 +70,8 @@ namespace Voussoir
                   point.name + ' ' + all_quantities()[k] + ' ' + "xyz"[d] +
                   " [" + std::array<const char *, 3>{{"m", "m/s", "m/s2"}}[k] +
                   ']');
-        table.open(model.folder + "/histories.csv",
+        table.open(model.discretization.grid.communicator(),
+                   model.folder + "/histories.csv",
                    columns,
                    model.time_step,
                    start_time,
@@ -159,11 +154,9 @@ namespace Voussoir
                     if (wanted(k))
                       values.push_back(motion[k][d]);
               }
-            if (table.is_open())
-              table.write(line.time, values);
+            table.write(line.time, values);
           }
-        if (table.is_open())
-          table.flush();
+        table.flush();
       }
 
       std::string points_text, reference_name;

@@ -94,8 +94,6 @@ namespace Voussoir
         safety_of_blocks.assign(blocks.size(), {});
         energies_at_start = energies();
 
-        if (Utilities::MPI::this_mpi_process(communicator) != 0)
-          return;
         std::vector<std::string> columns;
         for (const std::string &name : names)
           for (const char *quantity : {"largest opening [mm]",
@@ -114,7 +112,8 @@ namespace Voussoir
             columns.push_back(point.name + ' ' + quantity);
         for (const SlidingBlock &block : blocks)
           columns.push_back(block.name + " block safety [-]");
-        table.open(observed.folder + "/interfaces.csv",
+        table.open(communicator,
+                   observed.folder + "/interfaces.csv",
                    columns,
                    observed.time_step,
                    start_time,
@@ -327,11 +326,9 @@ namespace Voussoir
                                         line.back());
               }
             last_look = std::max(last_look, times[i]);
-            if (table.is_open())
-              table.write(times[i], line);
+            table.write(times[i], line);
           }
-        if (table.is_open())
-          table.flush();
+        table.flush();
         sums.clear();
         largest_now.clear();
         times.clear();

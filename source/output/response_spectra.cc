@@ -13,6 +13,8 @@ namespace Voussoir
   namespace
   {
     const std::string section = "in section \"Output/response spectra\"";
+    const std::string place   = "\"Points\" " + section;
+    const std::string reference_place = "\"Reference\" " + section;
 
     /** Response spectra of the absolute acceleration of chosen points. */
     class ResponseSpectra : public Observer
@@ -63,11 +65,11 @@ namespace Voussoir
         if (longest <= shortest)
           throw UserError("\"Longest period\" " + section +
                           " must be longer than the \"Shortest period\".");
-        const auto parsed = parse_points(points_text, place());
+        const auto parsed = parse_points(points_text, place);
         if (parsed.empty())
-          throw UserError(place() + " is empty; name at least one point.");
-        find_point(reference_name, parsed, "\"Reference\" " + section);
-        PointWeights(model.discretization, parsed, place());
+          throw UserError(place + " is empty; name at least one point.");
+        find_point(reference_name, parsed, reference_place);
+        PointWeights(model.discretization, parsed, place);
       }
 
       void
@@ -75,14 +77,13 @@ namespace Voussoir
       {
         folder       = model.folder;
         communicator = model.discretization.grid.communicator();
-        points       = parse_points(points_text, place());
-        reference =
-          find_point(reference_name, points, "\"Reference\" " + section);
+        points       = parse_points(points_text, place);
+        reference    = find_point(reference_name, points, reference_place);
         sample_step =
           model.time_step *
           std::max(1., std::floor(interval / model.time_step + 1e-9));
         recorder =
-          std::make_unique<PointRecorder>(model, points, place(), sample_step);
+          std::make_unique<PointRecorder>(model, points, place, sample_step);
         for (const std::string &component : split_list(components))
           directions.push_back(component[0] - 'x');
         accelerations.resize(points.size() * directions.size());
@@ -145,12 +146,6 @@ namespace Voussoir
       }
 
     private:
-      static std::string
-      place()
-      {
-        return "\"Points\" " + section;
-      }
-
       void
       collect()
       {

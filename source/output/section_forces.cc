@@ -78,14 +78,13 @@ namespace Voussoir
                        -std::numeric_limits<double>::max());
         smallest.assign(n_quantities * lines.size(),
                         std::numeric_limits<double>::max());
-        if (Utilities::MPI::this_mpi_process(communicator) != 0)
-          return;
         std::vector<std::string> columns;
         for (const SectionLine &line : lines)
           for (const Quantity &quantity : quantities)
             columns.push_back(line.name + ' ' + quantity.name + " [" +
                               quantity.unit + ']');
-        table.open(model.folder + "/section_forces.csv",
+        table.open(communicator,
+                   model.folder + "/section_forces.csv",
                    columns,
                    model.time_step,
                    start_time,
@@ -196,11 +195,9 @@ namespace Voussoir
                 largest[k]  = std::max(largest[k], values[k]);
                 smallest[k] = std::min(smallest[k], values[k]);
               }
-            if (table.is_open())
-              table.write(times[i], values);
+            table.write(times[i], values);
           }
-        if (table.is_open())
-          table.flush();
+        table.flush();
         shares.clear();
         times.clear();
       }

@@ -5,12 +5,15 @@
 namespace Voussoir
 {
   void
-  TimeTable::open(const std::string              &filename,
+  TimeTable::open(const MPI_Comm                  communicator,
+                  const std::string              &filename,
                   const std::vector<std::string> &columns,
                   const double                    time_step,
                   const double                    start_time,
                   const bool                      restarted)
   {
+    if (dealii::Utilities::MPI::this_mpi_process(communicator) != 0)
+      return;
     std::vector<std::string> lines;
     if (restarted)
       {
@@ -34,16 +37,11 @@ namespace Voussoir
   }
 
 
-  bool
-  TimeTable::is_open() const
-  {
-    return file.is_open();
-  }
-
-
   void
   TimeTable::write(const double time, const std::vector<double> &values)
   {
+    if (!file.is_open())
+      return;
     file << time;
     for (const double value : values)
       file << ',' << value;

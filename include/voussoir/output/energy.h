@@ -1,11 +1,10 @@
 #ifndef voussoir_output_energy_h
 #define voussoir_output_energy_h
 
+#include <voussoir/output/table.h>
 #include <voussoir/time/central_difference.h>
 
 #include <nlohmann/json.hpp>
-
-#include <fstream>
 
 namespace Voussoir
 {
@@ -100,13 +99,13 @@ namespace Voussoir
     const InitialState      &initial_state;
     const CentralDifference &scheme;
 
-    EnergyTerms   terms_now;
-    double        initial = 0., largest_turnover = 0., largest_error = 0.;
-    double        last_time = 0., last_loss_rate = 0., mass_loss = 0.;
-    double        round_off = 0.;
-    bool          first     = true;
-    Vector        moved, moved_before; // at the step and the one before
-    std::ofstream file;
+    EnergyTerms terms_now;
+    double      initial = 0., largest_turnover = 0., largest_error = 0.;
+    double      last_time = 0., last_loss_rate = 0., mass_loss = 0.;
+    double      round_off = 0.;
+    bool        first     = true;
+    Vector      moved, moved_before; // at the step and the one before
+    TimeTable   table;
   };
 } // namespace Voussoir
 

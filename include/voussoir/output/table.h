@@ -1,6 +1,8 @@
 #ifndef voussoir_output_table_h
 #define voussoir_output_table_h
 
+#include <deal.II/base/mpi.h>
+
 #include <fstream>
 #include <string>
 #include <vector>
@@ -8,7 +10,7 @@
 namespace Voussoir
 {
   /** A file of comma-separated values over time, with the time in the first
-   *  column; of use on the first rank only. */
+   *  column. The first rank writes it, what the others say is ignored. */
   class TimeTable
   {
   public:
@@ -17,14 +19,12 @@ namespace Voussoir
      * @param start_time of a run that goes on: lines from here on come again
      */
     void
-    open(const std::string              &filename,
+    open(const MPI_Comm                  communicator,
+         const std::string              &filename,
          const std::vector<std::string> &columns,
          const double                    time_step,
          const double                    start_time,
          const bool                      restarted);
-
-    bool
-    is_open() const;
 
     void
     write(const double time, const std::vector<double> &values);

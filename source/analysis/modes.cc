@@ -1,6 +1,7 @@
 #include <voussoir/analysis/eigensolver.h>
 #include <voussoir/analysis/elastic_solver.h>
 #include <voussoir/analysis/modes.h>
+#include <voussoir/analysis/scaled_materials.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/text.h>
@@ -354,12 +355,8 @@ namespace Voussoir
   {
     const Discretization &discretization = model.discretization;
     const Timer           clock;
-    std::vector<double>   scale;
-    for (Material *material : model.materials)
-      {
-        scale.push_back(material->stiffness_scale);
-        material->stiffness_scale = 1.;
-      }
+    const ScaledMaterials as_given(model.materials,
+                                   [](const Material &) { return 1.; });
 
     std::vector<Support> supports = model.boundaries.supports();
     for (const std::string &set : split_list(model.boundaries.absorbing))
@@ -421,9 +418,6 @@ namespace Voussoir
       text << " (of which the water that moves with it is no part)";
     log.line(text.str());
     log(table(modes));
-
-    for (unsigned int m = 0; m < scale.size(); ++m)
-      model.materials[m]->stiffness_scale = scale[m];
     return modes;
   }
 } // namespace Voussoir

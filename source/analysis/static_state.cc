@@ -1,5 +1,6 @@
 #include <voussoir/analysis/elastic_solver.h>
 #include <voussoir/analysis/relaxation.h>
+#include <voussoir/analysis/scaled_materials.h>
 #include <voussoir/analysis/static_state.h>
 #include <voussoir/fem/nodal_values.h>
 
@@ -188,6 +189,144 @@ namespace Voussoir
       internal_force.uses_memory = true;
       return false;
     }
+
+
+    /** The state after the last stage; its force is not yet that of the dynamic
+     *  model. */
+    InitialState
+    apply_stages(const StaticModel      &model,
+                 const StaticParameters &parameters,
+                 const NamedLoads       &loads,
+                 Log                    &log,
+                 nlohmann::json         &summary)
+    {
+      const Discretization               &discretization = model.discretization;
+      const std::map<std::string, Load *> load_of(loads.begin(), loads.end());
+      const ScaledMaterials               static_moduli(model.materials,
+                                          [](const Material &material) {
+                                            return material.static_factor;
+                                          });
+      const Timer                         clock;
+      const AffineConstraints<double>     constraints =
+        discretization.make_constraints(
+          static_supports(model.boundaries, parameters.supports));
+      const bool                     springs = parameters.supports == "springs";
+      std::unique_ptr<ElasticSolver> solver;
+      std::unique_ptr<Relaxation>    relaxation;
+      const bool has_memory = model.internal_force.has_memory();
+      if (model.contact == nullptr)
+        solver = std::make_unique<ElasticSolver>(
+          discretization,
+          model.internal_force,
+          std::vector<const Material *>(model.materials.begin(),
+                                        model.materials.end()),
+          model.material_of_cell,
+          constraints,
+          springs ? &model.terms : nullptr);
+      if (model.contact != nullptr || has_memory)
+        relaxation = std::make_unique<Relaxation>(discretization,
+                                                  model.internal_force,
+                                                  model.mass,
+                                                  model.terms,
+                                                  constraints,
+                                                  springs,
+                                                  model.contact);
+      log.line("Static state by ",
+               solver ? "multigrid" : "damped motion with contact",
+               ", set up in ",
+               duration_text(clock.wall_time()));
+
+      InitialState state;
+      state.displacement = discretization.create_vector();
+      state.temperature  = state.displacement;
+      state.force        = state.displacement;
+      Vector applied     = state.displacement; // loads so far
+      for (const auto &stage : parameters.stage_names())
+        {
+          const Timer    stage_clock;
+          nlohmann::json report;
+          for (const std::string &name : stage)
+            {
+              const Vector force =
+                force_of(*load_of.at(name), discretization, model.terms);
+              load_of.at(name)->add_temperature(state.temperature);
+              const Tensor<1, 3> sum = resultant(force);
+              log.line("  load ", name, ": resultant ", meganewtons(sum));
+              report["loads"][name]["resultant [N]"] = to_json(sum);
+              applied += force;
+            }
+          Vector right_side = applied;
+          model.internal_force.add_thermal_force(right_side, state.temperature);
+          // a state with cracks goes on from where it is
+          unsigned int iterations          = 0;
+          model.internal_force.uses_memory = false;
+          const bool elastic_so_far =
+            Utilities::MPI::max(model.internal_force.dissipated(),
+                                discretization.grid.communicator()) == 0.;
+          if (!solver)
+            iterations = relaxation->find_equilibrium(state.displacement,
+                                                      right_side,
+                                                      parameters.rest,
+                                                      log);
+          else if (elastic_so_far)
+            iterations = solver->solve(state.displacement,
+                                       right_side,
+                                       parameters.tolerance);
+          if (has_memory)
+            {
+              model.internal_force.uses_memory = true;
+              model.internal_force.set_static_state(state.displacement,
+                                                    state.temperature);
+              model.internal_force.respond(state.force, state.displacement);
+              if (Utilities::MPI::max(model.internal_force.dissipated(),
+                                      discretization.grid.communicator()) > 0.)
+                {
+                  log.line("  cracks or yields");
+                  if (!solver || !correct_by_initial_stresses(
+                                   *solver,
+                                   model.internal_force,
+                                   springs ? &model.terms : nullptr,
+                                   state.displacement,
+                                   right_side,
+                                   std::max(parameters.tolerance, 1e-8),
+                                   iterations))
+                    log.line("  by damped motion at rest again after ",
+                             relaxation->find_equilibrium(state.displacement,
+                                                          right_side,
+                                                          parameters.rest,
+                                                          log),
+                             " steps");
+                }
+            }
+
+          // f(u) minus loads and contact is what the supports bring
+          model.internal_force.respond(state.force, state.displacement);
+          state.force -= right_side;
+          if (model.contact != nullptr)
+            model.contact->add_forces(-1., state.force);
+          const Tensor<1, 3> sum       = resultant(applied);
+          const Tensor<1, 3> reactions = resultant(state.force);
+          const double       largest   = largest_amount(state.displacement);
+          std::ostringstream text;
+          text << std::setprecision(4) << "  stage \"" << join(stage, ", ")
+               << "\": " << iterations
+               << (solver ? " iterations, " : " steps, ")
+               << duration_text(stage_clock.wall_time()) << "; reactions "
+               << meganewtons(reactions) << ", largest displacement "
+               << 1e3 * largest << " mm";
+          log.line(text.str());
+          report["iterations"]               = iterations;
+          report["sum of loads so far [N]"]  = to_json(sum);
+          report["sum of reactions [N]"]     = to_json(reactions);
+          report["largest displacement [m]"] = largest;
+          report["names"]                    = stage;
+          summary["stages"].push_back(report);
+          if (model.contact != nullptr)
+            model.contact->grout(stage, state.displacement);
+        }
+      summary["seconds"] = clock.wall_time();
+      return state;
+    }
   } // namespace
 
 
@@ -198,140 +337,9 @@ namespace Voussoir
                     Log                    &log,
                     nlohmann::json         &summary)
   {
-    const Discretization               &discretization = model.discretization;
-    const std::map<std::string, Load *> load_of(loads.begin(), loads.end());
+    InitialState state = apply_stages(model, parameters, loads, log, summary);
 
-    std::vector<double> dynamic_scale;
-    for (Material *material : model.materials)
-      {
-        dynamic_scale.push_back(material->stiffness_scale);
-        material->stiffness_scale = material->static_factor;
-        material->strain_factor   = material->static_factor;
-      }
-
-    const Timer                     clock;
-    const AffineConstraints<double> constraints =
-      discretization.make_constraints(
-        static_supports(model.boundaries, parameters.supports));
-    const bool                     springs = parameters.supports == "springs";
-    std::unique_ptr<ElasticSolver> solver;
-    std::unique_ptr<Relaxation>    relaxation;
-    const bool has_memory = model.internal_force.has_memory();
-    if (model.contact == nullptr)
-      solver = std::make_unique<ElasticSolver>(
-        discretization,
-        model.internal_force,
-        std::vector<const Material *>(model.materials.begin(),
-                                      model.materials.end()),
-        model.material_of_cell,
-        constraints,
-        springs ? &model.terms : nullptr);
-    if (model.contact != nullptr || has_memory)
-      relaxation = std::make_unique<Relaxation>(discretization,
-                                                model.internal_force,
-                                                model.mass,
-                                                model.terms,
-                                                constraints,
-                                                springs,
-                                                model.contact);
-    log.line("Static state by ",
-             solver ? "multigrid" : "damped motion with contact",
-             ", set up in ",
-             duration_text(clock.wall_time()));
-
-    InitialState state;
-    state.displacement = discretization.create_vector();
-    state.temperature  = state.displacement;
-    state.force        = state.displacement;
-    Vector applied     = state.displacement; // loads so far
-    for (const auto &stage : parameters.stage_names())
-      {
-        const Timer    stage_clock;
-        nlohmann::json report;
-        for (const std::string &name : stage)
-          {
-            const Vector force =
-              force_of(*load_of.at(name), discretization, model.terms);
-            load_of.at(name)->add_temperature(state.temperature);
-            const Tensor<1, 3> sum = resultant(force);
-            log.line("  load ", name, ": resultant ", meganewtons(sum));
-            report["loads"][name]["resultant [N]"] = to_json(sum);
-            applied += force;
-          }
-        Vector right_side = applied;
-        model.internal_force.add_thermal_force(right_side, state.temperature);
-        // a state with cracks goes on from where it is
-        unsigned int iterations          = 0;
-        model.internal_force.uses_memory = false;
-        const bool elastic_so_far =
-          Utilities::MPI::max(model.internal_force.dissipated(),
-                              discretization.grid.communicator()) == 0.;
-        if (!solver)
-          iterations = relaxation->find_equilibrium(state.displacement,
-                                                    right_side,
-                                                    parameters.rest,
-                                                    log);
-        else if (elastic_so_far)
-          iterations =
-            solver->solve(state.displacement, right_side, parameters.tolerance);
-        if (has_memory)
-          {
-            model.internal_force.uses_memory = true;
-            model.internal_force.set_static_state(state.displacement,
-                                                  state.temperature);
-            model.internal_force.respond(state.force, state.displacement);
-            if (Utilities::MPI::max(model.internal_force.dissipated(),
-                                    discretization.grid.communicator()) > 0.)
-              {
-                log.line("  cracks or yields");
-                if (!solver || !correct_by_initial_stresses(
-                                 *solver,
-                                 model.internal_force,
-                                 springs ? &model.terms : nullptr,
-                                 state.displacement,
-                                 right_side,
-                                 std::max(parameters.tolerance, 1e-8),
-                                 iterations))
-                  log.line("  by damped motion at rest again after ",
-                           relaxation->find_equilibrium(state.displacement,
-                                                        right_side,
-                                                        parameters.rest,
-                                                        log),
-                           " steps");
-              }
-          }
-
-        // f(u) minus loads and contact is what the supports bring
-        model.internal_force.respond(state.force, state.displacement);
-        state.force -= right_side;
-        if (model.contact != nullptr)
-          model.contact->add_forces(-1., state.force);
-        const Tensor<1, 3> sum       = resultant(applied);
-        const Tensor<1, 3> reactions = resultant(state.force);
-        const double       largest   = largest_amount(state.displacement);
-        std::ostringstream text;
-        text << std::setprecision(4) << "  stage \"" << join(stage, ", ")
-             << "\": " << iterations << (solver ? " iterations, " : " steps, ")
-             << duration_text(stage_clock.wall_time()) << "; reactions "
-             << meganewtons(reactions) << ", largest displacement "
-             << 1e3 * largest << " mm";
-        log.line(text.str());
-        report["iterations"]               = iterations;
-        report["sum of loads so far [N]"]  = to_json(sum);
-        report["sum of reactions [N]"]     = to_json(reactions);
-        report["largest displacement [m]"] = largest;
-        report["names"]                    = stage;
-        summary["stages"].push_back(report);
-        if (model.contact != nullptr)
-          model.contact->grout(stage, state.displacement);
-      }
-    summary["seconds"] = clock.wall_time();
-
-    for (unsigned int m = 0; m < dynamic_scale.size(); ++m)
-      {
-        model.materials[m]->stiffness_scale = dynamic_scale[m];
-        model.materials[m]->strain_factor   = 1.;
-      }
+    // the same state in the dynamic model
     model.internal_force.set_static_state(state.displacement,
                                           state.temperature);
     model.internal_force.respond(state.force, state.displacement);
@@ -340,7 +348,7 @@ namespace Voussoir
     model.terms.add_to(state.force, state.displacement, 0.);
     if (model.contact != nullptr)
       {
-        state.contact_force = discretization.create_vector();
+        state.contact_force = model.discretization.create_vector();
         model.contact->add_forces(1., state.contact_force);
         state.force -= state.contact_force;
       }

@@ -5,6 +5,20 @@ namespace Voussoir
 {
   using namespace dealii;
 
+  Vector
+  with_ghosts(const Discretization &discretization, const Vector &vector)
+  {
+    Vector full(discretization.owned_dofs,
+                discretization.relevant_dofs,
+                discretization.grid.communicator());
+    full.copy_locally_owned_data_from(vector);
+    full.update_ghost_values();
+    discretization.hanging_nodes.distribute(full);
+    full.update_ghost_values();
+    return full;
+  }
+
+
   Tensor<1, 3>
   resultant(const Vector &vector)
   {

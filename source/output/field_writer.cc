@@ -1,3 +1,4 @@
+#include <voussoir/fem/nodal_values.h>
 #include <voussoir/materials/principal_stress.h>
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/law_stress.h>
@@ -14,22 +15,6 @@ namespace Voussoir
 
   namespace
   {
-    /** With values at the nodes of other ranks and at hanging nodes. */
-    Vector
-    with_ghosts(const Discretization &discretization, const Vector &vector)
-    {
-      Vector full(discretization.owned_dofs,
-                  discretization.relevant_dofs,
-                  discretization.grid.communicator());
-      for (unsigned int i = 0; i < vector.locally_owned_size(); ++i)
-        full.local_element(i) = vector.local_element(i);
-      full.update_ghost_values();
-      discretization.hanging_nodes.distribute(full);
-      full.update_ghost_values();
-      return full;
-    }
-
-
     /** What the static stage left, at the points of a cell that are drawn. */
     struct InitialPoints
     {

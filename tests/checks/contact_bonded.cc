@@ -1,6 +1,3 @@
-#include <voussoir/base/mpi.h>
-#include <voussoir/fem/point_weights.h>
-
 #include "check.h"
 #include "histories.h"
 
@@ -50,14 +47,8 @@ namespace Voussoir
                   history(file.with({"Mesh/Partition=" + partition}),
                           communicator),
                   alone);
-        double way = 0., size = 0.;
-        for (unsigned int i = 0; i < alone.size(); ++i)
-          {
-            way  = std::max(way, std::abs(alone[i] - whole[i]));
-            size = std::max(size, std::abs(whole[i]));
-          }
         verdicts.above("change of the motion by slip and opening [%]",
-                       100. * way / size,
+                       100. * relative_difference(alone, whole),
                        1.);
         verdicts.below("penetration over cell size",
                        Utilities::MPI::max(penetration, communicator),
@@ -65,7 +56,7 @@ namespace Voussoir
       }
 
     private:
-      std::vector<double>
+      Histories
       history(const ParameterFile &file,
               const MPI_Comm       communicator,
               const bool           cut = true)
@@ -73,41 +64,24 @@ namespace Voussoir
         const auto parameters = make_case(file);
         if (!cut)
           parameters->interfaces.list.clear();
-        const auto simulation = make_simulation(*parameters, communicator);
-        const PointWeights  weights(simulation->discretization,
-                                   parse_points(points, "Points"),
-                                   "Points");
-        std::vector<double> values;
-        while (simulation->state.time < parameters->time.end_time)
-          {
-            simulation->scheme.step(simulation->state);
-            for (const auto &value :
-                 weights.share(simulation->state.displacement))
-              for (unsigned int d = 0; d < 3; ++d)
-                values.push_back(value[d]);
-          }
+        const auto      simulation = make_simulation(*parameters, communicator);
+        const Histories result =
+          run_and_record(*simulation, parse_points(points, "Points"));
         if (simulation->contact)
           penetration = std::max(penetration,
                                  simulation->contact->effort().penetration /
                                    simulation->contact->cell_size);
-        return sum_over_ranks(values, communicator);
+        return result;
       }
 
       static void
-      compare(Verdicts                  &verdicts,
-              const std::string         &name,
-              const std::vector<double> &values,
-              const std::vector<double> &reference)
+      compare(Verdicts          &verdicts,
+              const std::string &name,
+              const Histories   &histories,
+              const Histories   &reference)
       {
-        double difference = 0., size = 0.;
-        for (unsigned int i = 0; i < reference.size(); ++i)
-          {
-            size = std::max(size, std::abs(reference[i]));
-            difference =
-              std::max(difference, std::abs(values[i] - reference[i]));
-          }
         verdicts.below(name + ": difference over size",
-                       difference / size,
+                       relative_difference(histories, reference),
                        1e-9);
       }
 

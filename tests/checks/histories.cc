@@ -16,6 +16,28 @@ namespace Voussoir
   }
 
 
+  double
+  Histories::largest() const
+  {
+    double result = 0.;
+    for (const auto &history : displacement)
+      for (const Tensor<1, 3> &u : history)
+        for (unsigned int d = 0; d < 3; ++d)
+          result = std::max(result, std::abs(u[d]));
+    return result;
+  }
+
+
+  double
+  relative_difference(Histories histories, const Histories &reference)
+  {
+    for (unsigned int p = 0; p < reference.displacement.size(); ++p)
+      for (std::size_t i = 0; i < reference.times.size(); ++i)
+        histories.displacement[p][i] -= reference.displacement[p][i];
+    return histories.largest() / reference.largest();
+  }
+
+
   Histories
   run_and_record(Simulation                         &simulation,
                  const std::vector<NamedPoint>      &points,

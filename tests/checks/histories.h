@@ -19,7 +19,15 @@ namespace Voussoir
     /** One component at a point. */
     std::vector<double>
     component(const unsigned int point, const unsigned int d) const;
+
+    /** Largest of all components [m]. */
+    double
+    largest() const;
   };
+
+  /** Largest difference of a component over the largest of the reference. */
+  double
+  relative_difference(Histories histories, const Histories &reference);
 
   /**
    * Runs a simulation to its end time; @p after_step may look at the state, or

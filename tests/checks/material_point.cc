@@ -1,7 +1,5 @@
-#include <voussoir/base/error.h>
-#include <voussoir/materials/point_test.h>
-
 #include "check.h"
+#include "point_path.h"
 
 namespace Voussoir
 {
@@ -9,51 +7,23 @@ namespace Voussoir
 
   namespace
   {
-    /** Strain of one component, up to which the others have no stress. */
-    PointTest::Controls
+    /** Strain of one component, no stress of the others. */
+    NormalControls
     uniaxial(const double strain)
     {
-      PointTest::Controls controls;
-      controls[0] = {true, strain};
-      return controls;
-    }
-
-
-    PointTest::Controls
-    equibiaxial(const double strain)
-    {
-      PointTest::Controls controls = uniaxial(strain);
-      controls[1]                  = {true, strain};
-      return controls;
-    }
-
-
-    void
-    go_to(PointTest                                              &test,
-          const std::function<PointTest::Controls(const double)> &controls,
-          const double                                            target,
-          const unsigned int                                      steps)
-    {
-      const double start = test.strain[0][0];
-      for (unsigned int i = 1; i <= steps; ++i)
-        test.advance(controls(start + (target - start) * i / steps));
+      return {{{true, strain}, {}, {}}};
     }
 
 
     /** The largest -sigma_xx on the way [Pa]. */
     double
-    strength(const Material                                         &material,
-             const std::function<PointTest::Controls(const double)> &controls,
-             const double                                            strain)
+    strength(const Material &material, const NormalControls &target)
     {
-      PointTest          test(material, 1., 1e-3);
-      double             largest = 0.;
-      const unsigned int steps   = 4000;
-      for (unsigned int i = 1; i <= steps; ++i)
-        {
-          test.advance(controls(strain * i / steps));
-          largest = std::max(largest, std::abs(test.stress[0][0]));
-        }
+      PointTest test(material, 1., 1e-3);
+      double    largest = 0.;
+      advance(test, target, 4000, [&] {
+        largest = std::max(largest, -test.stress[0][0]);
+      });
       return largest;
     }
 
@@ -90,48 +60,46 @@ namespace Voussoir
         const double    modulus    = material.elastic_constants().young_modulus;
         const double    limit      = strength_in_tension / modulus;
 
-        for (const double length : {0.25, 0.5, 1., 2.})
-          {
-            PointTest    test(material, length, 1e-3);
+        for_each_cell_size(
+          material,
+          [&](PointTest &test, const double size, const auto &in_cell) {
             const double end =
-              15. * fracture_energy / (strength_in_tension * length);
-            go_to(test, uniaxial, 0.999 * limit, 10);
+              15. * fracture_energy / (strength_in_tension * size);
+            advance(test, uniaxial(0.999 * limit), 10);
             verdicts.near("stress at the tensile strength",
                           1e-6 * test.stress[0][0],
                           0.999e-6 * strength_in_tension,
                           1e-3,
                           "MPa");
-            go_to(test, uniaxial, 20. * limit, 2000);
-            go_to(test, uniaxial, end, 2000);
-            std::ostringstream cell;
-            cell << " in a cell of " << length << " m";
-            verdicts.near("work to open a crack" + cell.str(),
-                          test.work * length,
+            advance(test, uniaxial(20. * limit), 2000);
+            advance(test, uniaxial(end), 2000);
+            verdicts.near("work to open a crack" + in_cell,
+                          test.work * size,
                           fracture_energy,
                           0.01,
                           "N/m");
-            verdicts.near("energy lost" + cell.str(),
-                          test.dissipated * length,
+            verdicts.near("energy lost" + in_cell,
+                          test.dissipated * size,
                           fracture_energy,
                           0.01,
                           "N/m");
-          }
+          });
 
         // open, close, press, open again
         PointTest test(material, 1., 1e-3);
-        go_to(test, uniaxial, 4. * limit, 400);
+        advance(test, uniaxial(4. * limit), 400);
         const double opened = test.stress[0][0], damage = test.outputs()[0];
         verdicts.above("damage of the open crack", damage, 0.5);
-        go_to(test, uniaxial, 0., 10);
+        advance(test, uniaxial(0.), 10);
         const double at_rest = test.stress[0][0];
-        go_to(test, uniaxial, -limit, 10);
+        advance(test, uniaxial(-limit), 10);
         verdicts.near("modulus of the closed crack",
                       1e-9 * (at_rest - test.stress[0][0]) / limit,
                       1e-9 * modulus,
                       1e-6,
                       "GPa");
-        go_to(test, uniaxial, 0., 10);
-        go_to(test, uniaxial, 4. * limit, 400);
+        advance(test, uniaxial(0.), 10);
+        advance(test, uniaxial(4. * limit), 400);
         verdicts.near("stress when it opens as far again",
                       1e-6 * test.stress[0][0],
                       1e-6 * opened,
@@ -156,7 +124,7 @@ namespace Voussoir
                   Utilities::string_to_double(item.substr(0, colon));
                 const double stress =
                   Utilities::string_to_double(item.substr(colon + 1));
-                go_to(opening, uniaxial, stress / modulus + w / 0.5, 50);
+                advance(opening, uniaxial(stress / modulus + w / 0.5), 50);
                 std::ostringstream name;
                 name << "stress at an opening of " << 1e3 * w << " mm";
                 verdicts.near(name.str(),
@@ -169,14 +137,15 @@ namespace Voussoir
 
         if (strength_in_compression > 0.)
           {
-            const double one = strength(material, uniaxial, -0.01);
+            const PointTest::Control pressed{true, -0.01};
+            const double             one = strength(material, uniaxial(-0.01));
             verdicts.near("strength in compression",
                           1e-6 * one,
                           1e-6 * strength_in_compression,
                           0.01,
                           "MPa");
             verdicts.near("strength under biaxial over uniaxial compression",
-                          strength(material, equibiaxial, -0.01) / one,
+                          strength(material, {{pressed, pressed, {}}}) / one,
                           1.16,
                           0.005);
           }

@@ -1,3 +1,5 @@
+#include <voussoir/fem/nodal_values.h>
+
 #include <deal.II/base/quadrature_lib.h>
 
 #include "check.h"
@@ -80,15 +82,8 @@ namespace Voussoir
       {
         const Discretization &discretization = simulation.discretization;
         const auto           &fe             = discretization.fe;
-        Vector                source(discretization.owned_dofs,
-                      discretization.relevant_dofs,
-                      discretization.grid.communicator());
-        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-          source.local_element(i) = u.local_element(i);
-        source.update_ghost_values();
-        discretization.hanging_nodes.distribute(source);
-        source.update_ghost_values();
-        Vector result(discretization.owned_dofs,
+        const Vector          source         = with_ghosts(discretization, u);
+        Vector                result(discretization.owned_dofs,
                       discretization.relevant_dofs,
                       discretization.grid.communicator());
 
@@ -126,8 +121,7 @@ namespace Voussoir
             }
         result.compress(VectorOperation::add);
         Vector sorted = discretization.create_vector();
-        for (unsigned int i = 0; i < sorted.locally_owned_size(); ++i)
-          sorted.local_element(i) = result.local_element(i);
+        sorted.copy_locally_owned_data_from(result);
         return sorted;
       }
     };

@@ -1,3 +1,4 @@
+#include <voussoir/fem/nodal_values.h>
 #include <voussoir/output/observer.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -100,14 +101,8 @@ namespace Voussoir
                 std::map<std::uint64_t, std::array<double, 2>> &expected)
       {
         const Discretization &discretization = simulation.discretization;
-        Vector                full(discretization.owned_dofs,
-                    discretization.relevant_dofs,
-                    simulation.grid.communicator());
-        full.copy_locally_owned_data_from(displacement);
-        full.update_ghost_values();
-        discretization.hanging_nodes.distribute(full);
-        full.update_ghost_values();
-        FEValues<3>                        values(discretization.mapping,
+        const Vector          full = with_ghosts(discretization, displacement);
+        FEValues<3>           values(discretization.mapping,
                            discretization.fe,
                            QMidpoint<3>(),
                            update_gradients);

@@ -35,6 +35,23 @@ namespace Voussoir
         look();
       }
   }
+
+  /** Calls @p look with a point in cells of several sizes [m], and a text that
+   *  says so. */
+  inline void
+  for_each_cell_size(
+    const Material &material,
+    const std::function<
+      void(PointTest &, const double size, const std::string &in_cell)> &look)
+  {
+    for (const double size : {0.25, 0.5, 1., 2.})
+      {
+        PointTest          test(material, size, 1e-3);
+        std::ostringstream in_cell;
+        in_cell << " in a cell of " << size << " m";
+        look(test, size, in_cell.str());
+      }
+  }
 } // namespace Voussoir
 
 #endif

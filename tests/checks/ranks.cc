@@ -1,7 +1,5 @@
-#include <voussoir/base/mpi.h>
-#include <voussoir/fem/point_weights.h>
-
 #include "check.h"
+#include "histories.h"
 
 namespace Voussoir
 {
@@ -30,23 +28,18 @@ namespace Voussoir
         const auto alone = history(file, "p4est", MPI_COMM_SELF);
         for (const std::string partition : {"p4est", "METIS"})
           {
-            const auto together   = history(file, partition, communicator);
-            double     difference = 0., size = 0.;
-            for (unsigned int i = 0; i < alone.size(); ++i)
-              {
-                size = std::max(size, std::abs(alone[i]));
-                difference =
-                  std::max(difference, std::abs(alone[i] - together[i]));
-              }
-            verdicts.above("largest displacement [mm]", 1e3 * size, 0.1);
+            verdicts.above("largest displacement [mm]",
+                           1e3 * alone.largest(),
+                           0.1);
             verdicts.below("difference to one rank, by " + partition,
-                           difference / size,
+                           relative_difference(
+                             history(file, partition, communicator), alone),
                            1e-9);
           }
       }
 
     private:
-      std::vector<double>
+      Histories
       history(const ParameterFile &file,
               const std::string   &partition,
               const MPI_Comm       communicator) const
@@ -55,19 +48,7 @@ namespace Voussoir
         const auto parameters =
           make_case(file.with({"Mesh/Partition=" + partition}));
         const auto simulation = make_simulation(*parameters, communicator);
-        const PointWeights  weights(simulation->discretization,
-                                   parse_points(points, "Points"),
-                                   "Points");
-        std::vector<double> values;
-        while (simulation->state.time < parameters->time.end_time)
-          {
-            simulation->scheme.step(simulation->state);
-            for (const auto &value :
-                 weights.share(simulation->state.displacement))
-              for (unsigned int d = 0; d < 3; ++d)
-                values.push_back(value[d]);
-          }
-        return sum_over_ranks(values, communicator);
+        return run_and_record(*simulation, parse_points(points, "Points"));
       }
 
       std::string points;

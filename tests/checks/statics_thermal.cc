@@ -1,4 +1,5 @@
 #include <voussoir/base/mpi.h>
+#include <voussoir/fem/nodal_values.h>
 #include <voussoir/fem/point_weights.h>
 
 #include <deal.II/fe/fe_values.h>
@@ -101,12 +102,13 @@ namespace Voussoir
                          const double      strain) const
       {
         const Discretization &discretization = simulation.discretization;
+        const Vector         &displacement   = simulation.initial.displacement;
         const unsigned int    n              = discretization.n_owned_nodes();
         // nothing holds the plate across: its mean is what the exact one has
         std::vector<double> sums(2);
         for (unsigned int node = 0; node < n; ++node)
           {
-            sums[0] += displacement(simulation, node)[1] -
+            sums[0] += node_value(displacement, node)[1] -
                        exact(discretization.node_positions[node], strain)[1];
             sums[1] += 1.;
           }
@@ -117,7 +119,7 @@ namespace Voussoir
         for (unsigned int node = 0; node < n; ++node)
           {
             const Point<3> &x = discretization.node_positions[node];
-            Tensor<1, 3>    u = displacement(simulation, node),
+            Tensor<1, 3>    u = node_value(displacement, node),
                          e    = exact(x, strain);
             u[1] -= shift;
             if (body == "clamped bar")
@@ -151,28 +153,16 @@ namespace Voussoir
                exact(points[1].position, strain)[1];
       }
 
-      static Tensor<1, 3>
-      displacement(const Simulation &simulation, const unsigned int node)
-      {
-        Tensor<1, 3> u;
-        for (unsigned int d = 0; d < 3; ++d)
-          u[d] = simulation.initial.displacement.local_element(3 * node + d);
-        return u;
-      }
-
       /** Smallest and largest stress: along the bar if it is clamped, else of
        *  all components, at the integration points. */
       std::pair<double, double>
       stress_range(const Simulation &simulation) const
       {
         const Discretization &discretization = simulation.discretization;
-        Vector                u              = simulation.initial.displacement,
-               temperature                   = simulation.initial.temperature;
-        for (Vector *vector : {&u, &temperature})
-          {
-            discretization.hanging_nodes.distribute(*vector);
-            vector->update_ghost_values();
-          }
+        const Vector          u =
+          with_ghosts(discretization, simulation.initial.displacement);
+        const Vector temperature =
+          with_ghosts(discretization, simulation.initial.temperature);
         FEValues<3>                        values(discretization.mapping,
                            discretization.fe,
                            discretization.matrix_free.get_quadrature(),

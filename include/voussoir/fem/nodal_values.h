@@ -17,6 +17,10 @@ namespace Voussoir
     return value;
   }
 
+  /** With values at the nodes of other ranks and at hanging nodes. */
+  Vector
+  with_ghosts(const Discretization &discretization, const Vector &vector);
+
   /** Sum over all nodes of all ranks. */
   dealii::Tensor<1, 3>
   resultant(const Vector &vector);

@@ -1,7 +1,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/loads/absorbing_boundary.h>
+#include <voussoir/loads/column_field.h>
 #include <voussoir/loads/oblique_wave.h>
-#include <voussoir/loads/wave_column.h>
 
 #include <iomanip>
 

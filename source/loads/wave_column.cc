@@ -1,12 +1,8 @@
-#include <voussoir/base/error.h>
-#include <voussoir/loads/deconvolution.h>
 #include <voussoir/loads/wave_column.h>
 
-#include <deal.II/base/polynomial.h>
 #include <deal.II/base/quadrature_lib.h>
 
 #include <algorithm>
-#include <map>
 
 namespace Voussoir
 {
@@ -14,15 +10,6 @@ namespace Voussoir
 
   namespace
   {
-    std::vector<double>
-    coordinates(const Quadrature<1> &quadrature)
-    {
-      std::vector<double> x;
-      for (const Point<1> &point : quadrature.get_points())
-        x.push_back(point[0]);
-      return x;
-    }
-
     Quadrature<1>
     stiffness_quadrature(const std::string &name, const unsigned int degree)
     {
@@ -30,45 +17,6 @@ namespace Voussoir
       if (name == "Gauss-Lobatto")
         return QGaussLobatto<1>(degree + 1);
       return QGauss<1>(degree + 1);
-    }
-
-    // Largest stable c dt / h of one element by itself, from its eigenvalues by
-    // power iteration.
-    double
-    element_limit(const unsigned int degree)
-    {
-      const QGaussLobatto<1> lobatto(degree + 1);
-      const QGauss<1>        gauss(degree + 1);
-      std::vector<Point<1>>  points = lobatto.get_points();
-      const auto shapes = Polynomials::generate_complete_Lagrange_basis(points);
-      std::vector<double> mode(degree + 1), product(degree + 1);
-      for (unsigned int i = 0; i <= degree; ++i)
-        mode[i] = (i % 2 == 0 ? 1. : -1.) + 0.1 * i;
-      double eigenvalue = 0.;
-      for (unsigned int iteration = 0; iteration < 200; ++iteration)
-        {
-          std::fill(product.begin(), product.end(), 0.);
-          for (unsigned int q = 0; q < gauss.size(); ++q)
-            {
-              const double x        = gauss.point(q)[0];
-              double       gradient = 0.;
-              for (unsigned int i = 0; i <= degree; ++i)
-                gradient += shapes[i].derivative().value(x) * mode[i];
-              for (unsigned int i = 0; i <= degree; ++i)
-                product[i] +=
-                  gauss.weight(q) * gradient * shapes[i].derivative().value(x);
-            }
-          double norm = 0.;
-          for (unsigned int i = 0; i <= degree; ++i)
-            {
-              product[i] /= lobatto.weight(i);
-              norm = std::max(norm, std::abs(product[i]));
-            }
-          eigenvalue = norm;
-          for (unsigned int i = 0; i <= degree; ++i)
-            mode[i] = product[i] / norm;
-        }
-      return 2. / std::sqrt(eigenvalue);
     }
   } // namespace
 
@@ -86,16 +34,15 @@ namespace Voussoir
     , stiffness_coefficient(damping.stiffness_coefficient)
   {
     const QGaussLobatto<1> lobatto(degree + 1);
-    nodes_1d = coordinates(lobatto);
     shapes =
       Polynomials::generate_complete_Lagrange_basis(lobatto.get_points());
     const Quadrature<1> rule = stiffness_quadrature(quadrature, degree);
     weights                  = rule.get_weights();
-    for (const double x : coordinates(rule))
+    for (const Point<1> &point : rule.get_points())
       {
         gradients.emplace_back();
         for (const auto &shape : shapes)
-          gradients.back().push_back(shape.derivative().value(x));
+          gradients.back().push_back(shape.derivative().value(point[0]));
       }
 
     mass.assign(degree * layers.size() + 1, 0.);
@@ -308,225 +255,5 @@ namespace Voussoir
     for (const Element &element : elements)
       sum += element.height / element.s_wave_speed;
     return sum;
-  }
-
-
-  std::vector<WaveColumn::Layer>
-  layers_of_sides(const std::vector<SideFace>         &faces,
-                  const std::vector<ElasticConstants> &constants,
-                  const std::vector<double>           &damping_factors,
-                  const unsigned int                   degree,
-                  const double                         time_step,
-                  const Damping                       &damping)
-  {
-    if (faces.empty())
-      throw UserError("A vertical wave needs the levels of the model's sides, "
-                      "but the mesh has no vertical outer faces; let the model "
-                      "end at planes of constant x or y.");
-    std::vector<double> levels;
-    for (const SideFace &face : faces)
-      {
-        levels.push_back(face.lower);
-        levels.push_back(face.upper);
-      }
-    std::sort(levels.begin(), levels.end());
-    const double tolerance = 1e-9 * (levels.back() - levels.front());
-
-    // the material at a height is that of the largest area of side faces there
-    const auto material_at = [&](const double z) {
-      std::map<unsigned int, double> areas;
-      for (const SideFace &face : faces)
-        if (face.lower <= z && z <= face.upper)
-          areas[face.material] += face.area;
-      return std::max_element(areas.begin(),
-                              areas.end(),
-                              [](const auto &a, const auto &b) {
-                                return a.second < b.second;
-                              })
-        ->first;
-    };
-
-    const double                   limit = element_limit(degree);
-    std::vector<WaveColumn::Layer> layers;
-    double                         lower = levels.front();
-    for (const double level : levels)
-      {
-        if (level - lower <= tolerance)
-          continue;
-        const unsigned int material = material_at(0.5 * (lower + level));
-        const double       factor   = damping_factors[material];
-        const double       speed =
-          constants[material].p_wave_speed() *
-          std::sqrt(damping.stiffness_scale(factor) *
-                    (1. + factor * damping.stiffening(time_step)));
-        const bool last = levels.back() - level <= tolerance;
-        const bool thin = limit * (level - lower) < time_step * speed;
-        if (thin && !last)
-          continue;
-        if (thin && !layers.empty())
-          layers.back().upper = level;
-        else
-          layers.push_back({lower, level, constants[material], factor});
-        lower = level;
-      }
-    return layers;
-  }
-
-
-  ColumnField::ColumnField(WaveColumn            &&wave_column,
-                           GroundMotionSignals   &&incident_motion,
-                           const BoundaryGeometry &geometry)
-    : column(std::move(wave_column))
-    , incident(std::move(incident_motion))
-  {
-    displacement.resize(geometry.nodes.size());
-    velocity = force = displacement;
-
-    // many nodes and points share a level
-    const double tolerance = 1e-6 * (column.top() - column.bottom());
-    const auto   key       = [&](const double z) {
-      return static_cast<long>(std::lround((z - column.bottom()) / tolerance));
-    };
-    std::map<long, unsigned int>                          level_numbers;
-    std::map<std::pair<unsigned int, long>, unsigned int> stress_numbers;
-    for (const Point<3> &node : geometry.nodes)
-      {
-        const auto [place, is_new] =
-          level_numbers.emplace(key(node[2]), levels.size());
-        if (is_new)
-          levels.push_back(column.interpolation(node[2]));
-        level_of_node.push_back(place->second);
-      }
-    std::map<std::pair<unsigned int, unsigned int>, Tensor<1, 3>> sums;
-    for (const auto &item : geometry.contributions)
-      {
-        unsigned int point = numbers::invalid_unsigned_int;
-        if (std::abs(item.area[2]) < 0.9 * item.area.norm())
-          {
-            const auto at = column.stress_point(item.point[2], item.middle);
-            const auto [place, is_new] =
-              stress_numbers.emplace(std::make_pair(at.element,
-                                                    key(item.point[2])),
-                                     stress_points.size());
-            if (is_new)
-              stress_points.push_back(at);
-            point = place->second;
-          }
-        sums[{item.node, point}] += item.area;
-      }
-    for (const auto &[where, area] : sums)
-      shares.push_back({where.first, where.second, area});
-  }
-
-
-  void
-  ColumnField::replay(const double time)
-  {
-    Tensor<1, 3> incident_velocity;
-    for (unsigned int d = 0; d < 3; ++d)
-      if (incident[d])
-        incident_velocity[d] = incident[d]->velocity(time);
-    column.advance(incident_velocity);
-  }
-
-
-  void
-  ColumnField::advance(const double time)
-  {
-    replay(time);
-
-    std::vector<Tensor<1, 3>> level_displacement, level_velocity;
-    for (const auto &level : levels)
-      {
-        level_displacement.push_back(column.displacement(level));
-        level_velocity.push_back(column.velocity(level));
-      }
-    for (unsigned int i = 0; i < displacement.size(); ++i)
-      {
-        displacement[i] = level_displacement[level_of_node[i]];
-        velocity[i]     = level_velocity[level_of_node[i]];
-        force[i]        = 0.;
-      }
-
-    std::vector<Tensor<1, 3>> stresses;
-    std::vector<double>       lateral;
-    for (const auto &point : stress_points)
-      {
-        stresses.push_back(column.stress(point));
-        lateral.push_back(column.lateral_ratio(point) * stresses.back()[2]);
-      }
-    const Tensor<1, 3> base = column.base_traction();
-    for (const Share &share : shares)
-      if (share.stress_point == numbers::invalid_unsigned_int)
-        force[share.node] += -share.area[2] * base;
-      else
-        {
-          // sigma n with sigma_xx = sigma_yy = nu/(1-nu) sigma_zz, sigma_xy = 0
-          const Tensor<1, 3> &s = stresses[share.stress_point];
-          const Tensor<1, 3> &n = share.area;
-          force[share.node] +=
-            Tensor<1, 3>({lateral[share.stress_point] * n[0] + s[0] * n[2],
-                          lateral[share.stress_point] * n[1] + s[1] * n[2],
-                          s[0] * n[0] + s[1] * n[1] + s[2] * n[2]});
-        }
-  }
-
-
-  GroundMotionSignals
-  incident_for_surface(const WaveColumn          &column,
-                       const GroundMotionSignals &surface,
-                       const double               time_step,
-                       const double               duration,
-                       const double               maximum_frequency)
-  {
-    // the column's answer to a short pulse, until it has died out over a period
-    // (four travel times) of its slowest layer
-    WaveColumn         trial = column;
-    const double       width = 2. / maximum_frequency;
-    const Pulse        pulse(Quantity::velocity, width, 1.);
-    const unsigned int period = static_cast<unsigned int>(
-      std::ceil((width + 4. * column.travel_time()) / time_step));
-    TimeSeries excitation{time_step, {}}, response[3];
-    for (auto &series : response)
-      series.time_step = time_step;
-    double peak = 0., recent = 0.;
-    do
-      {
-        recent = 0.;
-        for (unsigned int i = 0; i < period; ++i)
-          {
-            const double v =
-              pulse.velocity(excitation.values.size() * time_step);
-            trial.advance(Tensor<1, 3>({v, v, v}));
-            excitation.values.push_back(v);
-            for (unsigned int d = 0; d < 3; ++d)
-              response[d].values.push_back(trial.surface_velocity()[d]);
-            recent = std::max(recent, trial.surface_velocity().norm());
-          }
-        peak = std::max(peak, recent);
-        if (excitation.values.size() > 200 * period)
-          throw UserError(
-            "The layers at the sides of the model ring too long for a motion "
-            "\"Given at\" the free surface; lower the \"Maximum frequency\" in "
-            "section \"Wave field\" to what the mesh resolves, or give the "
-            "layers damping in section \"Damping\".");
-      }
-    while (recent > 1e-4 * peak);
-
-    GroundMotionSignals incident;
-    for (unsigned int d = 0; d < 3; ++d)
-      if (surface[d])
-        {
-          // the incident wave comes before its answer at the surface
-          const unsigned int delay = static_cast<unsigned int>(
-            std::ceil(2. * column.travel_time() / time_step));
-          TimeSeries target{time_step, std::vector<double>(delay, 0.)};
-          for (unsigned int i = 0; i * time_step <= duration; ++i)
-            target.values.push_back(surface[d]->acceleration(i * time_step));
-          incident[d] = std::make_unique<Tabulated>(TimeSeries{
-            time_step,
-            deconvolve(response[d], excitation, target, maximum_frequency)});
-        }
-    return incident;
   }
 } // namespace Voussoir

@@ -1,4 +1,4 @@
-#include <voussoir/loads/wave_column.h>
+#include <voussoir/loads/column_field.h>
 
 #include "check.h"
 #include "histories.h"

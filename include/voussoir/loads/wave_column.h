@@ -102,10 +102,9 @@ namespace Voussoir
       double               s_wave_speed;
     };
 
-    const unsigned int  degree;
-    const double        time_step;
-    const bool          central;
-    std::vector<double> nodes_1d; // Gauss-Lobatto points on [0, 1]
+    const unsigned int degree;
+    const double       time_step;
+    const bool         central;
     // derivatives of the shape functions at the quadrature points, weights
     std::vector<std::vector<double>>                     gradients;
     std::vector<double>                                  weights;
@@ -123,60 +122,6 @@ namespace Voussoir
     std::vector<std::vector<dealii::Tensor<1, 3>>> memory;
     dealii::Tensor<1, 3>                           base;
   };
-
-  /**
-   * The layers of the side faces of a model, on its levels. Levels are left out
-   * where the elements between them would not be stable at the time step (they
-   * belong to no regular side mesh then).
-   */
-  std::vector<WaveColumn::Layer>
-  layers_of_sides(const std::vector<SideFace>         &faces,
-                  const std::vector<ElasticConstants> &constants,
-                  const std::vector<double>           &damping_factors,
-                  const unsigned int                   degree,
-                  const double                         time_step,
-                  const Damping                       &damping);
-
-  /** The column as free field of a model. */
-  class ColumnField : public FreeField
-  {
-  public:
-    ColumnField(WaveColumn            &&column,
-                GroundMotionSignals   &&incident,
-                const BoundaryGeometry &geometry);
-
-    void
-    advance(const double time) override;
-
-    void
-    replay(const double time) override;
-
-  private:
-    WaveColumn          column;
-    GroundMotionSignals incident;
-
-    std::vector<unsigned int>              level_of_node;
-    std::vector<WaveColumn::Interpolation> levels;
-    std::vector<WaveColumn::StressPoint>   stress_points;
-    struct Share
-    {
-      unsigned int         node, stress_point; // stress_point: invalid at base
-      dealii::Tensor<1, 3> area;
-    };
-    std::vector<Share> shares;
-  };
-
-  /**
-   * The wave that must enter at the base for the surface of the column to move
-   * as @p surface does, by Fourier transform of the column's answer to a pulse.
-   * Frequencies above @p maximum_frequency [Hz] are removed.
-   */
-  GroundMotionSignals
-  incident_for_surface(const WaveColumn          &column,
-                       const GroundMotionSignals &surface,
-                       const double               time_step,
-                       const double               duration,
-                       const double               maximum_frequency);
 } // namespace Voussoir
 
 #endif

@@ -1,0 +1,58 @@
+#ifndef voussoir_mesh_arch_dam_sweep_h
+#define voussoir_mesh_arch_dam_sweep_h
+
+#include <voussoir/mesh/arch_dam_section.h>
+
+#include <limits>
+
+namespace Voussoir
+{
+  /**
+   * The lines that the vertices of the cross-section are swept along: through
+   * the dam, and on both sides into the river's direction. They run in layers
+   * from downstream to upstream.
+   */
+  class ArchDamSweep
+  {
+  public:
+    /**
+     * @param rock_extent  rock on both sides of the dam over its height
+     * @param n_thickness  layers in the dam
+     * @param cell_size    of the layers next to it [m]
+     * @param growth       size ratio of successive layers beyond
+     * @param largest_cell at which they stop growing [m]
+     */
+    ArchDamSweep(const ArchDamCrossSection &section,
+                 const ArchDamSections     &sections,
+                 const double               height,
+                 const double               rock_extent,
+                 const unsigned int         n_thickness,
+                 const double               cell_size,
+                 const double               growth,
+                 const double               largest_cell);
+
+    /** x, y of all vertices on the line of a vertex of the section [m]. */
+    std::vector<dealii::Point<2>>
+    operator()(const unsigned int vertex) const;
+
+    /** Layers beside the dam that come nearest to a length [m]. */
+    unsigned int
+    layers_along(const double length) const;
+
+    unsigned int first_in_dam, n_layers;
+
+  private:
+    /** Where a line that leaves the dam at an angle has come after a length. */
+    dealii::Tensor<1, 2>
+    path(const double angle, const double length) const;
+
+    const unsigned int                 n_thickness;
+    const double                       turning_length, full_length;
+    std::vector<ArchDamSections::Line> lines;
+    std::vector<double>                points; // beside the dam, up to 1
+    double upstream_end   = std::numeric_limits<double>::lowest();
+    double downstream_end = std::numeric_limits<double>::max();
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,6 +1,7 @@
-# deal_ii_pickup_tests() with three cures: tests called long_* run only with
+# deal_ii_pickup_tests() with four cures: tests called long_* run only with
 # VOUSSOIR_ALL_TESTS; labels that ctest knows (deal.II 9.4 sets LABEL, which
-# ctest ignores); and an edited parameter file runs its test again.
+# ctest ignores); and an edited parameter file runs its test again, as does a
+# new voussoir the tests of what it refuses.
 macro(voussoir_pickup_tests)
   deal_ii_pickup_tests()
   get_filename_component(_subject ${CMAKE_CURRENT_SOURCE_DIR} NAME)
@@ -21,6 +22,9 @@ macro(voussoir_pickup_tests)
     if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm)
       add_custom_command(OUTPUT ${_folder}/output APPEND
         DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm)
+    endif()
+    if(TEST_TARGET STREQUAL "voussoir_refusal")
+      add_custom_command(OUTPUT ${_folder}/output APPEND DEPENDS voussoir)
     endif()
   endforeach()
 endmacro()

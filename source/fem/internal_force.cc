@@ -86,6 +86,7 @@ namespace Voussoir
   InternalForce::sweep(Vector          &force,
                        const Vector    &displacement,
                        const Vector    *memory,
+                       const Vector    &undamped,
                        const double     time_step,
                        const RangeWork &before,
                        const RangeWork &after)
@@ -101,6 +102,7 @@ namespace Voussoir
                                         dst,
                                         src,
                                         memory,
+                                        undamped,
                                         begin,
                                         end,
                                         histories[material],
@@ -111,7 +113,11 @@ namespace Voussoir
     const CellLoop cells = on_runs(discretization.material_of_batch, run);
 
     // The library overlaps the exchange of one source vector with the cell
-    // work; a second one is exchanged beforehand.
+    // work; the others are exchanged beforehand.
+    const bool reads_undamped =
+      &undamped != &displacement && uses_memory && has_memory();
+    if (reads_undamped)
+      undamped.update_ghost_values();
     if (memory == nullptr)
       discretization.matrix_free.cell_loop(
         cells, force, displacement, before, after);
@@ -123,6 +129,8 @@ namespace Voussoir
           cells, force, displacement, {}, after);
         memory->zero_out_ghost_values();
       }
+    if (reads_undamped)
+      undamped.zero_out_ghost_values();
   }
 
 
@@ -157,6 +165,7 @@ namespace Voussoir
     sweep(force,
           displacement,
           nullptr,
+          displacement,
           // the laws follow at once
           std::numeric_limits<double>::max(),
           [&](const unsigned int begin, const unsigned int end) {

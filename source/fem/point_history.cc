@@ -48,99 +48,12 @@ namespace Voussoir
   }
 
 
-  std::size_t
-  PointHistory::index(const unsigned int batch, const unsigned int q) const
-  {
-    return std::size_t(slot_of_batch[batch]) * n_points + q;
-  }
-
-
-  Lanes *
-  PointHistory::values(const unsigned int batch, const unsigned int q)
-  {
-    return numbers.data() + width * index(batch, q);
-  }
-
-
-  const Lanes *
-  PointHistory::values(const unsigned int batch, const unsigned int q) const
-  {
-    return numbers.data() + width * index(batch, q);
-  }
-
-
-  bool
-  PointHistory::is_active(const unsigned int batch, const unsigned int q) const
-  {
-    return active[index(batch, q)] != 0;
-  }
-
-
-  void
-  PointHistory::activate(const unsigned int batch, const unsigned int q)
-  {
-    active[index(batch, q)] = 1;
-  }
-
-
-  Lanes
-  PointHistory::element_length(const unsigned int batch) const
-  {
-    return lengths[slot_of_batch[batch]];
-  }
-
-
-  const SymmetricTensor3<Lanes> &
-  PointHistory::strain_offset(const unsigned int batch,
-                              const unsigned int q) const
-  {
-    return offsets[index(batch, q)];
-  }
-
-
-  SymmetricTensor3<Lanes> &
-  PointHistory::strain_offset(const unsigned int batch, const unsigned int q)
-  {
-    return offsets[index(batch, q)];
-  }
-
-
-  const SymmetricTensor3<Lanes> &
-  PointHistory::static_strain(const unsigned int batch,
-                              const unsigned int q) const
-  {
-    return static_strains[index(batch, q)];
-  }
-
-
-  SymmetricTensor3<Lanes> &
-  PointHistory::static_strain(const unsigned int batch, const unsigned int q)
-  {
-    return static_strains[index(batch, q)];
-  }
-
-
   void
   PointHistory::make_offsets()
   {
     offsets.resize(active.size());
     static_strains.resize(active.size());
     has_offset = true;
-  }
-
-
-  Lanes &
-  PointHistory::damping_share(const unsigned int batch, const unsigned int q)
-  {
-    return damping_shares[index(batch, q)];
-  }
-
-
-  const Lanes &
-  PointHistory::damping_share(const unsigned int batch,
-                              const unsigned int q) const
-  {
-    return damping_shares[index(batch, q)];
   }
 
 

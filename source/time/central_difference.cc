@@ -34,9 +34,8 @@ namespace Voussoir
     , mass_coefficient(damping.mass_coefficient)
     , stiffness_coefficient(damping.stiffness_coefficient)
     , central(!paper_scheme)
-    , uniform(
-        (internal_force.uniform_damping() && !internal_force.has_memory()) ||
-        (n_branches == 0 && stiffness_coefficient == 0.))
+    , damped(n_branches > 0 || stiffness_coefficient != 0.)
+    , uniform(internal_force.uniform_damping() || !damped)
     , uniform_factor(internal_force.damping_factor())
     , force(discretization.create_vector())
     , effective(force)
@@ -108,6 +107,7 @@ namespace Voussoir
       force,
       effective,
       uniform ? nullptr : &memory,
+      uniform && damped ? state.displacement : effective,
       time_step,
       [&](const unsigned int begin, const unsigned int end) {
         update_memory(state, begin, end);

@@ -40,19 +40,21 @@ namespace Voussoir
     /**
      * Like add_force, but by the law with its memory, which goes one step on:
      *   f = sum B^T ( sigma(e) - D e_0
-     *                 + b D (k B (u + s w) - m B u - (k - m) e_p) ) ,
-     *   e = m B u + e_0 ,
-     * with the stiffness scale k of the damping model, the factor m on strains
-     * (one, but in the static stage) and the strain offset e_0 of the history.
-     * The last term is the stress of damping alone, of which damage leaves the
-     * share b, and in which the plastic strain e_p takes no part. While the law
-     * is elastic, this is add_force.
+     *                 + b D (k B (u + s w) - m B u_0 - (k - m) e_p) ) ,
+     *   e = m B u_0 + e_0 ,
+     * with the displacement u_0 [m], @p undamped, of which u may differ by a
+     * damping memory of its own, the stiffness scale k of the damping model,
+     * the factor m on strains (one, but in the static stage) and the strain
+     * offset e_0 of the history. The last term is the stress of damping alone,
+     * of which damage leaves the share b, and in which the plastic strain e_p
+     * takes no part. While the law is elastic, this is add_force.
      */
     virtual void
     add_response(const MatrixFree  &matrix_free,
                  Vector            &force,
                  const Vector      &displacement,
                  const Vector      *memory,
+                 const Vector      &undamped,
                  const unsigned int begin,
                  const unsigned int end,
                  PointHistory      &history,
@@ -153,16 +155,18 @@ namespace Voussoir
       std::function<void(const unsigned int, const unsigned int)>;
 
     /**
-     * force = f(displacement + s memory) by the materials' laws, whose memory
-     * goes on by @p time_step, with @p before and @p after called
-     * once for every owned entry: before it is first read, after its last
-     * contribution has arrived (on one rank; across ranks the library orders
-     * the exchange accordingly). @p before may still change the source vectors.
+     * force = f(displacement + s memory) by the materials' laws, which see the
+     * strain of @p undamped and whose memory goes on by @p time_step, with @p
+     * before and @p after called once for every owned entry: before it is first
+     * read, after its last contribution has arrived (on one rank; across ranks
+     * the library orders the exchange accordingly). @p before may still change
+     * the source vectors.
      */
     void
     sweep(Vector          &force,
           const Vector    &displacement,
           const Vector    *memory,
+          const Vector    &undamped,
           const double     time_step,
           const RangeWork &before,
           const RangeWork &after);

@@ -36,41 +36,68 @@ namespace Voussoir
 
     /** The `width` numbers of point @p q of the cells of a batch. */
     Lanes *
-    values(const unsigned int batch, const unsigned int q);
+    values(const unsigned int batch, const unsigned int q)
+    {
+      return numbers.data() + width * index(batch, q);
+    }
 
     const Lanes *
-    values(const unsigned int batch, const unsigned int q) const;
+    values(const unsigned int batch, const unsigned int q) const
+    {
+      return numbers.data() + width * index(batch, q);
+    }
 
     /** Whether point @p q of any cell of the batch has left the elastic range.
      */
     bool
-    is_active(const unsigned int batch, const unsigned int q) const;
+    is_active(const unsigned int batch, const unsigned int q) const
+    {
+      return active[index(batch, q)] != 0;
+    }
 
     void
-    activate(const unsigned int batch, const unsigned int q);
+    activate(const unsigned int batch, const unsigned int q)
+    {
+      active[index(batch, q)] = 1;
+    }
 
     /** Width of the band in which a crack lives: the edge of a cube of the
      *  cell's volume over the degree of the elements [m]. */
-    Lanes
-    element_length(const unsigned int batch) const;
+    const Lanes &
+    element_length(const unsigned int batch) const
+    {
+      return lengths[slot_of_batch[batch]];
+    }
 
     /**
      * Strain that the law sees beside that of the displacement, of the static
      * state and of temperature; see CellKernel::add_response.
      */
     const SymmetricTensor3<Lanes> &
-    strain_offset(const unsigned int batch, const unsigned int q) const;
+    strain_offset(const unsigned int batch, const unsigned int q) const
+    {
+      return offsets[index(batch, q)];
+    }
 
     SymmetricTensor3<Lanes> &
-    strain_offset(const unsigned int batch, const unsigned int q);
+    strain_offset(const unsigned int batch, const unsigned int q)
+    {
+      return offsets[index(batch, q)];
+    }
 
     /** Elastic strain of the static state, before which damping does not
      *  reach back. */
     const SymmetricTensor3<Lanes> &
-    static_strain(const unsigned int batch, const unsigned int q) const;
+    static_strain(const unsigned int batch, const unsigned int q) const
+    {
+      return static_strains[index(batch, q)];
+    }
 
     SymmetricTensor3<Lanes> &
-    static_strain(const unsigned int batch, const unsigned int q);
+    static_strain(const unsigned int batch, const unsigned int q)
+    {
+      return static_strains[index(batch, q)];
+    }
 
     bool has_offset = false;
 
@@ -80,10 +107,16 @@ namespace Voussoir
 
     /** Share of the stress of damping that damage has left. */
     Lanes &
-    damping_share(const unsigned int batch, const unsigned int q);
+    damping_share(const unsigned int batch, const unsigned int q)
+    {
+      return damping_shares[index(batch, q)];
+    }
 
     const Lanes &
-    damping_share(const unsigned int batch, const unsigned int q) const;
+    damping_share(const unsigned int batch, const unsigned int q) const
+    {
+      return damping_shares[index(batch, q)];
+    }
 
     /** Keeps the numbers of now as those of the static state. */
     void
@@ -121,7 +154,10 @@ namespace Voussoir
 
   private:
     std::size_t
-    index(const unsigned int batch, const unsigned int q) const;
+    index(const unsigned int batch, const unsigned int q) const
+    {
+      return std::size_t(slot_of_batch[batch]) * n_points + q;
+    }
 
     void
     exchange(const bool load);

@@ -6,6 +6,8 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <cstdint>
+
 namespace Voussoir
 {
   /** The isotropic elastic constants that waves and boundaries go by. */
@@ -72,6 +74,18 @@ namespace Voussoir
   lane_of(const Lanes &numbers, const unsigned int lane)
   {
     return numbers[lane];
+  }
+
+  /** Whether any lane is above a limit. */
+  template <typename Number>
+  bool
+  any_above(const Number &numbers, const double limit)
+  {
+    // as wide as the numbers, so that one instruction compares all lanes
+    std::uint64_t any = 0;
+    for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
+      any |= std::uint64_t(lane_of(numbers, lane) > limit);
+    return any != 0;
   }
 
   /** What a law with memory knows of a point besides its strain. */

@@ -156,6 +156,7 @@ namespace Voussoir
                  Vector            &force,
                  const Vector      &displacement,
                  const Vector      *memory,
+                 const Vector      &undamped,
                  const unsigned int begin,
                  const unsigned int end,
                  PointHistory      &history,
@@ -163,8 +164,11 @@ namespace Voussoir
     {
       if constexpr (has_memory)
         {
+          const bool damped = memory != nullptr || &undamped != &displacement;
           with_cells(matrix_free, [&](auto &&cell) {
-            std::decay_t<decltype(cell)> own(matrix_free);
+            // the law goes by the strain without damping
+            std::decay_t<decltype(cell)> undamped_cell(matrix_free);
+            auto                        &own = damped ? undamped_cell : cell;
             for (unsigned int batch = begin; batch < end; ++batch)
               {
                 const Lanes length = history.element_length(batch);
@@ -173,7 +177,7 @@ namespace Voussoir
                 if (memory != nullptr)
                   add_memory(cell, *memory);
                 cell.evaluate(dealii::EvaluationFlags::gradients);
-                bool knows_own = false;
+                bool knows_own = !damped;
                 for (const unsigned int q : cell.quadrature_point_indices())
                   {
                     SymmetricTensor3<Lanes> stress =
@@ -189,19 +193,18 @@ namespace Voussoir
                           {
                             own.reinit(batch);
                             own.gather_evaluate(
-                              displacement, dealii::EvaluationFlags::gradients);
+                              undamped, dealii::EvaluationFlags::gradients);
                             knows_own = true;
                           }
-                        stress =
-                          go_on(cell.get_symmetric_gradient(q),
-                                own.get_symmetric_gradient(q),
-                                batch,
-                                q,
-                                matrix_free.n_active_entries_per_cell_batch(
-                                  batch),
-                                cell.JxW(q),
-                                time_step,
-                                history);
+                        stress = stress_by_law(
+                          cell.get_symmetric_gradient(q),
+                          own.get_symmetric_gradient(q),
+                          batch,
+                          q,
+                          matrix_free.n_active_entries_per_cell_batch(batch),
+                          cell.JxW(q),
+                          time_step,
+                          history);
                       }
                     cell.submit_symmetric_gradient(stress, q);
                   }
@@ -212,7 +215,7 @@ namespace Voussoir
           });
         }
       else
-        (void)history, (void)time_step,
+        (void)undamped, (void)history, (void)time_step,
           add_force(matrix_free, force, displacement, memory, begin, end);
     }
 
@@ -485,15 +488,6 @@ namespace Voussoir
     // to the stress or takes from it
     static constexpr double watched = 0.8;
 
-    static bool
-    any_above(const Lanes &values, const double limit)
-    {
-      for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-        if (values[lane] > limit)
-          return true;
-      return false;
-    }
-
     /** Lanes beyond the last cell of a material hold copies. */
     static double
     sum_of_cells(const MatrixFree  &matrix_free,
@@ -522,14 +516,14 @@ namespace Voussoir
      * @param own_strain B u
      */
     SymmetricTensor3<Lanes>
-    go_on(const SymmetricTensor3<Lanes> &filtered,
-          const SymmetricTensor3<Lanes> &own_strain,
-          const unsigned int             batch,
-          const unsigned int             q,
-          const unsigned int             n_cells,
-          const Lanes                   &weight,
-          const double                   time_step,
-          PointHistory                  &history) const
+    stress_by_law(const SymmetricTensor3<Lanes> &filtered,
+                  const SymmetricTensor3<Lanes> &own_strain,
+                  const unsigned int             batch,
+                  const unsigned int             q,
+                  const unsigned int             n_cells,
+                  const Lanes                   &weight,
+                  const double                   time_step,
+                  PointHistory                  &history) const
     {
       SymmetricTensor3<Lanes> strain = strain_factor * own_strain, offset,
                               elastic_static;
@@ -565,15 +559,13 @@ namespace Voussoir
           0.5 * (before - now) * (filter_stress * filter) / filter_stiffness;
 
       history.damping_share(batch, q) = now;
-      bool active                     = false;
       for (unsigned int lane = 0; lane < n_cells; ++lane)
-        {
-          history.dissipated += lost[lane] * weight[lane];
+        history.dissipated += lost[lane] * weight[lane];
+      if (!history.is_active(batch, q))
+        for (unsigned int lane = 0; lane < n_cells; ++lane)
           for (unsigned int i = 0; i < Law::n_history; ++i)
-            active = active || values[i][lane] != 0.;
-        }
-      if (active)
-        history.activate(batch, q);
+            if (values[i][lane] != 0.)
+              history.activate(batch, q);
       return response.stress -
              law.stress(offset - difference * elastic_static) +
              now * (filter_stress + stretch_stress);

@@ -89,7 +89,7 @@ namespace Voussoir
     std::vector<double> decay, gain; // w <- decay w + gain v, of each branch
     double              mass_coefficient, stiffness_coefficient;
     bool                central;
-    bool                uniform;
+    bool                damped, uniform; // stiffness damping, its factors
     double              uniform_factor;
 
     // nodes of the projections, slots of those with nodal terms, and their

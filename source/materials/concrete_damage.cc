@@ -242,15 +242,12 @@ namespace Voussoir
       {
         // principal values lie within mean -+ 2 sqrt(J2 / 3)
         const auto [first, second] = invariants(stress);
-        const Number mean          = first / 3.,
-                     radius        = 2. * std::sqrt(Number(second / 3.));
-        const Number ft            = tension.elastic_limit(0.) * young_modulus *
-                          tension.strength_factor(element_length);
-        const Number fc = compression.elastic_limit(0.) * young_modulus *
-                          (1. - alpha) *
-                          compression.strength_factor(element_length);
-        return std::max(Number((mean + radius) / ft),
-                        Number((radius - mean) / fc));
+        const Number mean          = (1. / 3.) * first,
+                     radius        = std::sqrt(Number((4. / 3.) * second));
+        return std::max(
+          tension.load_level(Number(mean + radius), element_length),
+          compression.load_level(Number((radius - mean) * (1. / (1. - alpha))),
+                                 element_length));
       }
 
       template <typename Number>
@@ -274,14 +271,15 @@ namespace Voussoir
           }
         // gamma = 3: Kc = 2/3
         const Number equivalent_compression =
-          (alpha * first + std::sqrt(Number(0.5 * squares)) + 3. * pressed[0]) /
-          (1. - alpha);
+          1. / (1. - alpha) *
+          (alpha * first + std::sqrt(Number(0.5 * squares)) + 3. * pressed[0]);
 
         // share of what damage lags behind by that this step makes up for
         const double followed =
           relaxation_time == 0. ?
             1. :
             situation.time_step / (relaxation_time + situation.time_step);
+        bool   goes_on = false;
         Number factor[2], intact[2], dissipation[2];
         for (const unsigned int sign : {0, 1})
           {
@@ -292,15 +290,20 @@ namespace Voussoir
             intact[sign]      = 1. - history[2 + sign];
             dissipation[sign] = 0.;
             // only where damage grows, or may: look up the curve
-            const Number before =
-              std::max(history[sign],
-                       Number(curve.elastic_limit(0.) *
-                              curve.strength_factor(situation.element_length)));
             const bool irreversible =
               (sign == 0 ? irreversible_tension : irreversible_crushing) > 0.;
+            const Number growth =
+              std::min(Number(equivalent - young_modulus * history[sign]),
+                       Number(curve.load_level(equivalent,
+                                               situation.element_length) -
+                              1.));
+            if (!any_above(irreversible ? std::max(growth, history[sign]) :
+                                          growth,
+                           0.))
+              continue;
+            goes_on = true;
             for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
-              if (lane_of(equivalent, lane) >
-                    young_modulus * lane_of(before, lane) ||
+              if (lane_of(growth, lane) > 0. ||
                   (irreversible && lane_of(history[sign], lane) > 0.))
                 {
                   const auto progress =
@@ -327,7 +330,7 @@ namespace Voussoir
         response.dissipation =
           0.5 * (dissipation[0] * (effective[0] * response.elastic_strain) +
                  dissipation[1] * (effective[1] * response.elastic_strain));
-        for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
+        for (unsigned int lane = 0; goes_on && lane < n_lanes<Number>(); ++lane)
           if (lane_of(factor[0], lane) * lane_of(factor[1], lane) != 1.)
             for (unsigned int i = 0; i < 6; ++i)
               {

@@ -102,17 +102,14 @@ namespace Voussoir
       {
         // principal values lie within mean -+ 2 sqrt(J2 / 3)
         const auto [first, second] = invariants(stress);
-        const Number mean          = first / 3.,
-                     radius        = 2. * std::sqrt(Number(second / 3.));
-        const Number ft            = young_modulus * tension.elastic_limit(0.) *
-                          tension.strength_factor(element_length);
-        const Number fc = young_modulus * shear.elastic_limit(0.) *
-                          shear.strength_factor(element_length);
-        return std::max(Number((mean + radius) / ft),
-                        Number((friction *
-                                  std::min(Number(mean + radius), Number(0.)) -
-                                (mean - radius)) /
-                               fc));
+        const Number mean          = (1. / 3.) * first,
+                     radius        = std::sqrt(Number((4. / 3.) * second)),
+                     largest = mean + radius, smallest = mean - radius;
+        return std::max(
+          tension.load_level(largest, element_length),
+          shear.load_level(Number(friction * std::min(largest, Number(0.)) -
+                                  smallest),
+                           element_length));
       }
 
       template <typename Number>

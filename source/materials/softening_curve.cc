@@ -38,6 +38,8 @@ namespace Voussoir
     // a curve without displacements has no size
     if (energy(nodes) == 0.)
       widest = widest_of_curve = 1e30;
+    inverse_limit       = 1. / nodes[0].stress;
+    half_inverse_widest = 0.5 / widest;
   }
 
 

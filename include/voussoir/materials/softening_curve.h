@@ -101,6 +101,19 @@ namespace Voussoir
     }
 
     /**
+     * A uniaxial stress [Pa] over the elastic limit, or a little more where the
+     * strength factor is below one: a bound without its root, by
+     * sqrt(x) <= (1 + x)/2.
+     */
+    template <typename Number>
+    Number
+    load_level(const Number &stress, const Number &band) const
+    {
+      return inverse_limit * stress *
+             std::max(Number(1.), Number(0.5 + half_inverse_widest * band));
+    }
+
+    /**
      * Share of a straight line of the same energy in the falling branch: above
      * zero where the band is so wide that the steepest piece of the curve
      * itself would snap back.
@@ -138,6 +151,7 @@ namespace Voussoir
     unsigned int      peak     = 0;  // node
     double            straight = 0.; // displacement over loss of stress [m/Pa]
     double            widest_of_curve = 0., widest = 0.;
+    double            inverse_limit = 0., half_inverse_widest = 0.;
   };
 } // namespace Voussoir
 

@@ -24,13 +24,11 @@ namespace Voussoir
      * closes has its stiffness back. A share of the inelastic strain may be
      * irreversible.
      */
-    struct ConcreteDamage : IsotropicElasticity
+    struct ConcreteDamage : IsotropicElasticity, TensileCrack
     {
       // equivalent strains in tension and compression, damages, e_p
       static constexpr unsigned int n_history = 10;
 
-      double tensile_strength      = 2.5e6;
-      double fracture_energy       = 250.;
       double compressive_strength  = 25e6;
       double crushing_energy       = 30e3;
       double biaxial_ratio         = 1.16;
@@ -50,14 +48,7 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm)
       {
         IsotropicElasticity::declare_parameters(prm);
-        prm.add_parameter("Tensile strength",
-                          tensile_strength,
-                          "Uniaxial tensile strength ft [Pa].",
-                          Patterns::Double(1.));
-        prm.add_parameter("Fracture energy",
-                          fracture_energy,
-                          "Energy Gf that a crack takes per area [N/m].",
-                          Patterns::Double(1e-3));
+        TensileCrack::declare_parameters(prm);
         prm.add_parameter("Compressive strength",
                           compressive_strength,
                           "Uniaxial compressive strength fc [Pa].",

@@ -22,15 +22,13 @@ namespace Voussoir
      * A crack that closes does not get its stiffness back: the model is for
      * loads that grow, not for cycles.
      */
-    struct Mazars : IsotropicElasticity
+    struct Mazars : IsotropicElasticity, TensileCrack
     {
       // largest equivalent strain, damage
       static constexpr unsigned int n_history = 2;
 
-      double tensile_strength = 2.5e6;
-      double fracture_energy  = 250.;
-      double share            = 1.1;   // A
-      double rate             = 1500.; // B
+      double share = 1.1;   // A
+      double rate  = 1500.; // B
 
       SofteningCurve tension;
 
@@ -38,14 +36,7 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm)
       {
         IsotropicElasticity::declare_parameters(prm);
-        prm.add_parameter("Tensile strength",
-                          tensile_strength,
-                          "Uniaxial tensile strength ft [Pa].",
-                          Patterns::Double(1.));
-        prm.add_parameter("Fracture energy",
-                          fracture_energy,
-                          "Energy Gf that a crack takes per area [N/m].",
-                          Patterns::Double(1e-3));
+        TensileCrack::declare_parameters(prm);
         prm.add_parameter("Compression A",
                           share,
                           "Coefficient A of the damage in compression, usually "

@@ -22,13 +22,11 @@ namespace Voussoir
      * damaged rock has t = (1 - d-) t(s-), the softened fc: cohesion is lost,
      * while the friction of confined rock stays.
      */
-    struct RockDamage : IsotropicElasticity
+    struct RockDamage : IsotropicElasticity, TensileCrack
     {
       // largest equivalent strains in tension and shear
       static constexpr unsigned int n_history = 2;
 
-      double tensile_strength  = 1e6;
-      double fracture_energy   = 100.;
       double cohesion          = 1.5e6;
       double friction_angle    = 45.;
       double shear_energy      = 10e3;
@@ -39,22 +37,17 @@ namespace Voussoir
 
       RockDamage()
       {
-        young_modulus = 15e9;
-        poisson_ratio = 0.25;
+        young_modulus    = 15e9;
+        poisson_ratio    = 0.25;
+        tensile_strength = 1e6;
+        fracture_energy  = 100.;
       }
 
       void
       declare_parameters(ParameterHandler &prm)
       {
         IsotropicElasticity::declare_parameters(prm);
-        prm.add_parameter("Tensile strength",
-                          tensile_strength,
-                          "Uniaxial tensile strength ft [Pa].",
-                          Patterns::Double(1.));
-        prm.add_parameter("Fracture energy",
-                          fracture_energy,
-                          "Energy Gf that a crack takes per area [N/m].",
-                          Patterns::Double(1e-3));
+        TensileCrack::declare_parameters(prm);
         prm.add_parameter("Cohesion",
                           cohesion,
                           "Shear strength c without normal stress [Pa].",

@@ -211,4 +211,18 @@ namespace Voussoir
       throw UserError(place + ": give two pairs or more.");
     return result;
   }
+
+
+  void
+  TensileCrack::declare_parameters(dealii::ParameterHandler &prm)
+  {
+    prm.add_parameter("Tensile strength",
+                      tensile_strength,
+                      "Uniaxial tensile strength ft [Pa].",
+                      dealii::Patterns::Double(1.));
+    prm.add_parameter("Fracture energy",
+                      fracture_energy,
+                      "Energy Gf that a crack takes per area [N/m].",
+                      dealii::Patterns::Double(1e-3));
+  }
 } // namespace Voussoir

@@ -1,4 +1,3 @@
-#include "check.h"
 #include "point_path.h"
 
 namespace Voussoir
@@ -49,17 +48,13 @@ namespace Voussoir
 
 
     /** The law of Lee and Fenves with the constants of the Koyna study. */
-    class MaterialLeeFenves : public Check
+    class MaterialLeeFenves : public MaterialCheck
     {
     public:
       void
-      run(const ParameterFile &file,
-          Verdicts            &verdicts,
-          const MPI_Comm) override
+      look_at(const Material &material, Verdicts &verdicts) const override
       {
-        const auto      parameters = make_case(file);
-        const Material &material   = *parameters->material_list().at(0);
-        const double    modulus    = material.elastic_constants().young_modulus;
+        const double modulus = material.elastic_constants().young_modulus;
 
         // tension as published: opening [m], stress [Pa], damage
         const double table[][3] = {{66.185e-6, 1.94393e6, .381217},
@@ -160,17 +155,13 @@ namespace Voussoir
 
 
     /** A crack of this law that closes, is pressed and opens again. */
-    class MaterialLeeFenvesClosing : public Check
+    class MaterialLeeFenvesClosing : public MaterialCheck
     {
     public:
       void
-      run(const ParameterFile &file,
-          Verdicts            &verdicts,
-          const MPI_Comm) override
+      look_at(const Material &material, Verdicts &verdicts) const override
       {
-        const auto      parameters = make_case(file);
-        const Material &material   = *parameters->material_list().at(0);
-        const double    modulus    = material.elastic_constants().young_modulus;
+        const double modulus = material.elastic_constants().young_modulus;
 
         // an open crack is relieved of its lateral stress too, so that the
         // effective stress is not uniaxial any more
@@ -207,7 +198,7 @@ namespace Voussoir
 
 
     /** Strength of rock before and after it has lost its cohesion. */
-    class MaterialRockShear : public Check
+    class MaterialRockShear : public MaterialCheck
     {
     public:
       void
@@ -220,15 +211,11 @@ namespace Voussoir
       }
 
       void
-      run(const ParameterFile &file,
-          Verdicts            &verdicts,
-          const MPI_Comm) override
+      look_at(const Material &material, Verdicts &verdicts) const override
       {
-        const auto      parameters = make_case(file);
-        const Material &material   = *parameters->material_list().at(0);
-        const double    sine = std::sin(friction_angle * numbers::PI / 180.),
-                     factor  = (1. + sine) / (1. - sine),
-                     one     = 2. * cohesion * std::sqrt(factor);
+        const double sine   = std::sin(friction_angle * numbers::PI / 180.),
+                     factor = (1. + sine) / (1. - sine),
+                     one    = 2. * cohesion * std::sqrt(factor);
         for (const double confinement : {0., 0.5e6, 2e6})
           {
             std::ostringstream name;
@@ -276,7 +263,7 @@ namespace Voussoir
 
 
     /** Mazars' law: energy of a crack and strength in compression. */
-    class MaterialMazars : public Check
+    class MaterialMazars : public MaterialCheck
     {
     public:
       void
@@ -289,13 +276,9 @@ namespace Voussoir
       }
 
       void
-      run(const ParameterFile &file,
-          Verdicts            &verdicts,
-          const MPI_Comm) override
+      look_at(const Material &material, Verdicts &verdicts) const override
       {
-        const auto      parameters = make_case(file);
-        const Material &material   = *parameters->material_list().at(0);
-        const auto      constants  = material.elastic_constants();
+        const auto constants = material.elastic_constants();
         for_each_cell_size(
           material,
           [&](PointTest &test, const double size, const auto &in_cell) {

@@ -1,6 +1,4 @@
-#include <voussoir/materials/point_test.h>
-
-#include "check.h"
+#include "point_path.h"
 
 namespace Voussoir
 {
@@ -9,7 +7,7 @@ namespace Voussoir
   namespace
   {
     /** Six tests under one stress each give the constants along x, y, z. */
-    class MaterialOrthotropic : public Check
+    class MaterialOrthotropic : public MaterialCheck
     {
     public:
       void
@@ -21,14 +19,10 @@ namespace Voussoir
       }
 
       void
-      run(const ParameterFile &file,
-          Verdicts            &verdicts,
-          const MPI_Comm) override
+      look_at(const Material &material, Verdicts &verdicts) const override
       {
-        const auto      parameters = make_case(file);
-        const Material &material   = *parameters->material_list().at(0);
-        const auto     &names      = PointTest::component_names();
-        const double    stress     = 1e6;
+        const auto  &names  = PointTest::component_names();
+        const double stress = 1e6;
         for (unsigned int i = 0; i < 6; ++i)
           {
             PointTest           test(material, 1., 1e-3);

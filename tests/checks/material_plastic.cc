@@ -2,7 +2,6 @@
 
 #include <random>
 
-#include "check.h"
 #include "point_path.h"
 
 namespace Voussoir
@@ -16,7 +15,7 @@ namespace Voussoir
      * laboratory, corners of the yield surface, growth of volume. Stresses of
      * the tests are positive in compression.
      */
-    class MaterialPlastic : public Check
+    class MaterialPlastic : public MaterialCheck
     {
     public:
       void
@@ -37,14 +36,10 @@ namespace Voussoir
       }
 
       void
-      run(const ParameterFile &file,
-          Verdicts            &verdicts,
-          const MPI_Comm) override
+      look_at(const Material &material, Verdicts &verdicts) const override
       {
-        const auto      parameters = make_case(file);
-        const Material &material   = *parameters->material_list().at(0);
-        const double    phi        = friction_angle * numbers::PI / 180.,
-                     psi           = dilation_angle * numbers::PI / 180.;
+        const double phi    = friction_angle * numbers::PI / 180.,
+                     psi    = dilation_angle * numbers::PI / 180.;
         const double factor = (1. + std::sin(phi)) / (1. - std::sin(phi)),
                      one = 2. * cohesion * std::cos(phi) / (1. - std::sin(phi));
         const double apex = cohesion / std::tan(phi);

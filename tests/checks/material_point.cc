@@ -1,4 +1,3 @@
-#include "check.h"
 #include "point_path.h"
 
 namespace Voussoir
@@ -32,7 +31,7 @@ namespace Voussoir
      * One point of concrete: energy of a crack for several sizes of cells,
      * closing and opening again, strength under biaxial pressure.
      */
-    class MaterialPoint : public Check
+    class MaterialPoint : public MaterialCheck
     {
     public:
       void
@@ -51,14 +50,10 @@ namespace Voussoir
       }
 
       void
-      run(const ParameterFile &file,
-          Verdicts            &verdicts,
-          const MPI_Comm) override
+      look_at(const Material &material, Verdicts &verdicts) const override
       {
-        const auto      parameters = make_case(file);
-        const Material &material   = *parameters->material_list().at(0);
-        const double    modulus    = material.elastic_constants().young_modulus;
-        const double    limit      = strength_in_tension / modulus;
+        const double modulus = material.elastic_constants().young_modulus;
+        const double limit   = strength_in_tension / modulus;
 
         for_each_cell_size(
           material,

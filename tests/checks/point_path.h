@@ -5,8 +5,26 @@
 
 #include <functional>
 
+#include "check.h"
+
 namespace Voussoir
 {
+  /** A check of the first material of a case, at points by itself. */
+  class MaterialCheck : public Check
+  {
+  public:
+    void
+    run(const ParameterFile &file, Verdicts &verdicts, const MPI_Comm) override
+    {
+      const auto parameters = make_case(file);
+      look_at(*parameters->material_list().at(0), verdicts);
+    }
+
+  private:
+    virtual void
+    look_at(const Material &material, Verdicts &verdicts) const = 0;
+  };
+
   /** What is given of xx, yy, zz. */
   using NormalControls = std::array<PointTest::Control, 3>;
 

@@ -1,6 +1,8 @@
 #ifndef voussoir_materials_softening_curve_h
 #define voussoir_materials_softening_curve_h
 
+#include <deal.II/base/parameter_handler.h>
+
 #include <string>
 #include <vector>
 
@@ -152,6 +154,16 @@ namespace Voussoir
     double            straight = 0.; // displacement over loss of stress [m/Pa]
     double            widest_of_curve = 0., widest = 0.;
     double            inverse_limit = 0., half_inverse_widest = 0.;
+  };
+
+  /** Entries of the laws that crack in tension. */
+  struct TensileCrack
+  {
+    double tensile_strength = 2.5e6; // ft [Pa]
+    double fracture_energy  = 250.;  // Gf [N/m]
+
+    void
+    declare_parameters(dealii::ParameterHandler &prm);
   };
 } // namespace Voussoir
 

@@ -126,11 +126,15 @@ namespace Voussoir
                       "What to record, in this order; each has a section here.",
                       Patterns::MultipleSelection(
                         choices(Registry<Observer>::names())));
-    prm.add_parameter("Energy interval",
-                      energy_interval,
-                      "Time between two lines of the energy balance, at which "
-                      "the run is also checked for growth and NaN [s].",
-                      Patterns::Double(1e-9));
+    prm.add_parameter(
+      "Energy interval",
+      energy_interval,
+      "Time between two lines of the energy balance, at which "
+      "the run is also checked for growth and NaN [s]. The loss "
+      "in damping is integrated over these lines: where they "
+      "are far apart for the motion, the balance does not "
+      "close.",
+      Patterns::Double(1e-9));
     prm.add_parameter(
       "Checkpoint interval",
       checkpoint_interval,

@@ -39,15 +39,17 @@ namespace Voussoir
 
     /**
      * Like add_force, but by the law with its memory, which goes one step on:
-     *   f = sum B^T ( sigma(e) - D e_0
-     *                 + b D (k B (u + s w) - m B u_0 - (k - m) e_p) ) ,
+     *   f = sum B^T ( sigma(e) - D (e_0 - (k - m) e_s)
+     *                 + b D (k B (u + s w - u_0)
+     *                        + (k - m) (B u_0 - e_p - e_s)) ) ,
      *   e = m B u_0 + e_0 ,
      * with the displacement u_0 [m], @p undamped, of which u may differ by a
      * damping memory of its own, the stiffness scale k of the damping model,
-     * the factor m on strains (one, but in the static stage) and the strain
-     * offset e_0 of the history. The last term is the stress of damping alone,
-     * of which damage leaves the share b, and in which the plastic strain e_p
-     * takes no part. While the law is elastic, this is add_force.
+     * the factor m on strains (one, but in the static stage), and the strain
+     * offset e_0 and the static strain e_s of the history. The term with b is
+     * the stress of damping alone, of which damage leaves the share b, and in
+     * which the plastic strain e_p takes no part. While the law is elastic,
+     * this is add_force.
      */
     virtual void
     add_response(const MatrixFree  &matrix_free,
@@ -63,7 +65,8 @@ namespace Voussoir
     /**
      * Sets the strain offset e_0 of the history, for which the strain e under
      * the static displacement u_s [m] and the temperature T [K] of each node is
-     * a (B u_s - alpha T I), with the static factor a of the material.
+     * a (B u_s - alpha T I), with the static factor a of the material, and the
+     * static strain e_s = B u_s less the plastic strain so far.
      */
     virtual void
     set_offset(const MatrixFree  &matrix_free,

@@ -65,10 +65,7 @@ namespace Voussoir
     };
     check_names("Held materials", held_materials);
     check_names("Massless materials", massless_materials);
-    if (split_list(held_materials).empty() &&
-        split_list(boundaries.fixed).empty() &&
-        split_list(boundaries.roller).empty() &&
-        split_list(boundaries.absorbing).empty())
+    if (split_list(held_materials).empty() && boundaries.empty())
       throw UserError("Section \"Modes\" asks for modes of a model that "
                       "nothing holds; name faces in section \"Boundaries\", or "
                       "\"Held materials\" in section \"Modes\".");
@@ -358,14 +355,13 @@ namespace Voussoir
     const ScaledMaterials as_given(model.materials,
                                    [](const Material &) { return 1.; });
 
-    std::vector<Support> supports = model.boundaries.supports();
-    for (const std::string &set : split_list(model.boundaries.absorbing))
-      supports.push_back({set, false});
     const auto held = among(model.material_names, parameters.held_materials);
     const AffineConstraints<double> constraints =
-      discretization.make_constraints(supports, [&](const Grid::Cell &cell) {
-        return held[model.material_of_cell(cell)];
-      });
+      discretization.make_constraints(
+        model.boundaries.supports_with_absorbing(false),
+        [&](const Grid::Cell &cell) {
+          return held[model.material_of_cell(cell)];
+        });
     const ElasticSolver solver(
       discretization,
       model.internal_force,

@@ -137,18 +137,6 @@ namespace Voussoir
     }
 
 
-    std::vector<Support>
-    static_supports(const BoundaryParameters &boundaries,
-                    const std::string        &kind)
-    {
-      std::vector<Support> supports = boundaries.supports();
-      if (kind != "springs")
-        for (const std::string &set : split_list(boundaries.absorbing))
-          supports.push_back({set, kind == "roller"});
-      return supports;
-    }
-
-
     /**
      * Equilibrium with cracks and plastic flow by the method of initial
      * stresses (Zienkiewicz et al. 1969), u += K^-1 (F - f(u)) with the elastic
@@ -207,10 +195,12 @@ namespace Voussoir
                                             return material.static_factor;
                                           });
       const Timer                         clock;
-      const AffineConstraints<double>     constraints =
+      const bool springs = parameters.supports == "springs";
+      const AffineConstraints<double> constraints =
         discretization.make_constraints(
-          static_supports(model.boundaries, parameters.supports));
-      const bool                     springs = parameters.supports == "springs";
+          springs ? model.boundaries.supports.list() :
+                    model.boundaries.supports_with_absorbing(
+                      parameters.supports == "roller"));
       std::unique_ptr<ElasticSolver> solver;
       std::unique_ptr<Relaxation>    relaxation;
       const bool has_memory = model.internal_force.has_memory();

@@ -250,14 +250,14 @@ namespace Voussoir
     damping.check(modes.number);
     const bool rigid_base = wave.enters_through == "rigid base";
     if (ground_motion.type != "none" && !rigid_base &&
-        split_list(boundaries.absorbing).empty())
+        split_list(boundaries.absorbing.face_sets).empty())
       throw UserError("The earthquake of section \"Ground motion\" enters "
                       "through an absorbing boundary, but \"Absorbing\" in "
                       "section \"Boundaries\" names no face sets; name some, "
                       "or set \"Enters through = rigid base\" in section "
                       "\"Wave field\".");
     if (ground_motion.type != "none" && rigid_base &&
-        split_list(boundaries.fixed).empty())
+        split_list(boundaries.supports.fixed).empty())
       throw UserError("The earthquake of section \"Ground motion\" enters "
                       "through a rigid base, but \"Fixed\" in section "
                       "\"Boundaries\" names no face sets; name the base.");

@@ -146,11 +146,13 @@ namespace Voussoir
           return materials[coarse_materials[cell]]->relative_cost();
         },
         communicator)
-    , discretization(
-        grid,
-        parameters.discretization,
-        (parameters.boundaries.check(grid), parameters.boundaries.supports()),
-        [this](const Grid::Cell &cell) { return material_of(cell); })
+    , discretization(grid,
+                     parameters.discretization,
+                     (parameters.boundaries.check(grid),
+                      parameters.boundaries.supports.list()),
+                     [this](const Grid::Cell &cell) {
+                       return material_of(cell);
+                     })
     , mass(discretization,
            for_each_material(materials,
                              [](const Material &m) {
@@ -163,7 +165,7 @@ namespace Voussoir
                                                      materials.end()))
     , boundary(
         discretization,
-        parameters.boundaries,
+        parameters.boundaries.absorbing,
         materials,
         [this](const Grid::Cell &cell) { return material_of(cell); },
         parameters.discretization.quadrature,

@@ -13,22 +13,14 @@ namespace Voussoir
   using namespace dealii;
 
   void
-  BoundaryParameters::declare(ParameterHandler &prm)
+  AbsorbingParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter("Fixed",
-                      fixed,
-                      "Face sets that do not move (relative to the ground, if "
-                      "the earthquake enters through a rigid base).");
-    prm.add_parameter("Roller",
-                      roller,
-                      "Face sets that do not move at right angles to "
-                      "themselves; planes of constant x, y or z.");
     prm.add_parameter("Absorbing",
-                      absorbing,
+                      face_sets,
                       "Face sets that let waves out, and the earthquake in.");
     prm.add_parameter(
       "Absorbing type",
-      absorbing_type,
+      type,
       "Dashpots alone, or springs beside them, which keep the model in place "
       "and suit waves that spread from the dam.",
       Patterns::Selection("viscous|viscous-spring"));
@@ -52,189 +44,264 @@ namespace Voussoir
   }
 
 
-  void
-  BoundaryParameters::check(const Grid &grid) const
+  namespace
   {
-    std::map<std::string, std::string> kind_of_set;
-    for (const auto &[kind, list] : std::map<std::string, std::string>{
-           {"Fixed", fixed}, {"Roller", roller}, {"Absorbing", absorbing}})
-      for (const std::string &set : split_list(list))
-        {
-          grid.check_face_set(set,
-                              "\"" + kind + "\" in section \"Boundaries\"");
-          const auto [place, is_new] = kind_of_set.emplace(set, kind);
-          if (!is_new)
-            throw UserError("In section \"Boundaries\" the face set \"" + set +
-                            "\" is named twice, as \"" + place->second +
-                            "\" and as \"" + kind + "\"; keep one of them.");
-        }
-  }
+    using Matrix       = NodalTerms::Matrix;
+    using Cell         = Triangulation<3>::active_cell_iterator;
+    using Contribution = BoundaryGeometry::Contribution;
 
 
-  std::vector<Support>
-  BoundaryParameters::supports() const
-  {
-    std::vector<Support> result;
-    for (const std::string &set : split_list(fixed))
-      result.push_back({set, false});
-    for (const std::string &set : split_list(roller))
-      result.push_back({set, true});
-    return result;
-  }
+    /** Springs and dashpots per area. */
+    struct BoundaryCoefficients
+    {
+      double normal_spring;     // times 1/r: [Pa]
+      double tangential_spring; // times 1/r: [Pa]
+      double normal_dashpot;    // [Pa s/m]
+      double tangential_dashpot;
+    };
 
 
-  void
-  WaveParameters::declare(ParameterHandler &prm)
-  {
-    prm.add_parameter(
-      "Enters through",
-      enters_through,
-      "Absorbing boundary: as a wave, by forces on the boundary. Rigid base: "
-      "as inertial forces on a model with fixed base; the motion computed is "
-      "then relative to the base.",
-      Patterns::Selection("absorbing boundary|rigid base"));
-    prm.add_parameter(
-      "Type",
-      type,
-      "Vertical: x and y components travel upwards as S waves, z as a P wave, "
-      "through the layers at the model's sides. Oblique waves come in a "
-      "homogeneous half-space; their motion is the first component given.",
-      Patterns::Selection("vertical|oblique P|oblique SV|oblique SH"));
-    prm.add_parameter("Angle",
-                      angle,
-                      "Oblique waves: angle between the direction of travel "
-                      "and the vertical [degrees].",
-                      Patterns::Double(0., 89.));
-    prm.add_parameter("Azimuth",
-                      azimuth,
-                      "Oblique waves: horizontal direction of travel, from x "
-                      "towards y [degrees].",
-                      Patterns::Double(-360., 360.));
-    prm.add_parameter(
-      "Maximum frequency",
-      maximum_frequency,
-      "For motions given at the free surface: what lies above is removed when "
-      "the wave at the base is computed from it [Hz].",
-      Patterns::Double(1.));
-  }
+    /** The coefficients that the parameters choose, for this rock. */
+    BoundaryCoefficients
+    coefficients_for(const AbsorbingParameters &parameters,
+                     const ElasticConstants    &rock)
+    {
+      const double G = rock.shear_modulus();
+      const double E = rock.young_modulus;
+      const double M = rock.lame_lambda() + 2. * G;
+      // physics A2: normal spring r, tangential spring r, factor on rho c
+      const std::map<std::string, std::array<double, 3>> sets{
+        {"paper", {{E / 2., G / 2., 1.}}},
+        {"Liu 3D", {{4. / 3. * G, 2. / 3. * G, 1.}}},
+        {"Liu 2D", {{G, G / 2., 1.}}},
+        {"Deeks-Randolph", {{G, G / 2., 1.}}},
+        {"Du-Zhao", {{M / 1.8, G / 1.8, 1.1}}}};
+      const auto &[normal, tangential, dashpot] =
+        sets.at(parameters.coefficients);
+      const bool   viscous = parameters.type == "viscous";
+      const double springs = viscous ? 0. : 1.;
+      const double factor  = viscous ? 1. : dashpot;
+      return {springs * normal,
+              springs * tangential,
+              factor * rock.density * rock.p_wave_speed(),
+              factor * rock.density * rock.s_wave_speed()};
+    }
 
 
-  BoundaryCoefficients
-  BoundaryCoefficients::of(const std::string      &absorbing_type,
-                           const std::string      &set,
-                           const ElasticConstants &rock)
-  {
-    const double G = rock.shear_modulus();
-    const double E = rock.young_modulus;
-    const double M = rock.lame_lambda() + 2. * G;
-    // physics A2: normal spring r, tangential spring r, factor on rho c
-    const std::map<std::string, std::array<double, 3>> sets{
-      {"paper", {{E / 2., G / 2., 1.}}},
-      {"Liu 3D", {{4. / 3. * G, 2. / 3. * G, 1.}}},
-      {"Liu 2D", {{G, G / 2., 1.}}},
-      {"Deeks-Randolph", {{G, G / 2., 1.}}},
-      {"Du-Zhao", {{M / 1.8, G / 1.8, 1.1}}}};
-    const auto &[normal, tangential, dashpot] = sets.at(set);
-    const double springs = absorbing_type == "viscous" ? 0. : 1.;
-    const double factor  = absorbing_type == "viscous" ? 1. : dashpot;
-    return {springs * normal,
-            springs * tangential,
-            factor * rock.density * rock.p_wave_speed(),
-            factor * rock.density * rock.s_wave_speed()};
-  }
-
-
-  AbsorbingBoundary::AbsorbingBoundary(
-    const Discretization                                  &discretization,
-    const BoundaryParameters                              &parameters,
-    const std::vector<const Material *>                   &materials,
-    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
-    const std::string                                     &quadrature,
-    NodalTerms                                            &terms)
-  {
-    const Grid &grid   = discretization.grid;
-    const auto &scalar = discretization.fe.base_element(0);
-
-    // springs and dashpots at the nodes, tractions at the points at which the
-    // cells integrate, so that a column on the same levels is followed exactly
-    const Quadrature<2> traction_points =
-      quadrature == "Gauss-Lobatto" ?
-        static_cast<Quadrature<2>>(
-          QGaussLobatto<2>(discretization.degree + 1)) :
-        static_cast<Quadrature<2>>(QGauss<2>(discretization.degree + 1));
-    FaceNodes       face_nodes(discretization.mapping, scalar);
-    FEFaceValues<3> at_points(discretization.mapping,
-                              scalar,
-                              traction_points,
-                              update_values | update_quadrature_points |
-                                update_normal_vectors | update_JxW_values);
-
+    /** Springs [N/m] and dashpots [N s/m] of a part of a face. */
     struct Stiffness
     {
-      NodalTerms::Matrix spring, dashpot;
+      Matrix spring, dashpot;
     };
-    using Traction = BoundaryGeometry::Contribution;
-    std::vector<std::pair<types::global_dof_index, Stiffness>> stiffnesses;
-    std::vector<std::pair<types::global_dof_index, Traction>>  tractions;
-    std::set<unsigned int>                                     touching;
-    Point<3> lower(1e300, 1e300, 1e300), upper(-1e300, -1e300, -1e300);
 
-    const auto visit = [&](const auto &cell, const unsigned int face) {
-      const unsigned int material = material_of_cell(cell);
-      const auto         coefficients =
-        BoundaryCoefficients::of(parameters.absorbing_type,
-                                 parameters.coefficients,
-                                 materials[material]->elastic_constants());
-      touching.insert(material);
 
-      at_points.reinit(cell, face);
-      const auto nodes =
-        discretization.cell_nodes(discretization.dof_cell(cell));
-      for (const auto &[j, x, n, face_area] : face_nodes.of(cell, face))
-        {
-          const double r = parameters.radius > 0. ?
-                             parameters.radius :
-                             x.distance(parameters.source);
-          if (coefficients.normal_spring > 0. && r < 1e-6)
-            throw UserError(
-              "\"Source point\" in section \"Boundaries\" lies on "
-              "the absorbing boundary, where its springs would be "
-              "infinite; move it to the dam, or give a \"Radius\".");
+    /**
+     * t = -(K u + C v) for an area with a normal.
+     *
+     * @param distance of the waves' source [m], or zero without springs
+     */
+    Stiffness
+    stiffness_of(const BoundaryCoefficients &coefficients,
+                 const Tensor<1, 3>         &n,
+                 const double                area,
+                 const double                distance)
+    {
+      const Matrix normal      = symmetrize(outer_product(n, n));
+      const Matrix tangential  = unit_symmetric_tensor<3>() - normal;
+      const double spring_area = distance > 0. ? area / distance : 0.;
+      return {spring_area * (coefficients.normal_spring * normal +
+                             coefficients.tangential_spring * tangential),
+              area * (coefficients.normal_dashpot * normal +
+                      coefficients.tangential_dashpot * tangential)};
+    }
+
+
+    /** The faces of the boundary on this rank. */
+    struct BoundaryFaces
+    {
+      const Discretization                                  &discretization;
+      const std::vector<std::string>                         sets;
+      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell;
+
+      void
+      visit(const std::function<void(const Cell &, const unsigned int)>
+              &function) const
+      {
+        for (const std::string &set : sets)
+          discretization.grid.for_each_face(set, function);
+      }
+
+      const FiniteElement<3> &
+      scalar() const
+      {
+        return discretization.fe.base_element(0);
+      }
+    };
+
+
+    std::vector<unsigned int>
+    find_touching_materials(const BoundaryFaces &faces)
+    {
+      std::set<unsigned int> mine;
+      faces.visit([&](const Cell &cell, const unsigned int) {
+        mine.insert(faces.material_of_cell(cell));
+      });
+      const auto all =
+        join_over_ranks(std::vector<unsigned int>(mine.begin(), mine.end()),
+                        faces.discretization.grid.communicator());
+      const std::set<unsigned int> ordered(all.begin(), all.end());
+      return {ordered.begin(), ordered.end()};
+    }
+
+
+    std::pair<Point<3>, Point<3>>
+    find_extent(const BoundaryFaces &faces)
+    {
+      FaceNodes face_nodes(faces.discretization.mapping, faces.scalar());
+      Point<3>  lower(1e300, 1e300, 1e300), upper(-1e300, -1e300, -1e300);
+      faces.visit([&](const Cell &cell, const unsigned int face) {
+        for (const FaceNode &node : face_nodes.of(cell, face))
           for (unsigned int d = 0; d < 3; ++d)
             {
-              lower[d] = std::min(lower[d], x[d]);
-              upper[d] = std::max(upper[d], x[d]);
+              lower[d] = std::min(lower[d], node.position[d]);
+              upper[d] = std::max(upper[d], node.position[d]);
             }
-          const NodalTerms::Matrix normal = symmetrize(outer_product(n, n));
-          const NodalTerms::Matrix tangential =
-            unit_symmetric_tensor<3>() - normal;
-          for (const auto &share : discretization.carriers(nodes[j]))
-            {
-              const double area        = face_area * share.weight;
-              const double spring_area = r > 0. ? area / r : 0.;
-              stiffnesses.push_back(
+      });
+      const MPI_Comm communicator = faces.discretization.grid.communicator();
+      for (unsigned int d = 0; d < 3; ++d)
+        {
+          lower[d] = Utilities::MPI::min(lower[d], communicator);
+          upper[d] = Utilities::MPI::max(upper[d], communicator);
+        }
+      return {lower, upper};
+    }
+
+
+    /** Distance r of a node from where scattered waves come from [m]. */
+    double
+    source_distance(const AbsorbingParameters  &parameters,
+                    const BoundaryCoefficients &coefficients,
+                    const Point<3>             &node)
+    {
+      const double r = parameters.radius > 0. ?
+                         parameters.radius :
+                         node.distance(parameters.source);
+      if (coefficients.normal_spring > 0. && r < 1e-6)
+        throw UserError("\"Source point\" in section \"Boundaries\" lies on "
+                        "the absorbing boundary, where its springs would be "
+                        "infinite; move it to the dam, or give a \"Radius\".");
+      return r;
+    }
+
+
+    /** Springs and dashpots at the owned nodes, by quadrature at the nodes;
+     *  more than one record of a node where faces meet. */
+    std::vector<std::pair<unsigned int, Stiffness>>
+    find_stiffnesses(const BoundaryFaces                 &faces,
+                     const AbsorbingParameters           &parameters,
+                     const std::vector<const Material *> &materials)
+    {
+      const Discretization &discretization = faces.discretization;
+      FaceNodes             face_nodes(discretization.mapping, faces.scalar());
+      std::vector<std::pair<types::global_dof_index, Stiffness>> records;
+      faces.visit([&](const Cell &cell, const unsigned int face) {
+        const auto coefficients = coefficients_for(
+          parameters,
+          materials[faces.material_of_cell(cell)]->elastic_constants());
+        const auto nodes =
+          discretization.cell_nodes(discretization.dof_cell(cell));
+        for (const auto &[j, x, normal, area] : face_nodes.of(cell, face))
+          {
+            const double r = source_distance(parameters, coefficients, x);
+            for (const auto &share : discretization.carriers(nodes[j]))
+              records.push_back(
                 {share.node,
-                 {spring_area * (coefficients.normal_spring * normal +
-                                 coefficients.tangential_spring * tangential),
-                  area * (coefficients.normal_dashpot * normal +
-                          coefficients.tangential_dashpot * tangential)}});
+                 stiffness_of(coefficients, normal, area * share.weight, r)});
+          }
+      });
+      return discretization.send_to_owners(records);
+    }
+
+
+    /** What the points of the boundary contribute to the traction integrals of
+     *  the owned nodes. */
+    std::vector<std::pair<unsigned int, Contribution>>
+    find_tractions(const BoundaryFaces &faces, FEFaceValues<3> &at_points)
+    {
+      const Discretization &discretization = faces.discretization;
+      std::vector<std::pair<types::global_dof_index, Contribution>> records;
+      faces.visit([&](const Cell &cell, const unsigned int face) {
+        at_points.reinit(cell, face);
+        const double middle = cell->face(face)->center()[2];
+        const auto   nodes =
+          discretization.cell_nodes(discretization.dof_cell(cell));
+        for (unsigned int j = 0; j < nodes.size(); ++j)
+          if (faces.scalar().has_support_on_face(j, face))
+            for (const auto &share : discretization.carriers(nodes[j]))
               for (const unsigned int q : at_points.quadrature_point_indices())
-                tractions.push_back(
+                records.push_back(
                   {share.node,
                    {0,
                     at_points.quadrature_point(q),
                     share.weight * at_points.shape_value(j, q) *
                       at_points.normal_vector(q) * at_points.JxW(q),
-                    cell->face(face)->center()[2]}});
-            }
-        }
-    };
-    for (const std::string &set : split_list(parameters.absorbing))
-      grid.for_each_face(set, visit);
+                    middle}});
+      });
+      return discretization.send_to_owners(records);
+    }
 
-    std::map<unsigned int, unsigned int> boundary_number;
-    for (const auto &[node, record] :
-         discretization.send_to_owners(stiffnesses))
+
+    /** The vertical faces of all ranks: the absorbing ones if they reach around
+     *  the model, else all outer ones. */
+    std::vector<SideFace>
+    find_side_faces(const BoundaryFaces &faces, FEFaceValues<3> &at_points)
+    {
+      const Grid           &grid = faces.discretization.grid;
+      std::vector<SideFace> sides;
+      const auto collect = [&](const Cell &cell, const unsigned int face) {
+        at_points.reinit(cell, face);
+        if (std::abs(at_points.normal_vector(0)[2]) > 0.1)
+          return;
+        SideFace side{1e300, -1e300, 0., faces.material_of_cell(cell)};
+        for (const unsigned int q : at_points.quadrature_point_indices())
+          side.area += at_points.JxW(q);
+        for (unsigned int v = 0; v < 4; ++v)
+          {
+            const double z = cell->face(face)->vertex(v)[2];
+            side.lower     = std::min(side.lower, z);
+            side.upper     = std::max(side.upper, z);
+          }
+        sides.push_back(side);
+      };
+      faces.visit(collect);
+      if (Utilities::MPI::sum(sides.size(), grid.communicator()) == 0)
+        for (const auto &cell : grid.triangulation().active_cell_iterators())
+          if (cell->is_locally_owned())
+            for (const unsigned int face : cell->face_indices())
+              if (cell->at_boundary(face))
+                collect(cell, face);
+      return join_over_ranks(sides, grid.communicator());
+    }
+  } // namespace
+
+
+  AbsorbingBoundary::AbsorbingBoundary(
+    const Discretization                                  &discretization,
+    const AbsorbingParameters                             &parameters,
+    const std::vector<const Material *>                   &materials,
+    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
+    const std::string                                     &quadrature,
+    NodalTerms                                            &terms)
+  {
+    const BoundaryFaces faces{discretization,
+                              split_list(parameters.face_sets),
+                              material_of_cell};
+    touching_materials = find_touching_materials(faces);
+    box                = find_extent(faces);
+
+    std::map<unsigned int, unsigned int> boundary_number; // of an owned node
+    for (const auto &[node, stiffness] :
+         find_stiffnesses(faces, parameters, materials))
       {
         const auto [place, is_new] =
           boundary_number.emplace(node, boundary.nodes.size());
@@ -245,58 +312,33 @@ namespace Voussoir
             springs.emplace_back();
             dashpots.emplace_back();
           }
-        springs[place->second] += record.spring;
-        dashpots[place->second] += record.dashpot;
+        springs[place->second] += stiffness.spring;
+        dashpots[place->second] += stiffness.dashpot;
       }
     for (unsigned int i = 0; i < slots.size(); ++i)
       {
         terms.springs[slots[i]] += springs[i];
         terms.dashpots[slots[i]] += dashpots[i];
       }
-    for (auto [node, contribution] : discretization.send_to_owners(tractions))
+
+    // the tractions at the points at which the cells integrate, so that a
+    // column on the same levels is followed exactly
+    const unsigned int  n_points = discretization.degree + 1;
+    const Quadrature<2> points =
+      quadrature == "Gauss-Lobatto" ?
+        static_cast<Quadrature<2>>(QGaussLobatto<2>(n_points)) :
+        static_cast<Quadrature<2>>(QGauss<2>(n_points));
+    FEFaceValues<3> at_points(discretization.mapping,
+                              faces.scalar(),
+                              points,
+                              update_values | update_quadrature_points |
+                                update_normal_vectors | update_JxW_values);
+    for (auto [node, contribution] : find_tractions(faces, at_points))
       {
         contribution.node = boundary_number.at(node);
         boundary.contributions.push_back(contribution);
       }
-
-    for (unsigned int d = 0; d < 3; ++d)
-      {
-        box.first[d]  = Utilities::MPI::min(lower[d], grid.communicator());
-        box.second[d] = Utilities::MPI::max(upper[d], grid.communicator());
-      }
-    const std::vector<unsigned int> touching_here(touching.begin(),
-                                                  touching.end());
-    for (const auto material :
-         join_over_ranks(touching_here, grid.communicator()))
-      touching.insert(material);
-    touching_materials.assign(touching.begin(), touching.end());
-
-    // Levels of the sides, from the absorbing faces if they reach around the
-    // model, else from all its vertical outer faces.
-    const auto collect = [&](const auto &cell, const unsigned int face) {
-      at_points.reinit(cell, face);
-      if (std::abs(at_points.normal_vector(0)[2]) > 0.1)
-        return;
-      SideFace side{1e300, -1e300, 0., material_of_cell(cell)};
-      for (const unsigned int q : at_points.quadrature_point_indices())
-        side.area += at_points.JxW(q);
-      for (unsigned int v = 0; v < 4; ++v)
-        {
-          const double z = cell->face(face)->vertex(v)[2];
-          side.lower     = std::min(side.lower, z);
-          side.upper     = std::max(side.upper, z);
-        }
-      sides.push_back(side);
-    };
-    for (const std::string &set : split_list(parameters.absorbing))
-      grid.for_each_face(set, collect);
-    if (Utilities::MPI::sum(sides.size(), grid.communicator()) == 0)
-      for (const auto &cell : grid.triangulation().active_cell_iterators())
-        if (cell->is_locally_owned())
-          for (const unsigned int face : cell->face_indices())
-            if (cell->at_boundary(face))
-              collect(cell, face);
-    sides = join_over_ranks(sides, grid.communicator());
+    sides = find_side_faces(faces, at_points);
   }
 
 

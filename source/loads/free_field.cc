@@ -9,6 +9,42 @@ namespace Voussoir
 {
   using namespace dealii;
 
+  void
+  WaveParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter(
+      "Enters through",
+      enters_through,
+      "Absorbing boundary: as a wave, by forces on the boundary. Rigid base: "
+      "as inertial forces on a model with fixed base; the motion computed is "
+      "then relative to the base.",
+      Patterns::Selection("absorbing boundary|rigid base"));
+    prm.add_parameter(
+      "Type",
+      type,
+      "Vertical: x and y components travel upwards as S waves, z as a P wave, "
+      "through the layers at the model's sides. Oblique waves come in a "
+      "homogeneous half-space; their motion is the first component given.",
+      Patterns::Selection("vertical|oblique P|oblique SV|oblique SH"));
+    prm.add_parameter("Angle",
+                      angle,
+                      "Oblique waves: angle between the direction of travel "
+                      "and the vertical [degrees].",
+                      Patterns::Double(0., 89.));
+    prm.add_parameter("Azimuth",
+                      azimuth,
+                      "Oblique waves: horizontal direction of travel, from x "
+                      "towards y [degrees].",
+                      Patterns::Double(-360., 360.));
+    prm.add_parameter(
+      "Maximum frequency",
+      maximum_frequency,
+      "For motions given at the free surface: what lies above is removed when "
+      "the wave at the base is computed from it [Hz].",
+      Patterns::Double(1.));
+  }
+
+
   namespace
   {
     /** A signal times a constant. */

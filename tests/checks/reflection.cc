@@ -41,7 +41,7 @@ namespace Voussoir
         const bool   shear = wave == "S";
         const double G     = rock.shear_modulus();
         const double c     = shear ? rock.s_wave_speed() : rock.p_wave_speed();
-        const double r     = reference->boundaries.radius;
+        const double r     = reference->boundaries.absorbing.radius;
 
         // spring per area of the kind of wave
         const std::map<std::string, double> springs{

@@ -18,7 +18,7 @@ namespace Voussoir
         communicator)
     , discretization(grid,
                      parameters.discretization,
-                     parameters.boundaries.supports(),
+                     parameters.boundaries.supports.list(),
                      [](const Grid::Cell &) { return 0U; })
     , reservoir(water,
                 parameters.grid,

@@ -3,7 +3,7 @@
 
 #include <voussoir/base/log.h>
 #include <voussoir/base/parameter_file.h>
-#include <voussoir/loads/absorbing_boundary.h>
+#include <voussoir/loads/boundary_parameters.h>
 #include <voussoir/materials/material.h>
 
 #include <nlohmann/json.hpp>

@@ -4,7 +4,7 @@
 #include <voussoir/base/log.h>
 #include <voussoir/constraints/contact.h>
 #include <voussoir/fem/initial_state.h>
-#include <voussoir/loads/absorbing_boundary.h>
+#include <voussoir/loads/boundary_parameters.h>
 #include <voussoir/loads/load.h>
 
 #include <nlohmann/json.hpp>

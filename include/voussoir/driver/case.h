@@ -9,7 +9,7 @@
 #include <voussoir/driver/material_test.h>
 #include <voussoir/fem/damping.h>
 #include <voussoir/fem/discretization.h>
-#include <voussoir/loads/absorbing_boundary.h>
+#include <voussoir/loads/boundary_parameters.h>
 #include <voussoir/loads/ground_motion.h>
 #include <voussoir/loads/load.h>
 #include <voussoir/loads/reservoir_parameters.h>

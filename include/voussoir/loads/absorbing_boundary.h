@@ -6,52 +6,17 @@
 
 namespace Voussoir
 {
-  /** The entries of the section "Boundaries". */
-  struct BoundaryParameters
+  /** The entries of the section "Boundaries" on the absorbing faces. */
+  struct AbsorbingParameters
   {
-    std::string      fixed, roller, absorbing;
-    std::string      absorbing_type = "viscous-spring";
-    std::string      coefficients   = "Liu 3D";
-    dealii::Point<3> source;
-    double           radius = 0.;
+    std::string      face_sets;
+    std::string      type         = "viscous-spring";
+    std::string      coefficients = "Liu 3D";
+    dealii::Point<3> source;      // [m]
+    double           radius = 0.; // [m], or zero
 
     void
     declare(dealii::ParameterHandler &prm);
-
-    /** Refuses unknown sets and sets with two kinds of boundary. */
-    void
-    check(const Grid &grid) const;
-
-    std::vector<Support>
-    supports() const;
-  };
-
-  /** The entries of the section "Wave field". */
-  struct WaveParameters
-  {
-    std::string enters_through    = "absorbing boundary";
-    std::string type              = "vertical";
-    double      angle             = 15.;
-    double      azimuth           = 0.;
-    double      maximum_frequency = 25.;
-
-    void
-    declare(dealii::ParameterHandler &prm);
-  };
-
-  /** Springs (per area and distance, see below) and dashpots of a boundary. */
-  struct BoundaryCoefficients
-  {
-    double normal_spring;     // times 1/r: [Pa]
-    double tangential_spring; // times 1/r: [Pa]
-    double normal_dashpot;    // [Pa s/m]
-    double tangential_dashpot;
-
-    /** One of the coefficient sets for this rock. */
-    static BoundaryCoefficients
-    of(const std::string      &absorbing_type,
-       const std::string      &set,
-       const ElasticConstants &rock);
   };
 
   /**
@@ -64,7 +29,7 @@ namespace Voussoir
   public:
     AbsorbingBoundary(
       const Discretization                                  &discretization,
-      const BoundaryParameters                              &parameters,
+      const AbsorbingParameters                             &parameters,
       const std::vector<const Material *>                   &materials,
       const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
       const std::string                                     &quadrature,
@@ -105,23 +70,6 @@ namespace Voussoir
     std::vector<unsigned int>                     touching_materials;
     std::unique_ptr<FreeField>                    field;
   };
-
-  /**
-   * The free field of a case, from what the sections "Ground motion" and "Wave
-   * field" say.
-   */
-  std::unique_ptr<FreeField>
-  make_free_field(const AbsorbingBoundary             &boundary,
-                  const Discretization                &discretization,
-                  const std::vector<const Material *> &materials,
-                  const std::string                   &quadrature,
-                  const Damping                       &damping,
-                  const WaveParameters                &wave,
-                  const std::string                   &given_at,
-                  GroundMotionSignals                &&motion,
-                  const bool                           paper_scheme,
-                  const double                         time_step,
-                  const double                         duration);
 } // namespace Voussoir
 
 #endif

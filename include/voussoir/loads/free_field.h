@@ -10,6 +10,19 @@
 
 namespace Voussoir
 {
+  /** The entries of the section "Wave field". */
+  struct WaveParameters
+  {
+    std::string enters_through    = "absorbing boundary";
+    std::string type              = "vertical";
+    double      angle             = 15.;
+    double      azimuth           = 0.;
+    double      maximum_frequency = 25.;
+
+    void
+    declare(dealii::ParameterHandler &prm);
+  };
+
   /** What a free field must know of an absorbing boundary. */
   struct BoundaryGeometry
   {
@@ -63,6 +76,24 @@ namespace Voussoir
      *  traction over its part of the boundary [N]. */
     std::vector<dealii::Tensor<1, 3>> displacement, velocity, force;
   };
+  class AbsorbingBoundary;
+
+  /**
+   * The free field of a case, from what the sections "Ground motion" and "Wave
+   * field" say.
+   */
+  std::unique_ptr<FreeField>
+  make_free_field(const AbsorbingBoundary             &boundary,
+                  const Discretization                &discretization,
+                  const std::vector<const Material *> &materials,
+                  const std::string                   &quadrature,
+                  const Damping                       &damping,
+                  const WaveParameters                &wave,
+                  const std::string                   &given_at,
+                  GroundMotionSignals                &&motion,
+                  const bool                           paper_scheme,
+                  const double                         time_step,
+                  const double                         duration);
 } // namespace Voussoir
 
 #endif

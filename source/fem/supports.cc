@@ -1,0 +1,32 @@
+#include <voussoir/base/parameter_file.h>
+#include <voussoir/fem/supports.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  void
+  SupportParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Fixed",
+                      fixed,
+                      "Face sets that do not move (relative to the ground, if "
+                      "the earthquake enters through a rigid base).");
+    prm.add_parameter("Roller",
+                      roller,
+                      "Face sets that do not move at right angles to "
+                      "themselves; planes of constant x, y or z.");
+  }
+
+
+  std::vector<Support>
+  SupportParameters::list() const
+  {
+    std::vector<Support> supports;
+    for (const std::string &set : split_list(fixed))
+      supports.push_back({set, false});
+    for (const std::string &set : split_list(roller))
+      supports.push_back({set, true});
+    return supports;
+  }
+} // namespace Voussoir

@@ -1,5 +1,6 @@
 #include <voussoir/base/time_factor.h>
 #include <voussoir/constraints/projection.h>
+#include <voussoir/fem/named_sets.h>
 
 namespace Voussoir
 {
@@ -28,34 +29,20 @@ namespace Voussoir
               const std::string &place) override
       {
         factor.prepare("\"Time function\" in section \"" + place + "\"");
-        mass = &lumped_mass;
-        std::vector<std::pair<types::global_dof_index, char>> records;
-        const auto sets = split_list(face_sets);
-        if (sets.empty())
-          throw UserError("\"Face sets\" in section \"" + place +
-                          "\" is empty; name the face sets it acts on.");
-        for (const std::string &set : sets)
-          {
-            discretization.grid.check_face_set(set,
-                                               "\"Face sets\" in section \"" +
-                                                 place + "\"");
-            const auto &scalar = discretization.fe.base_element(0);
-            discretization.grid.for_each_face(
-              set, [&](const auto &cell, const unsigned int face) {
-                const auto cell_nodes =
-                  discretization.cell_nodes(discretization.dof_cell(cell));
-                for (unsigned int j = 0; j < cell_nodes.size(); ++j)
-                  if (scalar.has_support_on_face(j, face))
-                    for (const auto &share :
-                         discretization.carriers(cell_nodes[j]))
-                      records.emplace_back(share.node, 0);
-              });
-          }
-        std::map<unsigned int, bool> unique;
-        for (const auto &record : discretization.send_to_owners(records))
-          unique[record.first] = true;
-        for (const auto &item : unique)
-          moved_nodes.push_back(item.first);
+        mass               = &lumped_mass;
+        const auto &scalar = discretization.fe.base_element(0);
+        std::set<types::global_dof_index> face_nodes;
+        for_each_face(discretization,
+                      split_list(face_sets),
+                      "\"Face sets\" in section \"" + place + "\"",
+                      [&](const auto &cell, const unsigned int face) {
+                        const auto cell_nodes = discretization.cell_nodes(
+                          discretization.dof_cell(cell));
+                        for (unsigned int j = 0; j < cell_nodes.size(); ++j)
+                          if (scalar.has_support_on_face(j, face))
+                            face_nodes.insert(cell_nodes[j]);
+                      });
+        moved_nodes = owned_carriers(discretization, face_nodes);
       }
 
       const std::vector<unsigned int> &

@@ -2,6 +2,7 @@
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/fem/face_nodes.h>
+#include <voussoir/fem/named_sets.h>
 #include <voussoir/loads/added_mass.h>
 
 namespace Voussoir
@@ -32,33 +33,31 @@ namespace Voussoir
       FaceNodes          face_nodes(discretization.mapping,
                            discretization.fe.base_element(0));
       std::vector<Facet> facets;
-      for (const std::string &set : sets)
-        {
-          discretization.grid.check_face_set(set,
-                                             "\"Face sets\" in " + section);
-          discretization.grid.for_each_face(
-            set, [&](const auto &cell, const unsigned int face) {
-              const auto nodes =
-                discretization.cell_nodes(discretization.dof_cell(cell));
-              double begin = 1e300, end = -1e300;
-              for (unsigned int v = 0; v < 4; ++v)
-                {
-                  begin = std::min(begin, cell->face(face)->vertex(v)[0]);
-                  end   = std::max(end, cell->face(face)->vertex(v)[0]);
-                }
-              for (const FaceNode &node : face_nodes.of(cell, face))
-                for (const auto &share :
-                     discretization.carriers(nodes[node.number]))
-                  facets.push_back({share.node,
-                                    share.weight,
-                                    node.position[0],
-                                    node.position[2],
-                                    node.normal,
-                                    node.area,
-                                    begin,
-                                    end});
-            });
-        }
+      for_each_face(discretization,
+                    sets,
+                    "\"Face sets\" in " + section,
+                    [&](const auto &cell, const unsigned int face) {
+                      const auto nodes = discretization.cell_nodes(
+                        discretization.dof_cell(cell));
+                      double begin = 1e300, end = -1e300;
+                      for (unsigned int v = 0; v < 4; ++v)
+                        {
+                          begin =
+                            std::min(begin, cell->face(face)->vertex(v)[0]);
+                          end = std::max(end, cell->face(face)->vertex(v)[0]);
+                        }
+                      for (const FaceNode &node : face_nodes.of(cell, face))
+                        for (const auto &share :
+                             discretization.carriers(nodes[node.number]))
+                          facets.push_back({share.node,
+                                            share.weight,
+                                            node.position[0],
+                                            node.position[2],
+                                            node.normal,
+                                            node.area,
+                                            begin,
+                                            end});
+                    });
       return facets;
     }
 
@@ -139,13 +138,10 @@ namespace Voussoir
                        const double               density,
                        NodalTerms                &terms)
   {
-    const auto sets = split_list(parameters.face_sets);
-    if (sets.empty())
-      throw UserError("\"Face sets\" in " + section +
-                      " is empty; name the faces with water on them.");
-    const std::vector<Facet> facets       = facets_of(discretization, sets);
-    const MPI_Comm           communicator = discretization.grid.communicator();
-    const Bed                bed(facets, communicator);
+    const std::vector<Facet> facets =
+      facets_of(discretization, split_list(parameters.face_sets));
+    const MPI_Comm communicator = discretization.grid.communicator();
+    const Bed      bed(facets, communicator);
 
     std::vector<std::pair<types::global_dof_index, NodalTerms::Matrix>> records;
     double total = 0.;

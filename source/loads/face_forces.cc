@@ -1,4 +1,4 @@
-#include <voussoir/base/error.h>
+#include <voussoir/fem/named_sets.h>
 #include <voussoir/loads/face_forces.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -59,6 +59,99 @@ namespace Voussoir
           }
       return Quadrature<2>(points, weights);
     }
+
+
+    /** The integrals of a traction times the shape functions over faces. */
+    class TractionIntegrals
+    {
+    public:
+      TractionIntegrals(const Discretization &discretization,
+                        const Traction       &traction,
+                        const double          kink)
+        : discretization(discretization)
+        , scalar(discretization.fe.base_element(0))
+        , traction(traction)
+        , kink(kink)
+        , whole_face(discretization.mapping,
+                     scalar,
+                     QGauss<2>(discretization.degree + 1),
+                     flags)
+        , corners(discretization.mapping,
+                  scalar,
+                  QTrapezoid<2>(),
+                  update_quadrature_points)
+      {}
+
+      void
+      add_face(const Triangulation<3>::active_cell_iterator &cell,
+               const unsigned int                            face)
+      {
+        corners.reinit(cell, face);
+        std::array<double, 4> above;
+        for (unsigned int v = 0; v < 4; ++v)
+          above[v] = corners.quadrature_point(v)[2] - kink;
+        const auto [lowest, highest] =
+          std::minmax_element(above.begin(), above.end());
+        // a level at the edge of a face, but for round-off, cuts nothing
+        const double round_off = 1e-10 * cell->face(face)->diameter();
+        if (*lowest<-round_off && * highest> round_off)
+          {
+            FEFaceValues<3> two_parts(discretization.mapping,
+                                      scalar,
+                                      cut_quadrature(above,
+                                                     discretization.degree + 3),
+                                      flags);
+            integrate(two_parts, cell, face);
+          }
+        else
+          integrate(whole_face, cell, face);
+      }
+
+      std::vector<NodalForce>
+      at_owned_nodes() const
+      {
+        std::vector<NodalForce> result;
+        for (const auto &[node, force] : discretization.send_to_owners(forces))
+          result.push_back({node, force});
+        return result;
+      }
+
+    private:
+      void
+      integrate(FEFaceValues<3>                              &values,
+                const Triangulation<3>::active_cell_iterator &cell,
+                const unsigned int                            face)
+      {
+        values.reinit(cell, face);
+        std::vector<Tensor<1, 3>> tractions;
+        for (const unsigned int q : values.quadrature_point_indices())
+          tractions.push_back(
+            traction(values.quadrature_point(q), values.normal_vector(q)));
+        const auto nodes =
+          discretization.cell_nodes(discretization.dof_cell(cell));
+        for (unsigned int j = 0; j < nodes.size(); ++j)
+          if (scalar.has_support_on_face(j, face))
+            {
+              Tensor<1, 3> sum;
+              for (const unsigned int q : values.quadrature_point_indices())
+                sum += values.shape_value(j, q) * values.JxW(q) * tractions[q];
+              for (const auto &share : discretization.carriers(nodes[j]))
+                forces.emplace_back(share.node, share.weight * sum);
+            }
+      }
+
+      static constexpr UpdateFlags flags =
+        update_values | update_quadrature_points | update_normal_vectors |
+        update_JxW_values;
+
+      const Discretization   &discretization;
+      const FiniteElement<3> &scalar;
+      const Traction         &traction;
+      const double            kink;
+      FEFaceValues<3>         whole_face, corners;
+
+      std::vector<std::pair<types::global_dof_index, Tensor<1, 3>>> forces;
+    };
   } // namespace
 
 
@@ -66,80 +159,17 @@ namespace Voussoir
   face_forces(const Discretization           &discretization,
               const std::vector<std::string> &sets,
               const std::string              &place,
-              const std::function<Tensor<1, 3>(const Point<3> &,
-                                               const Tensor<1, 3> &)> &traction,
-              const double                                             kink)
+              const Traction                 &traction,
+              const double                    kink)
   {
-    if (sets.empty())
-      throw UserError(place + " is empty; name the face sets it acts on.");
-    const auto       &scalar = discretization.fe.base_element(0);
-    const UpdateFlags flags  = update_values | update_quadrature_points |
-                              update_normal_vectors | update_JxW_values;
-    FEFaceValues<3> whole_face(discretization.mapping,
-                               scalar,
-                               QGauss<2>(discretization.degree + 1),
-                               flags);
-    FEFaceValues<3> corners(discretization.mapping,
-                            scalar,
-                            QTrapezoid<2>(),
-                            update_quadrature_points);
-
-    std::vector<std::pair<types::global_dof_index, Tensor<1, 3>>> forces;
-
-    const auto add_face = [&](const FEFaceValues<3> &values,
-                              const auto            &cell,
-                              const unsigned int     face) {
-      std::vector<Tensor<1, 3>> tractions;
-      for (const unsigned int q : values.quadrature_point_indices())
-        tractions.push_back(
-          traction(values.quadrature_point(q), values.normal_vector(q)));
-      const auto nodes =
-        discretization.cell_nodes(discretization.dof_cell(cell));
-      for (unsigned int j = 0; j < nodes.size(); ++j)
-        if (scalar.has_support_on_face(j, face))
-          {
-            Tensor<1, 3> sum;
-            for (const unsigned int q : values.quadrature_point_indices())
-              sum += values.shape_value(j, q) * values.JxW(q) * tractions[q];
-            for (const auto &share : discretization.carriers(nodes[j]))
-              forces.emplace_back(share.node, share.weight * sum);
-          }
-    };
-
-    for (const std::string &set : sets)
-      {
-        discretization.grid.check_face_set(set, place);
-        discretization.grid.for_each_face(
-          set, [&](const auto &cell, const unsigned int face) {
-            corners.reinit(cell, face);
-            std::array<double, 4> above;
-            for (unsigned int v = 0; v < 4; ++v)
-              above[v] = corners.quadrature_point(v)[2] - kink;
-            const auto [lowest, highest] =
-              std::minmax_element(above.begin(), above.end());
-            // a level at the edge of a face, but for round-off, cuts nothing
-            const double round_off = 1e-10 * cell->face(face)->diameter();
-            if (*lowest<-round_off && * highest> round_off)
-              {
-                FEFaceValues<3> values(
-                  discretization.mapping,
-                  scalar,
-                  cut_quadrature(above, discretization.degree + 3),
-                  flags);
-                values.reinit(cell, face);
-                add_face(values, cell, face);
-              }
-            else
-              {
-                whole_face.reinit(cell, face);
-                add_face(whole_face, cell, face);
-              }
-          });
-      }
-    std::vector<NodalForce> result;
-    for (const auto &[node, force] : discretization.send_to_owners(forces))
-      result.push_back({node, force});
-    return result;
+    TractionIntegrals integrals(discretization, traction, kink);
+    for_each_face(discretization,
+                  sets,
+                  place,
+                  [&](const auto &cell, const unsigned int face) {
+                    integrals.add_face(cell, face);
+                  });
+    return integrals.at_owned_nodes();
   }
 
 

@@ -1,4 +1,5 @@
 #include <voussoir/fem/lumped_mass.h>
+#include <voussoir/fem/named_sets.h>
 #include <voussoir/loads/load.h>
 
 namespace Voussoir
@@ -36,31 +37,22 @@ namespace Voussoir
               const std::string &place) override
       {
         const Discretization &discretization = model.discretization;
-        const auto            sets           = split_list(cell_sets);
-        for (const std::string &set : sets)
-          discretization.grid.check_cell_set(set,
-                                             "\"Cell sets\" in section \"" +
-                                               place + "\"");
-
-        NodalVolumes nodal_volumes(discretization);
+        NodalVolumes          nodal_volumes(discretization);
         std::vector<std::pair<types::global_dof_index, double>> records;
-        for (const auto &cell :
-             discretization.dof_handler.active_cell_iterators())
-          if (cell->is_locally_owned() &&
-              (sets.empty() ||
-               std::any_of(sets.begin(), sets.end(), [&](const auto &set) {
-                 return discretization.grid.in_cell_set(cell, set);
-               })))
-            {
-              const double density =
-                model.materials[model.material_of_cell(cell)]->density;
-              const auto &volumes = nodal_volumes.of(cell);
-              const auto  nodes   = discretization.cell_nodes(cell);
-              for (unsigned int j = 0; j < nodes.size(); ++j)
-                for (const auto &share : discretization.carriers(nodes[j]))
-                  records.emplace_back(share.node,
-                                       share.weight * density * volumes[j]);
-            }
+        for_each_cell(
+          discretization,
+          split_list(cell_sets),
+          "\"Cell sets\" in section \"" + place + "\"",
+          [&](const Discretization::Cell &cell) {
+            const double density =
+              model.materials[model.material_of_cell(cell)]->density;
+            const auto &volumes = nodal_volumes.of(cell);
+            const auto  nodes   = discretization.cell_nodes(cell);
+            for (unsigned int j = 0; j < nodes.size(); ++j)
+              for (const auto &share : discretization.carriers(nodes[j]))
+                records.emplace_back(share.node,
+                                     share.weight * density * volumes[j]);
+          });
         mass.assign(discretization.n_owned_nodes(), 0.);
         for (const auto &[node, part] : discretization.send_to_owners(records))
           mass[node] += part;

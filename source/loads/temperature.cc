@@ -1,9 +1,9 @@
 #include <voussoir/base/error.h>
+#include <voussoir/fem/named_sets.h>
 #include <voussoir/loads/design_spectrum.h>
 #include <voussoir/loads/load.h>
 #include <voussoir/mesh/face_distance.h>
 
-#include <algorithm>
 #include <sstream>
 
 namespace Voussoir
@@ -68,9 +68,15 @@ namespace Voussoir
         if (sets.empty())
           throw UserError("\"Cell sets\"" + section +
                           " is empty; name the cell sets that it changes in.");
-        for (const std::string &set : sets)
-          discretization.grid.check_cell_set(set, "\"Cell sets\"" + section);
-        nodes = nodes_of(discretization, sets);
+        std::set<types::global_dof_index> touched;
+        for_each_cell(discretization,
+                      sets,
+                      "\"Cell sets\"" + section,
+                      [&](const Discretization::Cell &cell) {
+                        for (const auto node : discretization.cell_nodes(cell))
+                          touched.insert(node);
+                      });
+        nodes = owned_carriers(discretization, touched);
         changes.assign(nodes.size(), uniform);
         if (elevations.empty())
           return;
@@ -123,32 +129,6 @@ namespace Voussoir
             means.push_back(mean);
             differences.push_back(difference);
           }
-      }
-
-      /** The owned nodes that carry values in cells of the sets. */
-      static std::vector<unsigned int>
-      nodes_of(const Discretization           &discretization,
-               const std::vector<std::string> &sets)
-      {
-        struct Nothing
-        {};
-        std::set<types::global_dof_index> touched;
-        for (const auto &cell :
-             discretization.dof_handler.active_cell_iterators())
-          if (cell->is_locally_owned() &&
-              std::any_of(sets.begin(), sets.end(), [&](const auto &set) {
-                return discretization.grid.in_cell_set(cell, set);
-              }))
-            for (const auto node : discretization.cell_nodes(cell))
-              for (const auto &share : discretization.carriers(node))
-                touched.insert(share.node);
-        std::vector<std::pair<types::global_dof_index, Nothing>> records;
-        for (const auto node : touched)
-          records.emplace_back(node, Nothing());
-        std::set<unsigned int> owned;
-        for (const auto &record : discretization.send_to_owners(records))
-          owned.insert(record.first);
-        return {owned.begin(), owned.end()};
       }
 
       std::string cell_sets = "dam";

@@ -14,23 +14,24 @@ namespace Voussoir
     dealii::Tensor<1, 3> force; // [N]
   };
 
+  /** Force per area at a point with this outward normal [Pa]. */
+  using Traction =
+    std::function<dealii::Tensor<1, 3>(const dealii::Point<3> &,
+                                       const dealii::Tensor<1, 3> &)>;
+
   /**
    * The nodal forces of a traction on faces, integrated by Gauss points.
    *
-   * @param sets     face sets, each checked; @p place names the entry
-   * @param traction force per area at a point with this outward normal [Pa]
-   * @param kink     elevation at which the traction begins or ends [m]; the
+   * @param sets  face sets, at least one; @p place names the entry in messages
+   * @param kink  elevation at which the traction begins or ends [m]; the
    *   parts of a face above and below are integrated by themselves
    */
   std::vector<NodalForce>
-  face_forces(
-    const Discretization           &discretization,
-    const std::vector<std::string> &sets,
-    const std::string              &place,
-    const std::function<dealii::Tensor<1, 3>(const dealii::Point<3> &,
-                                             const dealii::Tensor<1, 3> &)>
-                &traction,
-    const double kink = std::numeric_limits<double>::infinity());
+  face_forces(const Discretization           &discretization,
+              const std::vector<std::string> &sets,
+              const std::string              &place,
+              const Traction                 &traction,
+              const double kink = std::numeric_limits<double>::infinity());
 
   /**
    * The nodal forces of a pressure against faces that is zero above @p level

@@ -1,0 +1,45 @@
+#ifndef voussoir_fem_named_sets_h
+#define voussoir_fem_named_sets_h
+
+#include <voussoir/fem/discretization.h>
+
+#include <set>
+
+namespace Voussoir
+{
+  /**
+   * Calls @p visit for each face of this rank in these face sets, set by set.
+   * Refuses a list without sets and unknown sets; @p place names the entry in
+   * messages, as in `"Face sets" in section "Loads/push"`.
+   */
+  void
+  for_each_face(const Discretization           &discretization,
+                const std::vector<std::string> &sets,
+                const std::string              &place,
+                const std::function<
+                  void(const dealii::Triangulation<3>::active_cell_iterator &,
+                       const unsigned int face)> &visit);
+
+  /**
+   * Calls @p visit once for each cell of this rank that is in any of these cell
+   * sets, or for all cells if there are no sets. Refuses unknown sets; @p place
+   * names the entry in messages.
+   */
+  void
+  for_each_cell(const Discretization           &discretization,
+                const std::vector<std::string> &sets,
+                const std::string              &place,
+                const std::function<void(const Discretization::Cell &)> &visit);
+
+  /**
+   * The owned nodes, in ascending order, that carry the values at the nodes
+   * that any rank names. Called on all ranks.
+   *
+   * @param nodes global nodes, hanging ones too
+   */
+  std::vector<unsigned int>
+  owned_carriers(const Discretization &discretization,
+                 const std::set<dealii::types::global_dof_index> &nodes);
+} // namespace Voussoir
+
+#endif

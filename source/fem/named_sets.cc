@@ -1,0 +1,64 @@
+#include <voussoir/base/error.h>
+#include <voussoir/fem/named_sets.h>
+
+#include <algorithm>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  void
+  for_each_face(
+    const Discretization                          &discretization,
+    const std::vector<std::string>                &sets,
+    const std::string                             &place,
+    const std::function<void(const Triangulation<3>::active_cell_iterator &,
+                             const unsigned int)> &visit)
+  {
+    if (sets.empty())
+      throw UserError(place + " is empty; name the face sets it acts on.");
+    for (const std::string &set : sets)
+      discretization.grid.check_face_set(set, place);
+    for (const std::string &set : sets)
+      discretization.grid.for_each_face(set, visit);
+  }
+
+
+  void
+  for_each_cell(const Discretization           &discretization,
+                const std::vector<std::string> &sets,
+                const std::string              &place,
+                const std::function<void(const Discretization::Cell &)> &visit)
+  {
+    const Grid &grid = discretization.grid;
+    for (const std::string &set : sets)
+      grid.check_cell_set(set, place);
+    for (const auto &cell : discretization.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned() &&
+          (sets.empty() ||
+           std::any_of(sets.begin(), sets.end(), [&](const std::string &set) {
+             return grid.in_cell_set(cell, set);
+           })))
+        visit(cell);
+  }
+
+
+  std::vector<unsigned int>
+  owned_carriers(const Discretization                    &discretization,
+                 const std::set<types::global_dof_index> &nodes)
+  {
+    struct Nothing
+    {};
+    std::set<types::global_dof_index> carriers;
+    for (const types::global_dof_index node : nodes)
+      for (const auto &share : discretization.carriers(node))
+        carriers.insert(share.node);
+    std::vector<std::pair<types::global_dof_index, Nothing>> records;
+    for (const types::global_dof_index node : carriers)
+      records.emplace_back(node, Nothing());
+    std::set<unsigned int> owned;
+    for (const auto &record : discretization.send_to_owners(records))
+      owned.insert(record.first);
+    return {owned.begin(), owned.end()};
+  }
+} // namespace Voussoir

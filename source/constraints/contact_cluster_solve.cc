@@ -23,6 +23,9 @@ namespace Voussoir
 
     constexpr unsigned int max_newton_steps = 10;
 
+    // Every so many sweeps Newton's iteration is tried, which jumps ahead where
+    // the sweeps go slowly.
+    constexpr unsigned int sweeps_per_jump = 5;
   } // namespace
 
 
@@ -85,18 +88,50 @@ namespace Voussoir
                                const std::vector<Tensor<1, 3>> &displacement,
                                Effort                          &effort)
   {
-    const auto add_to_moves = [&](const ContactPoint &point,
-                                  const Tensor<1, 3> &force) {
-      const Tensor<1, 3> global = force * point.frame;
-      moves[point.second - cluster.first_node] += motion(point.second, global);
-      moves[point.first - cluster.first_node] -= motion(point.first, global);
-    };
-    const auto relative_move = [&](const ContactPoint &point) {
-      return point.frame * (moves[point.second - cluster.first_node] -
-                            moves[point.first - cluster.first_node]);
+    if (find_gaps(cluster, displacement) && hold_all(cluster))
+      return;
+
+    double size = 0.;
+    for (unsigned int i = 0; i < cluster.n_nodes; ++i)
+      size = std::max(size, displacement[cluster.first_node + i].norm());
+    Sweep      last;
+    const auto found = [&] {
+      return last.change <= accuracy * last.largest ||
+             last.moved <= round_off * size;
     };
 
-    bool held = true, given = false;
+    find_moves(cluster); // from the forces of the step before
+    unsigned int n_sweeps = 0;
+    for (; n_sweeps < max_sweeps && !found(); ++n_sweeps)
+      {
+        // Cohesion that ends at opening may leave no solution: a point opens
+        // with it and closes without. Then there is none in this step.
+        if (n_sweeps == max_sweeps / 2)
+          for (unsigned int k = 0; k < cluster.n_points; ++k)
+            points[cluster.first_point + k].limits.cohesion = 0.;
+        last = n_sweeps % sweeps_per_jump == sweeps_per_jump - 1 ?
+                 sweep_after_jump(cluster, last) :
+                 sweep(cluster);
+      }
+    // friction may leave no solution either; then at least nothing penetrates
+    if (!found())
+      iterate_newton(cluster, false, last.largest);
+    if (n_sweeps > max_sweeps / 2)
+      for (unsigned int k = 0; k < cluster.n_points; ++k)
+        update_limits(points[cluster.first_point + k]);
+    effort.sweeps = std::max(effort.sweeps, n_sweeps);
+    effort.all_sweeps += n_sweeps;
+    ++effort.clusters;
+    if (last.largest > 0.)
+      effort.residual = std::max(effort.residual, last.change / last.largest);
+  }
+
+
+  bool
+  ContactSolver::find_gaps(const Cluster                   &cluster,
+                           const std::vector<Tensor<1, 3>> &displacement)
+  {
+    bool stick = true, given = false;
     std::fill_n(moves.begin(), cluster.n_nodes, Tensor<1, 3>());
     for (unsigned int k = 0; k < cluster.n_points; ++k)
       {
@@ -104,97 +139,19 @@ namespace Voussoir
         gaps[k] =
           gap_to_hold(point,
                       displacement[point.second] - displacement[point.first]);
-        held = held && point.status == ContactStatus::sticking;
+        stick = stick && point.status == ContactStatus::sticking;
         if (point.given_force != 0.)
           {
             given = true;
             Tensor<1, 3> force;
             force[0] = point.given_force;
-            add_to_moves(point, force);
+            add_to_moves(cluster, point, force);
           }
       }
     if (given)
       for (unsigned int k = 0; k < cluster.n_points; ++k)
-        gaps[k] += relative_move(points[cluster.first_point + k]);
-    if (held && hold_all(cluster))
-      return;
-
-    // from the forces of the step before
-    const auto start_from_forces = [&] {
-      std::fill_n(moves.begin(), cluster.n_nodes, Tensor<1, 3>());
-      for (unsigned int k = 0; k < cluster.n_points; ++k)
-        add_to_moves(points[cluster.first_point + k],
-                     points[cluster.first_point + k].force);
-    };
-    start_from_forces();
-    double     change = 1., largest = 0.;
-    const auto iterate = [&](const bool shear_too) {
-      for (unsigned int i = 0; i < max_newton_steps; ++i)
-        if (newton_step(cluster, shear_too) <= accuracy * largest)
-          return;
-    };
-    double size = 0., moved = 1.;
-    for (unsigned int i = 0; i < cluster.n_nodes; ++i)
-      size = std::max(size, displacement[cluster.first_node + i].norm());
-    const auto found = [&] {
-      return change <= accuracy * largest || moved <= round_off * size;
-    };
-    unsigned int sweep = 0;
-    for (; sweep < max_sweeps && !found(); ++sweep)
-      {
-        // Cohesion that ends at opening may leave no solution: a point opens
-        // with it and closes without. Then there is none in this step.
-        if (sweep == max_sweeps / 2)
-          for (unsigned int k = 0; k < cluster.n_points; ++k)
-            points[cluster.first_point + k].limits.cohesion = 0.;
-
-        // a jump ahead where it goes slowly, taken back if it was a wrong one
-        const double change_before = change, moved_before = moved;
-        const bool   jumped = sweep % 5 == 4;
-        if (jumped)
-          {
-            for (unsigned int k = 0; k < cluster.n_points; ++k)
-              holding[k] = points[cluster.first_point + k].force;
-            iterate(true);
-            start_from_forces();
-          }
-
-        change = largest = moved = 0.;
-        for (unsigned int k = 0; k < cluster.n_points; ++k)
-          {
-            const unsigned int number = cluster.first_point + k;
-            ContactPoint      &point  = points[number];
-            const Tensor<1, 3> before = point.force;
-            solve_point(number,
-                        gaps[k] + relative_move(point) -
-                          relative_motion(number, before));
-            add_to_moves(point, point.force - before);
-            change = std::max(change, (point.force - before).norm());
-            moved =
-              std::max(moved,
-                       relative_motion(number, point.force - before).norm());
-            largest = std::max(largest, point.force.norm());
-          }
-        if (jumped && !(change <= change_before))
-          {
-            for (unsigned int k = 0; k < cluster.n_points; ++k)
-              points[cluster.first_point + k].force = holding[k];
-            start_from_forces();
-            change = change_before;
-            moved  = moved_before;
-          }
-      }
-    // friction may leave no solution either; then at least nothing penetrates
-    if (!found())
-      iterate(false);
-    if (sweep > max_sweeps / 2)
-      for (unsigned int k = 0; k < cluster.n_points; ++k)
-        update_limits(points[cluster.first_point + k]);
-    effort.sweeps = std::max(effort.sweeps, sweep);
-    effort.all_sweeps += sweep;
-    ++effort.clusters;
-    if (largest > 0.)
-      effort.residual = std::max(effort.residual, change / largest);
+        gaps[k] += relative_move(cluster, points[cluster.first_point + k]);
+    return stick;
   }
 
 
@@ -224,6 +181,164 @@ namespace Voussoir
   }
 
 
+  void
+  ContactSolver::add_to_moves(const Cluster      &cluster,
+                              const ContactPoint &point,
+                              const Tensor<1, 3> &force)
+  {
+    const Tensor<1, 3> global = force * point.frame;
+    moves[point.second - cluster.first_node] += motion(point.second, global);
+    moves[point.first - cluster.first_node] -= motion(point.first, global);
+  }
+
+
+  Tensor<1, 3>
+  ContactSolver::relative_move(const Cluster      &cluster,
+                               const ContactPoint &point) const
+  {
+    return point.frame * (moves[point.second - cluster.first_node] -
+                          moves[point.first - cluster.first_node]);
+  }
+
+
+  void
+  ContactSolver::find_moves(const Cluster &cluster)
+  {
+    std::fill_n(moves.begin(), cluster.n_nodes, Tensor<1, 3>());
+    for (unsigned int k = 0; k < cluster.n_points; ++k)
+      add_to_moves(cluster,
+                   points[cluster.first_point + k],
+                   points[cluster.first_point + k].force);
+  }
+
+
+  ContactSolver::Sweep
+  ContactSolver::sweep(const Cluster &cluster)
+  {
+    Sweep result{0., 0., 0.};
+    for (unsigned int k = 0; k < cluster.n_points; ++k)
+      {
+        const unsigned int number = cluster.first_point + k;
+        ContactPoint      &point  = points[number];
+        const Tensor<1, 3> before = point.force;
+        solve_point(number,
+                    gaps[k] + relative_move(cluster, point) -
+                      relative_motion(number, before));
+        const Tensor<1, 3> change = point.force - before;
+        add_to_moves(cluster, point, change);
+        result.change = std::max(result.change, change.norm());
+        result.moved =
+          std::max(result.moved, relative_motion(number, change).norm());
+        result.largest = std::max(result.largest, point.force.norm());
+      }
+    return result;
+  }
+
+
+  ContactSolver::Sweep
+  ContactSolver::sweep_after_jump(const Cluster &cluster, const Sweep &before)
+  {
+    for (unsigned int k = 0; k < cluster.n_points; ++k)
+      holding[k] = points[cluster.first_point + k].force;
+    iterate_newton(cluster, true, before.largest);
+    find_moves(cluster);
+    Sweep result = sweep(cluster);
+    if (!(result.change <= before.change)) // it led astray
+      {
+        for (unsigned int k = 0; k < cluster.n_points; ++k)
+          points[cluster.first_point + k].force = holding[k];
+        find_moves(cluster);
+        result.change = before.change;
+        result.moved  = before.moved;
+      }
+    return result;
+  }
+
+
+  void
+  ContactSolver::iterate_newton(const Cluster &cluster,
+                                const bool     shear_too,
+                                const double   largest_force)
+  {
+    for (unsigned int i = 0; i < max_newton_steps; ++i)
+      if (newton_step(cluster, shear_too) <= accuracy * largest_force)
+        return;
+  }
+
+
+  namespace
+  {
+    /** A point k in Newton's iteration, with the rows of the linear system for
+     *  the changes of the forces, of which it has three. */
+    struct NewtonPoint
+    {
+      const unsigned int        k;
+      const ContactPoint       &point;
+      const double             *W; // rows of the flexibility of all points
+      const Tensor<1, 3>        gap;
+      const double              r; // stiffness
+      LAPACKFullMatrix<double> &system;
+      Vector<double>           &right;
+
+      const ContactLimits &limits = point.limits;
+      const Tensor<1, 3>  &F      = point.force;
+      const Tensor<1, 3>   trial  = F - r * gap;
+      const bool open = trial[0] < (limits.opening > 0. ? 0. : -limits.tension);
+
+      void
+      set_normal_row() const
+      {
+        const unsigned int n = system.n(), row = 3 * k;
+        if (!open)
+          {
+            for (unsigned int j = 0; j < n; ++j)
+              system(row, j) = r * W[j];
+            system(row, row) += softness;
+            right[row] = -r * gap[0];
+          }
+        else if (limits.opening > 0. && limits.tension > 0. &&
+                 gap[0] < limits.opening)
+          {
+            // a bond unloads towards zero opening
+            const double secant = limits.tension / limits.opening;
+            for (unsigned int j = 0; j < n; ++j)
+              system(row, j) += secant * W[j];
+            right[row] = -secant * gap[0] - F[0];
+          }
+        else
+          right[row] = -limits.tension - F[0];
+      }
+
+      void
+      set_tangential_rows() const
+      {
+        const unsigned int n     = system.n();
+        const double       limit = limits.shear(open, F[0]);
+        const double       size =
+          std::sqrt(trial[1] * trial[1] + trial[2] * trial[2]);
+        const bool   slides = size > limit;
+        const double share  = slides ? limit / size : 1.;
+        for (unsigned int d = 1; d < 3; ++d)
+          {
+            const unsigned int row = 3 * k + d;
+            right[row]             = share * trial[d] - F[d];
+            for (unsigned int e = 1; e < 3; ++e)
+              {
+                double P = d == e ? share : 0.;
+                if (slides)
+                  P -= share * trial[d] * trial[e] / (size * size);
+                system(row, 3 * k + e) -= (1. - softness) * P;
+                for (unsigned int j = 0; j < n; ++j)
+                  system(row, j) += P * r * W[e * n + j];
+              }
+            if (slides && !open && F[0] > 0.)
+              system(row, 3 * k) -= limits.friction * trial[d] / size;
+          }
+      }
+    };
+  } // namespace
+
+
   // One step of Newton's iteration for all points together, on the law of
   // contact without inequalities (Alart and Curnier 1991): with g the gap, r a
   // stiffness and the trial F - r g, a point is closed if the normal trial
@@ -232,114 +347,42 @@ namespace Voussoir
   double
   ContactSolver::newton_step(const Cluster &cluster, const bool shear_too)
   {
-    const unsigned int n = 3 * cluster.n_points;
-    std::fill_n(system.begin(), n * n, 0.);
+    const unsigned int       n = 3 * cluster.n_points;
+    LAPACKFullMatrix<double> system(n);
+    Vector<double>           change(n);
     for (unsigned int k = 0; k < cluster.n_points; ++k)
       {
-        const ContactPoint  &point  = points[cluster.first_point + k];
-        const ContactLimits &limits = point.limits;
-        const Tensor<1, 3>  &F      = point.force;
-        const double        *W      = &cluster.flexibility[3 * k * n];
-        double              *row    = &system[3 * k * n];
-        double              *right  = &unknowns[3 * k];
-        double               D      = 0.;
-        Tensor<1, 3>         gap    = gaps[k];
+        const double *W   = &cluster.flexibility[3 * k * n];
+        double        D   = 0.;
+        Tensor<1, 3>  gap = gaps[k];
         for (unsigned int d = 0; d < 3; ++d)
           {
             D = std::max(D, W[d * n + 3 * k + d]);
             for (unsigned int j = 0; j < n; ++j)
               gap[d] +=
                 W[d * n + j] * points[cluster.first_point + j / 3].force[j % 3];
-            row[d * n + 3 * k + d] = 1.;
-            right[d]               = 0.;
+            system(3 * k + d, 3 * k + d) = 1.;
           }
         if (D == 0.) // both nodes are held
           continue;
-        const double       r     = 1. / D;
-        const Tensor<1, 3> trial = F - r * gap;
-
-        const bool bond = limits.opening > 0. && limits.tension > 0.;
-        const bool open =
-          trial[0] < (limits.opening > 0. ? 0. : -limits.tension);
-        if (!open)
-          {
-            for (unsigned int j = 0; j < n; ++j)
-              row[j] = r * W[j];
-            row[3 * k] += softness;
-            right[0] = -r * gap[0];
-          }
-        else if (bond && gap[0] < limits.opening)
-          {
-            // unloads towards zero opening
-            const double secant = limits.tension / limits.opening;
-            for (unsigned int j = 0; j < n; ++j)
-              row[j] += secant * W[j];
-            right[0] = -secant * gap[0] - F[0];
-          }
-        else
-          right[0] = -limits.tension - F[0];
-
-        if (!shear_too)
-          continue;
-        const double limit  = limits.shear(open, F[0]);
-        const double size   = tangential_norm(trial);
-        const bool   slides = size > limit;
-        const double share  = slides ? limit / size : 1.;
-        for (unsigned int d = 1; d < 3; ++d)
-          {
-            double *R = row + d * n;
-            right[d]  = share * trial[d] - F[d];
-            for (unsigned int e = 1; e < 3; ++e)
-              {
-                double P = d == e ? share : 0.;
-                if (slides)
-                  P -= share * trial[d] * trial[e] / (size * size);
-                R[3 * k + e] -= (1. - softness) * P;
-                for (unsigned int j = 0; j < n; ++j)
-                  R[j] += P * r * W[e * n + j];
-              }
-            if (slides && !open && F[0] > 0.)
-              R[3 * k] -= limits.friction * trial[d] / size;
-          }
+        const NewtonPoint rows{
+          k, points[cluster.first_point + k], W, gap, 1. / D, system, change};
+        rows.set_normal_row();
+        if (shear_too)
+          rows.set_tangential_rows();
       }
 
-    // Gaussian elimination with row pivots
-    for (unsigned int column = 0; column < n; ++column)
+    try
       {
-        unsigned int pivot = column;
-        for (unsigned int i = column + 1; i < n; ++i)
-          if (std::abs(system[i * n + column]) >
-              std::abs(system[pivot * n + column]))
-            pivot = i;
-        if (system[pivot * n + column] == 0.)
-          return 0.;
-        if (pivot != column)
-          {
-            std::swap_ranges(&system[pivot * n],
-                             &system[pivot * n] + n,
-                             &system[column * n]);
-            std::swap(unknowns[pivot], unknowns[column]);
-          }
-        for (unsigned int i = column + 1; i < n; ++i)
-          {
-            const double factor =
-              system[i * n + column] / system[column * n + column];
-            if (factor == 0.)
-              continue;
-            for (unsigned int j = column; j < n; ++j)
-              system[i * n + j] -= factor * system[column * n + j];
-            unknowns[i] -= factor * unknowns[column];
-          }
+        system.compute_lu_factorization();
       }
-    double largest = 0.;
-    for (unsigned int i = n; i-- > 0;)
+    catch (const LACExceptions::ExcSingular &)
       {
-        for (unsigned int j = i + 1; j < n; ++j)
-          unknowns[i] -= system[i * n + j] * unknowns[j];
-        unknowns[i] /= system[i * n + i];
-        points[cluster.first_point + i / 3].force[i % 3] += unknowns[i];
-        largest = std::max(largest, std::abs(unknowns[i]));
+        return 0.;
       }
-    return largest;
+    system.solve(change);
+    for (unsigned int i = 0; i < n; ++i)
+      points[cluster.first_point + i / 3].force[i % 3] += change[i];
+    return change.linfty_norm();
   }
 } // namespace Voussoir

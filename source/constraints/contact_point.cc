@@ -2,8 +2,11 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 
+#include <boost/math/tools/toms748_solve.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace Voussoir
@@ -101,29 +104,49 @@ namespace Voussoir
     }
 
 
-    /** Closes a gap(normal force) that changes its sign between two forces, by
-     *  the Illinois form of false position. */
+    /**
+     * Evaluates a gap(force) last at the force that closes it, between two
+     * forces with these gaps. If they have one sign, at the second one.
+     */
     template <typename Gap>
     void
-    close_gap(const Gap &gap, double x0, double g0, double x1, double g1)
+    close_gap(const Gap   &gap,
+              const double x0,
+              const double g0,
+              const double x1,
+              const double g1)
     {
-      const double size = std::max(std::abs(g0), std::abs(g1));
-      for (unsigned int i = 0; i < 100; ++i)
+      if (x0 == x1 || !(g0 * g1 < 0.))
         {
-          const double x = g1 == g0 ? x1 : x1 - g1 * (x1 - x0) / (g1 - g0);
-          const double g = gap(x);
-          if (std::abs(g) <= 1e-15 * size || x == x1)
-            return;
-          if (g * g1 < 0.)
-            {
-              x0 = x1;
-              g0 = g1;
-            }
-          else
-            g0 *= 0.5;
-          x1 = x;
-          g1 = g;
+          gap(x1);
+          return;
         }
+      const double size   = std::max(std::abs(g0), std::abs(g1));
+      double       best_x = x1, best_g = g1;
+      bool         best_is_last = false;
+      const auto   remember     = [&](const double x) {
+        const double g = gap(x);
+        best_is_last   = std::abs(g) <= std::abs(best_g);
+        if (best_is_last)
+          {
+            best_x = x;
+            best_g = g;
+          }
+        return g;
+      };
+      const auto closed = [&](const double lower, const double upper) {
+        return std::abs(best_g) <= 1e-15 * size ||
+               boost::math::tools::eps_tolerance<double>()(lower, upper);
+      };
+      std::uintmax_t iterations = 100;
+      if (x0 < x1)
+        boost::math::tools::toms748_solve(
+          remember, x0, x1, g0, g1, closed, iterations);
+      else
+        boost::math::tools::toms748_solve(
+          remember, x1, x0, g1, g0, closed, iterations);
+      if (!best_is_last)
+        gap(best_x);
     }
   } // namespace
 
@@ -160,84 +183,131 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    /** The contact of one point whose normal and tangential motions may be
+     *  coupled; the states of contact are tried in turn. */
+    class CoupledContact
+    {
+    public:
+      CoupledContact(const Tensor<1, 3>  &b,
+                     const Flexibility   &flexibility,
+                     const ContactLimits &limits)
+        : b(b)
+        , flexibility(flexibility)
+        , limits(limits)
+        , D(flexibility.full)
+        , lowest(limits.opening > 0. ? 0. : -limits.tension)
+      {}
+
+      /** Whether the force that undoes all motion is within the limits. */
+      bool
+      sticks()
+      {
+        F             = -(flexibility.inverse * b);
+        result.status = ContactStatus::sticking;
+        return (D[0][0] > 0. || b[0] <= 0.) && F[0] >= lowest &&
+               std::hypot(F[1], F[2]) <= limits.shear(false, F[0]);
+      }
+
+      /** Finds the pressure that closes it while it slips; returns whether
+       *  there is one. */
+      bool
+      slides()
+      {
+        const auto closed_gap = [&](const double normal) {
+          return gap(normal, limits.shear(false, normal));
+        };
+        double below = lowest, gap_below = closed_gap(below);
+        if (D[0][0] == 0.)
+          {
+            if (b[0] <= 0.)
+              closed_gap(0.);
+            return b[0] <= 0.;
+          }
+        if (gap_below >= 0.)
+          return false;
+
+        double above     = lowest - gap_below / D[0][0],
+               gap_above = closed_gap(above);
+        for (unsigned int i = 0; i < 100 && gap_above < 0.; ++i)
+          {
+            below     = above;
+            gap_below = gap_above;
+            above += std::max(above - lowest, -gap_above / D[0][0]);
+            gap_above = closed_gap(above);
+          }
+        close_gap(closed_gap, below, gap_below, above, gap_above);
+        return true;
+      }
+
+      void
+      open()
+      {
+        // bond and shear in turn; once is enough if they are not coupled
+        bool is_open = true;
+        F[1] = F[2] = 0.;
+        for (unsigned int i = 0; i < 200; ++i)
+          {
+            const Tensor<1, 3> before = F;
+            const double       normal = normal_force(
+              b[0] + D[0][1] * F[1] + D[0][2] * F[2], D[0][0], limits, is_open);
+            gap(std::min(normal, 0.), limits.shear(true, normal));
+            if ((F - before).norm() <= 1e-15 * F.norm())
+              break;
+          }
+        if (b[0] + D[0] * F < 0. && !limits.locked)
+          close_with_cohesion();
+        else
+          result.status = ContactStatus::open;
+      }
+
+      ContactForce result;
+
+    private:
+      /** Sets the shear force under this normal force; returns the gap. */
+      double
+      gap(const double normal, const double limit)
+      {
+        bool slips = false;
+        F          = shear_force(b, flexibility, normal, limit, slips);
+        result.status =
+          slips ? ContactStatus::sliding : ContactStatus::sticking;
+        return b[0] + D[0] * F;
+      }
+
+      /** With its cohesion it would open, without it not: it closes without
+       *  pressure, with as much of the cohesion as keeps it so. */
+      void
+      close_with_cohesion()
+      {
+        const auto partial = [&](const double limit) {
+          return gap(lowest, limit);
+        };
+        const double all = limits.bond + limits.cohesion;
+        close_gap(
+          partial, limits.bond, partial(limits.bond), all, partial(all));
+      }
+
+      const Tensor<1, 3>  &b;
+      const Flexibility   &flexibility;
+      const ContactLimits &limits;
+      const Tensor<2, 3>  &D;
+      const double         lowest; // normal force [N]
+      Tensor<1, 3>        &F = result.force;
+    };
+  } // namespace
+
+
   ContactForce
   solve_contact(const Tensor<1, 3>  &b,
                 const Flexibility   &flexibility,
                 const ContactLimits &limits)
   {
-    const auto &D = flexibility.full;
-
-    // closed without slip
-    ContactForce result;
-    result.force      = -(flexibility.inverse * b);
-    result.status     = ContactStatus::sticking;
-    Tensor<1, 3> &F   = result.force;
-    const double  low = limits.opening > 0. ? 0. : -limits.tension;
-    if ((D[0][0] > 0. || b[0] <= 0.) && F[0] >= low &&
-        std::hypot(F[1], F[2]) <= limits.shear(false, F[0]))
-      return result;
-
-    // sets the shear force under this normal force and returns the gap
-    const auto gap = [&](const double normal, const double limit) {
-      bool slides = false;
-      F           = shear_force(b, flexibility, normal, limit, slides);
-      if (slides)
-        result.status = ContactStatus::sliding;
-      else
-        result.status = ContactStatus::sticking;
-      return b[0] + D[0] * F;
-    };
-    const auto closed_gap = [&](const double normal) {
-      return gap(normal, limits.shear(false, normal));
-    };
-
-    double below = low, gap_below = closed_gap(below);
-    if (gap_below < 0. && D[0][0] > 0.)
-      {
-        // the pressure that closes it, between two bounds
-        double above = low - gap_below / D[0][0], gap_above = closed_gap(above);
-        for (unsigned int i = 0; i < 100 && gap_above < 0.; ++i)
-          {
-            below     = above;
-            gap_below = gap_above;
-            above += std::max(above - low, -gap_above / D[0][0]);
-            gap_above = closed_gap(above);
-          }
-        close_gap(closed_gap, below, gap_below, above, gap_above);
-        return result;
-      }
-    if (D[0][0] == 0. && b[0] <= 0.)
-      {
-        closed_gap(0.);
-        return result;
-      }
-
-    // open: bond and shear in turn; once is enough if they are not coupled
-    bool open = true;
-    F[1] = F[2] = 0.;
-    for (unsigned int i = 0; i < 200; ++i)
-      {
-        const Tensor<1, 3> before = F;
-        const double       normal = normal_force(
-          b[0] + D[0][1] * F[1] + D[0][2] * F[2], D[0][0], limits, open);
-        gap(std::min(normal, 0.), limits.shear(true, normal));
-        if ((F - before).norm() <= 1e-15 * F.norm())
-          break;
-      }
-    if (b[0] + D[0] * F < 0. && !limits.locked)
-      {
-        // with its cohesion it would open, without it not: it closes without
-        // pressure, with as much of the cohesion as keeps it so
-        const double all     = limits.bond + limits.cohesion;
-        const auto   partial = [&](const double limit) {
-          return gap(low, limit);
-        };
-        close_gap(
-          partial, limits.bond, partial(limits.bond), all, partial(all));
-        return result;
-      }
-    result.status = ContactStatus::open;
-    return result;
+    CoupledContact contact(b, flexibility, limits);
+    if (!contact.sticks() && !contact.slides())
+      contact.open();
+    return contact.result;
   }
 
 

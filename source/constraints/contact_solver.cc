@@ -63,8 +63,6 @@ namespace Voussoir
         gaps.resize(std::max<std::size_t>(gaps.size(), n_points));
         moves.resize(std::max<std::size_t>(moves.size(), n_nodes));
         holding.resize(gaps.size());
-        system.resize(9 * gaps.size() * gaps.size());
-        unknowns.resize(3 * gaps.size());
       }
     number_of_nodes += n_nodes;
   }

@@ -161,9 +161,54 @@ namespace Voussoir
                   const std::vector<dealii::Tensor<1, 3>> &displacement,
                   Effort                                  &effort);
 
-    /** Tries the forces that hold all points of a cluster. */
+    /** Finds the gaps of a cluster without its contact forces; returns whether
+     *  all its points stuck in the step before. */
+    bool
+    find_gaps(const Cluster                           &cluster,
+              const std::vector<dealii::Tensor<1, 3>> &displacement);
+
+    /** Tries the forces that hold all points of a cluster; returns whether
+     *  these are within the limits. */
     bool
     hold_all(const Cluster &cluster);
+
+    /** Adds to the motion of a cluster's nodes what a force on a point does. */
+    void
+    add_to_moves(const Cluster              &cluster,
+                 const ContactPoint         &point,
+                 const dealii::Tensor<1, 3> &force);
+
+    /** What the motion of a cluster's nodes does to the gap of a point. */
+    dealii::Tensor<1, 3>
+    relative_move(const Cluster &cluster, const ContactPoint &point) const;
+
+    /** Finds the motion of a cluster's nodes under the forces of its points. */
+    void
+    find_moves(const Cluster &cluster);
+
+    /** What a sweep over the points of a cluster changed. */
+    struct Sweep
+    {
+      double change  = 1.; // largest of a force [N]
+      double largest = 0.; // force [N]
+      double moved   = 1.; // by the largest change [m]
+    };
+
+    /** Solves the points of a cluster one after the other. */
+    Sweep
+    sweep(const Cluster &cluster);
+
+    /** The same after Newton's iteration, which is undone if the sweep then
+     *  changes more than the one @p before. */
+    Sweep
+    sweep_after_jump(const Cluster &cluster, const Sweep &before);
+
+    /** Newton's iteration for the forces of a cluster together, or for the
+     *  normal ones only. */
+    void
+    iterate_newton(const Cluster &cluster,
+                   const bool     shear_too,
+                   const double   largest_force);
 
     /** Flexibility of a point times a force in its frame. */
     dealii::Tensor<1, 3>
@@ -174,8 +219,8 @@ namespace Voussoir
     dealii::Tensor<1, 3>
     motion(const unsigned int node, const dealii::Tensor<1, 3> &force) const;
 
-    /** Improves the forces of a cluster together, or the normal ones only;
-     *  returns their largest change. */
+    /** One step of it; returns the largest change of a component, or zero if
+     *  the linear system is singular [N]. */
     double
     newton_step(const Cluster &cluster, const bool shear_too);
 
@@ -203,7 +248,6 @@ namespace Voussoir
     // of the cluster at hand: gaps without contact forces, forces that hold its
     // points, motion of its nodes
     std::vector<dealii::Tensor<1, 3>> gaps, holding, moves;
-    std::vector<double>               system, unknowns;
   };
 } // namespace Voussoir
 

@@ -187,11 +187,11 @@ namespace Voussoir
       acceleration.time_step * (acceleration.values.size() - 1.);
     if (acceleration.values.size() < 20 || 2. * taper > duration)
       throw UserError(
-        "Section Ground motion/Record: Baseline correction needs a record of twenty samples "
-        "that is longer than both tapers together, but this one "
-        "lasts " +
+        "\"Baseline correction\" in section \"Ground motion/Record\" needs a "
+        "record of twenty samples that is longer than both tapers together, "
+        "but this one lasts " +
         std::to_string(duration) +
-        " s; shorten Taper or set Baseline correction = none.");
+        " s; shorten the \"Taper\", or set \"Baseline correction = none\".");
 
     return remove_polynomial(method == "high-pass" ?
                                high_pass(acceleration, corner_frequency) :

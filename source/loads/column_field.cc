@@ -222,8 +222,8 @@ namespace Voussoir
                        const double               duration,
                        const double               maximum_frequency)
   {
-    // the column's answer to a short pulse, until it has died out over a period
-    // (four travel times) of its slowest layer
+    // the column's response to a short pulse, until it has died out over a
+    // period (four travel times) of its slowest layer
     WaveColumn         trial = column;
     const double       width = 2. / maximum_frequency;
     const Pulse        pulse(Quantity::velocity, width, 1.);
@@ -260,7 +260,7 @@ namespace Voussoir
     for (unsigned int d = 0; d < 3; ++d)
       if (surface[d])
         {
-          // the incident wave comes before its answer at the surface
+          // the incident wave comes before its response at the surface
           const unsigned int delay = static_cast<unsigned int>(
             std::ceil(2. * column.travel_time() / time_step));
           TimeSeries target{time_step, std::vector<double>(delay, 0.)};

@@ -56,16 +56,17 @@ namespace Voussoir
     if (shape != "table")
       return;
     if (periods.size() != amplifications.size())
-      throw UserError("Section Ground motion/Spectrum: Periods has " +
+      throw UserError("\"Periods\" in section \"Ground motion/Spectrum\" has " +
                       std::to_string(periods.size()) +
-                      " values and Amplifications has " +
+                      " values and \"Amplifications\" has " +
                       std::to_string(amplifications.size()) +
                       "; give one amplification for each period.");
     if (std::adjacent_find(periods.begin(),
                            periods.end(),
                            std::greater_equal<double>()) != periods.end())
-      throw UserError("Section Ground motion/Spectrum: Periods must increase "
-                      "from each value to the next.");
+      throw UserError("\"Periods\" in section \"Ground motion/Spectrum\" must "
+                      "increase from each value to the next; sort them and "
+                      "remove repeated ones.");
   }
 
 

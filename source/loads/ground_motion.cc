@@ -190,33 +190,35 @@ namespace Voussoir
     for (unsigned int c = 0; c < 3; ++c)
       if (type == "record" && record.files[c].empty() &&
           peak_acceleration[c] > 0)
-        throw UserError("Section Ground motion: Peak acceleration " +
-                        axis_names[c] + " is set, but Record/File " +
+        throw UserError("\"Peak acceleration " + axis_names[c] +
+                        "\" in section \"Ground motion\" is set, but \"File " +
                         axis_names[c] +
-                        " is empty; name a file or set the peak to 0.");
+                        "\" in section \"Ground motion/Record\" is empty; name "
+                        "a file or set the peak to 0.");
 
     if (type == "record" &&
         std::all_of(record.files.begin(),
                     record.files.end(),
                     [](const std::string &file) { return file.empty(); }))
-      throw UserError("Section Ground motion/Record: all of File x, File y and "
-                      "File z are empty; name a file or set Type = none.");
+      throw UserError("\"File x\", \"File y\" and \"File z\" in section "
+                      "\"Ground motion/Record\" are all empty; name a file, or "
+                      "set \"Type = none\" in section \"Ground motion\".");
 
     if (type != "record" && peak_acceleration == std::array<double, 3>{})
       throw UserError(
-        "Section Ground motion: Peak acceleration x, y and z are all 0, so that "
-        "there is no motion; set one of them or set Type = none.");
+        "\"Peak acceleration x\", y and z in section \"Ground motion\" are all "
+        "0, so that there is no motion; set one of them, or \"Type = none\".");
 
     if (type == "Ricker" && ricker.middle > 0 &&
         ricker.middle * ricker.frequency < 1.5 - 1e-9)
       throw UserError(
-        "Section Ground motion/Ricker: Middle must be 0 or at "
-        "least 1.5/Frequency, so that the ground starts at rest.");
+        "\"Middle\" in section \"Ground motion/Ricker\" must be 0 or at least "
+        "1.5 / \"Frequency\", so that the ground starts at rest.");
 
     if (type == "sine" && sine.cycles > 0 && sine.cycles < 2 * sine.ramp_cycles)
       throw UserError(
-        "Section Ground motion/Sine: Cycles must be 0 or at least "
-        "twice Ramp cycles, for the rise and the fall.");
+        "\"Cycles\" in section \"Ground motion/Sine\" must be 0 or at least "
+        "twice \"Ramp cycles\", for the rise and the fall.");
 
     if (type == "spectrum")
       spectrum.check();
@@ -259,10 +261,11 @@ namespace Voussoir
         time_window(whole, record.start_time, record.duration);
       if (part.values.size() < 2)
         throw UserError(
-          "Section Ground motion/Record: between Start time and the end of the "
-          "record '" +
-          file + "' or of Duration there is no motion; the record lasts " +
-          std::to_string(whole.time_step * (whole.values.size() - 1.)) + " s.");
+          "\"Start time\" and \"Duration\" in section \"Ground motion/Record\" "
+          "leave no motion of the record '" +
+          file + "', which lasts " +
+          std::to_string(whole.time_step * (whole.values.size() - 1.)) +
+          " s; choose an earlier start or a longer duration.");
 
       return {part.time_step, record.baseline.apply(part).acceleration};
     }
@@ -290,11 +293,11 @@ namespace Voussoir
             const TimeSeries motion    = read_component(record, c, folder);
             const double     unchanged = peak(motion.values);
             if (peak_acceleration[c] > 0 && unchanged == 0)
-              throw UserError("Section Ground motion: Peak acceleration " +
-                              axis_names[c] +
-                              " cannot be reached, because the part of the "
-                              "record that is used is zero throughout; choose "
-                              "another file or time window.");
+              throw UserError("\"Peak acceleration " + axis_names[c] +
+                              "\" in section \"Ground motion\" cannot be "
+                              "reached, because the part of the record that is "
+                              "used is zero throughout; choose another file or "
+                              "time window.");
             signals[c] = scaled(motion,
                                 peak_acceleration[c] > 0 ? largest / unchanged :
                                                            overload_factor);

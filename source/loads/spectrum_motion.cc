@@ -94,8 +94,9 @@ namespace Voussoir
     spectrum.check();
     if (rise_time + plateau_duration > duration)
       throw UserError(
-        "Section Ground motion/Spectrum: Rise time and Plateau duration are "
-        "together longer than Duration; shorten them or lengthen Duration.");
+        "\"Rise time\" and \"Plateau duration\" in section \"Ground "
+        "motion/Spectrum\" are together longer than the \"Duration\"; shorten "
+        "them, or lengthen the \"Duration\".");
   }
 
 
@@ -146,7 +147,7 @@ namespace Voussoir
       const std::vector<double> intensity = envelope(parameters);
       const std::size_t         size      = transform_size(intensity.size());
 
-      // An oscillator answers to the intensity around its own frequency, in a
+      // An oscillator responds to the intensity around its own frequency, in a
       // band as wide as the frequency: amplitude ~ spectral value / sqrt(f).
       std::vector<std::complex<double>> fourier(size / 2 + 1);
       for (std::size_t k = 1; k < size / 2; ++k)
@@ -281,19 +282,20 @@ namespace Voussoir
       }
     if (n_motions < 3)
       throw UserError(
-        "Section Ground motion/Spectrum: no three motions with a correlation "
-        "below 0.1 were found; lengthen Duration or choose another Seed.");
+        "Section \"Ground motion/Spectrum\": no three motions with a "
+        "correlation below 0.1 were found; lengthen the \"Duration\" or choose "
+        "another \"Seed\".");
 
     for (const TimeSeries &motion : motions)
       {
         const double deviation = mean_deviation(motion, 1.);
         if (deviation > tolerance)
           throw UserError(
-            "Section Ground motion/Spectrum: the mean deviation from the design "
-            "spectrum is " +
+            "Section \"Ground motion/Spectrum\": the mean deviation from the "
+            "design spectrum is " +
             std::to_string(deviation) +
-            ", more than the Tolerance; choose another Seed, a longer Duration "
-            "or a larger Tolerance.");
+            ", more than the \"Tolerance\"; choose another \"Seed\", a longer "
+            "\"Duration\" or a larger \"Tolerance\".");
       }
     return motions;
   }

@@ -11,7 +11,7 @@ namespace Voussoir
   struct InterfaceHistory
   {
     double opening = 0.; // largest so far, with the initial gap [m]
-    double slip    = 0.; // length of the way it has slipped [m]
+    double slip    = 0.; // length of the path it has slipped [m]
   };
 
   /** What a point of an interface bears now. */

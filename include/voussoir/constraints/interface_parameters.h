@@ -39,7 +39,7 @@ namespace Voussoir
     std::unique_ptr<InterfaceLaw> law;
     double                        initial_gap = 0., key_depth = 0.; // [m]
 
-    // joint reinforcement
+    // joint reinforcement: area over area [-], [Pa], [m], [Pa]
     double steel_ratio = 0., steel_modulus = 200e9, free_length = 1.,
            yield_stress = 400e6;
 

@@ -11,7 +11,8 @@ namespace Voussoir
 {
   /**
    * Baseline correction of an acceleration, so that the motion starts and ends
-   * at rest in its first position. The equations are in baseline.cc.
+   * at rest in its first position; the method "none" leaves it as it is. The
+   * equations are in baseline.cc.
    */
   struct BaselineCorrection
   {

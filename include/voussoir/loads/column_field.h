@@ -49,8 +49,9 @@ namespace Voussoir
 
   /**
    * The wave that must enter at the base for the surface of the column to move
-   * as @p surface does, by Fourier transform of the column's answer to a pulse.
-   * Frequencies above @p maximum_frequency [Hz] are removed.
+   * as @p surface does, by Fourier transform of the column's response to a
+   * pulse. Frequencies above @p maximum_frequency [Hz] are removed. Throws
+   * UserError if the column's response does not die out.
    */
   GroundMotionSignals
   incident_for_surface(const WaveColumn          &column,

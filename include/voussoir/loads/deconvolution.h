@@ -6,8 +6,8 @@
 namespace Voussoir
 {
   /**
-   * The input that makes a linear system answer with @p target, when the system
-   * is known by its @p response to one @p excitation:
+   * The input that makes a linear system respond with @p target, when the
+   * system is known by its @p response to one @p excitation:
    * input = target / H with H = response / excitation in the frequency domain.
    * The three series have one time step and any lengths; the result is as long
    * as the target and has the unit of the excitation times target / response.
@@ -18,9 +18,11 @@ namespace Voussoir
    *   @p maximum_frequency on; a maximum above the Nyquist frequency removes
    *   nothing.
    * - Where |H| falls below a thousandth of its maximum (a frequency the system
-   *   does not answer to) the input tends to zero instead of to infinity.
-   * - The input precedes its answer by the travel time between the two points:
-   *   give the target at least that long a quiet start.
+   *   does not respond to) the input tends to zero instead of to infinity.
+   * - The input precedes its response by the travel time between the two
+   * points: give the target at least that long a quiet start.
+   *
+   * @return input samples at the time step of the series
    */
   std::vector<double>
   deconvolve(const TimeSeries &response,

@@ -22,14 +22,15 @@ namespace Voussoir
     double characteristic_period = 0.2;
     double decay_exponent        = 0.6;
 
-    /** Of the table. */
+    /** Of the table [s], [-]. */
     std::vector<double> periods        = {0., 0.1, 0.2, 2.};
     std::vector<double> amplifications = {1., 2.5, 2.5, 0.63};
 
     void
     declare(dealii::ParameterHandler &prm);
 
-    /** Throws UserError if the table makes no sense. */
+    /** Refuses a table with lists of different lengths or with periods that do
+     *  not increase. */
     void
     check() const;
 

@@ -5,7 +5,7 @@
 
 namespace Voussoir
 {
-  /** Largest answers of single-degree-of-freedom oscillators to a motion. */
+  /** Largest responses of single-degree-of-freedom oscillators to a motion. */
   struct ResponseSpectrum
   {
     /** Natural periods [s]; a period of 0 is a rigid oscillator. */

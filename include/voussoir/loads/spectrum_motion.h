@@ -41,9 +41,10 @@ namespace Voussoir
     check() const;
 
     /**
-     * Three accelerations of unit peak that bring the ground back to rest where
-     * it was; they depend on the parameters alone, not on the machine. Throws
-     * UserError if the design spectrum is not met within the tolerance.
+     * Three accelerations of unit peak [-] that bring the ground back to rest
+     * where it was; the random numbers are the same with any standard library.
+     * Throws UserError if the design spectrum is not met within the tolerance,
+     * or if no three motions with a correlation below 0.1 are found.
      */
     std::array<TimeSeries, 3>
     generate() const;

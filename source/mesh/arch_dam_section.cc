@@ -2,8 +2,6 @@
 #include <voussoir/mesh/arch_dam_section.h>
 #include <voussoir/mesh/grading.h>
 
-#include <deal.II/base/tensor.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,12 +12,6 @@ namespace Voussoir
 
   namespace
   {
-    // Smoothing: lengths over the size of a cell, part of Newton's step that
-    // lets neighbours move at the same time, and number of steps.
-    constexpr double       relative_probe = 0.01, largest_step = 0.05;
-    constexpr double       relaxation = 0.6;
-    constexpr unsigned int n_steps    = 120;
-
     // How far a row may be moved to the level of a reservoir, and how near it
     // may come to the next, over the height of a row.
     constexpr double surface_shift = 0.25, surface_distance = 0.3;
@@ -364,114 +356,5 @@ namespace Voussoir
         vertices.push_back(vertex);
       }
     return entry->second;
-  }
-
-
-  // Move the vertices towards the minimum of the sum over all corners of
-  // |J^-1|^8, J holding the two edges over the cell's size in the grid. This
-  // grows without bound as a cell becomes small, flat or slanted. All vertices
-  // move at the same time, so that a symmetric mesh stays symmetric.
-  void
-  ArchDamCrossSection::smooth(const unsigned int columns_per_block)
-  {
-    std::vector<std::vector<unsigned int>> quads_at(vertices.size());
-    for (unsigned int q = 0; q < quads.size(); ++q)
-      for (const unsigned int v : quads[q].vertices)
-        quads_at[v].push_back(q);
-
-    const auto badness = [&](const unsigned int moved, const Vertex &place) {
-      double sum = 0;
-      for (const unsigned int q : quads_at[moved])
-        {
-          const Quad                 &quad = quads[q];
-          std::array<Tensor<1, 2>, 4> x;
-          for (unsigned int i = 0; i < 4; ++i)
-            {
-              const Vertex &vertex =
-                quad.vertices[i] == moved ? place : vertices[quad.vertices[i]];
-              x[i] =
-                Tensor<1, 2>({vertex.s / quad.width, vertex.z / quad.height});
-            }
-          for (unsigned int i = 0; i < 4; ++i)
-            {
-              const Tensor<1, 2> a = x[(i + 1) % 4] - x[i],
-                                 b = x[(i + 3) % 4] - x[i];
-              const double det     = a[0] * b[1] - a[1] * b[0];
-              if (det <= 0.)
-                return std::numeric_limits<double>::max();
-              const double inverse =
-                (a.norm_square() + b.norm_square()) / (det * det);
-              sum += inverse * inverse * inverse * inverse;
-            }
-        }
-      return sum;
-    };
-
-    // Joints, the ends of the crest, of ledges and of the rock stay where they
-    // are.
-    const auto may_move_along = [&](const Vertex &vertex) {
-      const int  column = vertex.column;
-      const bool in_dam =
-        column >= first_dam_column && column <= last_dam_column;
-      for (const Ledge &ledge : ledges)
-        if (column >= 0 && column == ledge.side_column)
-          return false;
-      return column < 0 ||
-             (in_dam ? (column - first_dam_column) % columns_per_block != 0 :
-                       column > 0 && column < last_column);
-    };
-    const auto may_move_up = [&](const unsigned int v) {
-      return !on_contour[v] && !on_surface[v] && !on_ledge[v] &&
-             vertices[v].z < height && vertices[v].z > rows.front();
-    };
-
-    // Newton's step along one direction, by differences over a probe.
-    const auto newton_step = [&](const unsigned int v,
-                                 const double       size,
-                                 const auto        &shifted) {
-      const double probe     = relative_probe * size;
-      const double before    = badness(v, shifted(-probe)),
-                   at        = badness(v, vertices[v]),
-                   after     = badness(v, shifted(probe));
-      const double slope     = (after - before) / (2. * probe),
-                   curvature = (after - 2. * at + before) / (probe * probe);
-      const double limit     = largest_step * size;
-      return std::max(-limit,
-                      std::min(limit,
-                               -relaxation * slope /
-                                 std::max(curvature, std::abs(slope) / size)));
-    };
-
-    for (unsigned int i = 0; i < n_steps; ++i)
-      {
-        std::vector<Vertex> moved = vertices;
-        for (unsigned int v = 0; v < vertices.size(); ++v)
-          {
-            const Vertex vertex     = vertices[v];
-            double       cell_width = std::numeric_limits<double>::max(),
-                   cell_height      = cell_width;
-            for (const unsigned int q : quads_at[v])
-              {
-                cell_width  = std::min(cell_width, quads[q].width);
-                cell_height = std::min(cell_height, quads[q].height);
-              }
-            const auto along = [&](const double ds) {
-              const double s = vertex.s + ds;
-              return Vertex{s,
-                            on_contour[v] ? sections.contour(s) : vertex.z,
-                            vertex.column};
-            };
-            const auto up = [&](const double dz) {
-              return Vertex{vertex.s, vertex.z + dz, vertex.column};
-            };
-
-            if (may_move_along(vertex) &&
-                !(on_contour[v] && (on_surface[v] || on_ledge[v])))
-              moved[v] = along(newton_step(v, cell_width, along));
-            if (may_move_up(v))
-              moved[v].z += newton_step(v, cell_height, up);
-          }
-        vertices = moved;
-      }
   }
 } // namespace Voussoir

@@ -116,8 +116,18 @@ namespace Voussoir
     unsigned int
     middle(const unsigned int a, const unsigned int b);
 
+    /** Moves the vertices to where the quadrilaterals are least distorted. */
     void
     smooth(const unsigned int columns_per_block);
+
+    /** Joints, the ends of the crest, of ledges and of the rock stay where
+     *  they are. */
+    bool
+    may_move_along(const unsigned int vertex,
+                   const unsigned int columns_per_block) const;
+
+    bool
+    may_move_up(const unsigned int vertex) const;
 
     const ArchDamSections &sections;
     const double           height;

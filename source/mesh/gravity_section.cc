@@ -101,16 +101,82 @@ namespace Voussoir
       CoarseMesh
       generate() const override
       {
-        const std::vector<double> elevations = rows();
-        const unsigned int        base_row   = elevations.size() - 1 - cells[2];
+        const Lattice      lattice = make_lattice();
+        const unsigned int n_x = cells[0], n_y = lattice.base.size() - 1,
+                           n_z = lattice.elevations.size() - 1;
+        CoarseMesh                mesh;
+        std::vector<unsigned int> vertices((n_x + 1) * (n_y + 1) * (n_z + 1),
+                                           numbers::invalid_unsigned_int);
+        const auto                vertex = [&](const unsigned int i,
+                                const unsigned int j,
+                                const unsigned int k) {
+          unsigned int &number = vertices[i + (n_x + 1) * (j + (n_y + 1) * k)];
+          if (number == numbers::invalid_unsigned_int)
+            {
+              number = mesh.vertices.size();
+              mesh.vertices.push_back(lattice_point(lattice, i, j, k));
+            }
+          return number;
+        };
 
-        // Points of the base from downstream to upstream.
-        std::vector<double> base;
+        for (unsigned int k = 0; k < n_z; ++k)
+          for (unsigned int j = 0; j < n_y; ++j)
+            for (unsigned int i = 0; i < n_x; ++i)
+              if (lattice.is_rock(k) || lattice.is_dam(j, k) ||
+                  lattice.is_water(j, k))
+                {
+                  std::array<unsigned int, 8> corners;
+                  for (unsigned int v = 0; v < 8; ++v)
+                    corners[v] =
+                      vertex(i + (v & 1), j + ((v >> 1) & 1), k + (v >> 2));
+                  mesh.cells.push_back(corners);
+                  name_last_cell(mesh, lattice, i, j, k);
+                }
+        return mesh;
+      }
+
+    private:
+      /** What the cells are cut from: rows of them between elevations, upwards,
+       *  and between points of the base, from downstream to upstream. */
+      struct Lattice
+      {
+        std::vector<double> base, elevations;
+        unsigned int        toe, heel, base_row;    // limits of the dam
+        unsigned int        water_end, surface_row; // and of the water
+
+        bool
+        is_rock(const unsigned int k) const
+        {
+          return k < base_row;
+        }
+
+        bool
+        is_dam(const unsigned int j, const unsigned int k) const
+        {
+          return k >= base_row && j >= toe && j < heel;
+        }
+
+        bool
+        is_water(const unsigned int j, const unsigned int k) const
+        {
+          return k >= base_row && j >= heel && j < water_end && k < surface_row;
+        }
+      };
+
+      Lattice
+      make_lattice() const
+      {
+        Lattice result;
+        result.elevations = rows();
+        result.base_row   = result.elevations.size() - 1 - cells[2];
+
+        std::vector<double> &base = result.base;
         for (unsigned int j = 0; j <= cells[1]; ++j)
           base.push_back(base_width * (double(j) / cells[1] - 1.));
         const std::vector<double> rock =
           distances(rock_extent, base_width / cells[1]);
-        const unsigned int heel = rock.size() + cells[1], toe = rock.size();
+        result.toe  = rock.size();
+        result.heel = rock.size() + cells[1];
         for (const double distance : rock)
           base.insert(base.begin(), -base_width - distance);
         const std::vector<double> upstream =
@@ -119,92 +185,87 @@ namespace Voussoir
             distances(water_length, base_width / cells[1]);
         base.insert(base.end(), upstream.begin(), upstream.end());
 
-        // where the water ends, by rows and by points of the base
-        const auto nearest = [](const std::vector<double> &values,
-                                const unsigned int         first,
-                                const double               value) {
-          return std::min_element(values.begin() + first,
-                                  values.end(),
-                                  [&](const double a, const double b) {
-                                    return std::abs(a - value) <
-                                           std::abs(b - value);
-                                  }) -
-                 values.begin();
-        };
-        const bool         has_water = water_level > 0.;
-        const unsigned int surface =
-          has_water ? nearest(elevations, base_row + 1, water_level) : 0;
-        const unsigned int end =
-          !has_water        ? heel :
-          water_length > 0. ? nearest(base, heel + 1, water_length) :
+        const bool has_water = water_level > 0.;
+        result.surface_row =
+          has_water ?
+            nearest(result.elevations, result.base_row + 1, water_level) :
+            0;
+        result.water_end =
+          !has_water        ? result.heel :
+          water_length > 0. ? nearest(base, result.heel + 1, water_length) :
                               base.size() - 1;
-
-        CoarseMesh         mesh;
-        const unsigned int n_x = cells[0], n_y = base.size() - 1,
-                           n_z = elevations.size() - 1;
-        std::vector<unsigned int> vertices((n_x + 1) * (n_y + 1) * (n_z + 1),
-                                           numbers::invalid_unsigned_int);
-        const auto                vertex = [&](unsigned int i,
-                                unsigned int j,
-                                unsigned int k) {
-          unsigned int &number = vertices[i + (n_x + 1) * (j + (n_y + 1) * k)];
-          if (number == numbers::invalid_unsigned_int)
-            {
-              const double z = elevations[k];
-              const double y = base[j];
-              number         = mesh.vertices.size();
-              mesh.vertices.emplace_back(thickness * (double(i) / n_x - 0.5),
-                                         z > 0. && y < 0. ?
-                                                          y * width(z) / base_width :
-                                                          y,
-                                         z);
-            }
-          return number;
-        };
-
-        for (unsigned int k = 0; k < n_z; ++k)
-          for (unsigned int j = 0; j < n_y; ++j)
-            for (unsigned int i = 0; i < n_x; ++i)
-              {
-                const bool above = k >= base_row, in_dam = j >= toe && j < heel;
-                const bool in_water =
-                  above && j >= heel && j < end && k < surface;
-                if (above && !in_dam && !in_water)
-                  continue;
-                const unsigned int          cell = mesh.cells.size();
-                std::array<unsigned int, 8> corners;
-                for (unsigned int v = 0; v < 8; ++v)
-                  corners[v] =
-                    vertex(i + (v & 1), j + ((v >> 1) & 1), k + (v >> 2));
-                mesh.cells.push_back(corners);
-                mesh.cell_sets[in_water ? "reservoir" :
-                               above    ? "dam" :
-                                          "rock"]
-                  .push_back(cell);
-
-                const auto side = [&](const bool         is_there,
-                                      const std::string &name,
-                                      const unsigned int face) {
-                  if (is_there)
-                    mesh.face_sets[name].push_back({cell, face});
-                };
-                side(i == 0, "side minus", 0);
-                side(i == n_x - 1, "side plus", 1);
-                side(above && j == toe, "downstream face", 2);
-                side(above && j == heel - 1, "upstream face", 3);
-                side(in_dam && k == n_z - 1, "crest", 5);
-                side(in_dam && k == base_row, "base", 4);
-                side(in_water && k == surface - 1, "water surface", 5);
-                side(in_water && j == end - 1, "reservoir end", 3);
-                side(!above && j == 0, "downstream end", 2);
-                side(!above && j == n_y - 1, "upstream end", 3);
-                side(!above && k == 0, "bottom", 4);
-                side(k + 1 == base_row && !in_dam, "ground", 5);
-              }
-        return mesh;
+        return result;
       }
 
-    private:
+      /** Which of the values from the first on is nearest to one. */
+      static unsigned int
+      nearest(const std::vector<double> &values,
+              const unsigned int         first,
+              const double               value)
+      {
+        return std::min_element(values.begin() + first,
+                                values.end(),
+                                [&](const double a, const double b) {
+                                  return std::abs(a - value) <
+                                         std::abs(b - value);
+                                }) -
+               values.begin();
+      }
+
+      /** Above the base the rows lean with the downstream face. */
+      Point<3>
+      lattice_point(const Lattice     &lattice,
+                    const unsigned int i,
+                    const unsigned int j,
+                    const unsigned int k) const
+      {
+        const double y = lattice.base[j], z = lattice.elevations[k];
+        return {thickness * (double(i) / cells[0] - 0.5),
+                z > 0. && y < 0. ? y * width(z) / base_width : y,
+                z};
+      }
+
+      /** Adds the cell at a place of the lattice to its sets. */
+      void
+      name_last_cell(CoarseMesh        &mesh,
+                     const Lattice     &lattice,
+                     const unsigned int i,
+                     const unsigned int j,
+                     const unsigned int k) const
+      {
+        const unsigned int cell = mesh.cells.size() - 1;
+        const bool is_rock = lattice.is_rock(k), is_dam = lattice.is_dam(j, k),
+                   is_water = lattice.is_water(j, k);
+        mesh.cell_sets[is_water ? "reservoir" :
+                       is_dam   ? "dam" :
+                                  "rock"]
+          .push_back(cell);
+
+        const auto side = [&](const bool         is_there,
+                              const std::string &name,
+                              const unsigned int face) {
+          if (is_there)
+            mesh.face_sets[name].push_back({cell, face});
+        };
+        const unsigned int n_y = lattice.base.size() - 1,
+                           n_z = lattice.elevations.size() - 1;
+        side(i == 0, "side minus", 0);
+        side(i == cells[0] - 1, "side plus", 1);
+        side(is_dam && j == lattice.toe, "downstream face", 2);
+        side(is_dam && j == lattice.heel - 1, "upstream face", 3);
+        side(is_dam && k == n_z - 1, "crest", 5);
+        side(is_dam && k == lattice.base_row, "base", 4);
+        side(is_water && k == lattice.surface_row - 1, "water surface", 5);
+        side(is_water && j == lattice.water_end - 1, "reservoir end", 3);
+        side(is_rock && j == 0, "downstream end", 2);
+        side(is_rock && j == n_y - 1, "upstream end", 3);
+        side(is_rock && k == 0, "bottom", 4);
+        side(k + 1 == lattice.base_row &&
+               (j < lattice.toe || j >= lattice.heel),
+             "ground",
+             5);
+      }
+
       double
       width(const double z) const
       {

@@ -4,8 +4,9 @@
 #include <voussoir/mesh/interfaces.h>
 #include <voussoir/mesh/mesh_geometry.h>
 
+#include <boost/pending/disjoint_sets.hpp>
+
 #include <algorithm>
-#include <numeric>
 
 namespace Voussoir
 {
@@ -17,9 +18,12 @@ namespace Voussoir
   {
     constexpr unsigned int none = numbers::invalid_unsigned_int;
 
-    // Number of the interface of a face, from either side.
-    using InterfaceNumbers =
-      std::map<std::pair<unsigned int, unsigned int>, unsigned int>;
+    // The interface of a face, given by cell and face, from either side.
+    using SplitFaces =
+      std::map<std::pair<unsigned int, unsigned int>, const InterfaceSurface *>;
+
+    // New vertices at the place of an old one.
+    using VertexCopies = std::map<unsigned int, std::vector<unsigned int>>;
 
 
     template <typename Set>
@@ -41,52 +45,21 @@ namespace Voussoir
     }
 
 
-    /** Numbers that are joined into groups. */
-    class Groups
-    {
-    public:
-      explicit Groups(const unsigned int n)
-        : parent(n)
-      {
-        std::iota(parent.begin(), parent.end(), 0U);
-      }
-
-      /** The lowest number of the group. */
-      unsigned int
-      lowest(unsigned int i)
-      {
-        while (parent[i] != i)
-          i = parent[i] = parent[parent[i]];
-        return i;
-      }
-
-      void
-      join(const unsigned int i, const unsigned int j)
-      {
-        const auto [a, b] = std::minmax({lowest(i), lowest(j)});
-        parent[b]         = a;
-      }
-
-    private:
-      std::vector<unsigned int> parent;
-    };
-
-
     // Give the cells around a vertex that hang together through faces outside
     // the interfaces vertices of their own. Returns the copies.
     std::vector<unsigned int>
     split_vertex(CoarseMesh                      &mesh,
                  const FaceNeighbours            &neighbours,
-                 const InterfaceNumbers          &split_faces,
+                 const SplitFaces                &split_faces,
                  const unsigned int               vertex,
                  const std::vector<unsigned int> &cells)
     {
       std::vector<unsigned int> copies;
-      const auto                position = [&](const unsigned int cell) {
+      const auto position = [&](const unsigned int cell) -> unsigned int {
         return std::lower_bound(cells.begin(), cells.end(), cell) -
                cells.begin();
       };
-      Groups groups(cells.size());
+      boost::disjoint_sets_with_storage<> groups(cells.size());
       for (unsigned int i = 0; i < cells.size(); ++i)
         {
           const auto        &corners = mesh.cells[cells[i]];
@@ -99,14 +72,16 @@ namespace Voussoir
               const Face        &other = neighbours[cells[i]][face];
               if (other.cell != none &&
                   split_faces.count({cells[i], face}) == 0)
-                groups.join(i, position(other.cell));
+                groups.union_set(i, position(other.cell));
             }
         }
-      std::map<unsigned int, unsigned int> number_of_group{{0, vertex}};
+      // the vertex itself stays with the first cell
+      std::map<std::size_t, unsigned int> number_of_group{
+        {groups.find_set(0), vertex}};
       for (unsigned int i = 0; i < cells.size(); ++i)
         {
           const auto [entry, is_new] =
-            number_of_group.insert({groups.lowest(i), mesh.vertices.size()});
+            number_of_group.insert({groups.find_set(i), mesh.vertices.size()});
           if (is_new)
             {
               copies.push_back(entry->second);
@@ -116,6 +91,93 @@ namespace Voussoir
           std::replace(corners.begin(), corners.end(), vertex, entry->second);
         }
       return copies;
+    }
+
+
+    SplitFaces
+    collect_faces(const CoarseMesh                    &mesh,
+                  const std::vector<InterfaceSurface> &interfaces,
+                  const std::string                   &place)
+    {
+      SplitFaces result;
+      for (const InterfaceSurface &interface : interfaces)
+        for (const auto &sides : interface.faces)
+          for (const Face &face : sides)
+            {
+              const auto [entry, is_new] =
+                result.insert({{face.cell, face.face}, &interface});
+              if (!is_new)
+                throw UserError(place + ": " + describe_face(mesh, face) +
+                                " belongs to \"" + entry->second->name +
+                                "\" and \"" + interface.name +
+                                "\"; a face can belong to one interface only.");
+            }
+      return result;
+    }
+
+
+    VertexCopies
+    split_vertices(CoarseMesh                          &mesh,
+                   const FaceNeighbours                &neighbours,
+                   const std::vector<InterfaceSurface> &interfaces,
+                   const SplitFaces                    &split_faces)
+    {
+      std::map<unsigned int, std::vector<unsigned int>> cells_at_vertex;
+      for (const InterfaceSurface &interface : interfaces)
+        for (const auto &sides : interface.faces)
+          for (const unsigned int vertex : face_vertices(mesh, sides[0]))
+            cells_at_vertex[vertex];
+      for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
+        for (const unsigned int vertex : mesh.cells[cell])
+          if (const auto entry = cells_at_vertex.find(vertex);
+              entry != cells_at_vertex.end())
+            entry->second.push_back(cell);
+      VertexCopies copies;
+      for (const auto &[vertex, cells] : cells_at_vertex)
+        copies[vertex] =
+          split_vertex(mesh, neighbours, split_faces, vertex, cells);
+      return copies;
+    }
+
+
+    void
+    name_sides(CoarseMesh             &mesh,
+               const InterfaceSurface &interface,
+               const std::string      &place)
+    {
+      auto &first = mesh.face_sets[interface.name];
+      auto &other = mesh.face_sets[interface.name + other_side];
+      first.clear();
+      for (const auto &sides : interface.faces)
+        {
+          auto a = face_vertices(mesh, sides[0]),
+               b = face_vertices(mesh, sides[1]);
+          std::sort(a.begin(), a.end());
+          std::sort(b.begin(), b.end());
+          if (a == b)
+            throw UserError(
+              place + ": the interface \"" + interface.name +
+              "\" cannot open at " + describe_face(mesh, sides[0]) +
+              ", because all vertices of this face lie where it ends inside "
+              "the body; use smaller cells or extend the interface.");
+          first.push_back(sides[0]);
+          other.push_back(sides[1]);
+        }
+    }
+
+
+    void
+    add_copies_to_sets(CoarseMesh &mesh, const VertexCopies &copies)
+    {
+      for (auto &set : mesh.vertex_sets)
+        {
+          const std::vector<unsigned int> members = set.second;
+          for (const unsigned int vertex : members)
+            if (const auto entry = copies.find(vertex); entry != copies.end())
+              set.second.insert(set.second.end(),
+                                entry->second.begin(),
+                                entry->second.end());
+        }
     }
   } // namespace
 
@@ -166,7 +228,6 @@ namespace Voussoir
   {
     const FaceNeighbours          neighbours = find_face_neighbours(mesh);
     std::vector<InterfaceSurface> interfaces;
-    InterfaceNumbers              interface_of_face;
     for (const std::string &name : face_sets)
       {
         interfaces.push_back(
@@ -175,18 +236,6 @@ namespace Voussoir
                                  name,
                                  find_set(mesh.face_sets, name, "face", place),
                                  place));
-        for (const auto &sides : interfaces.back().faces)
-          for (const Face &face : sides)
-            {
-              const auto [entry, is_new] = interface_of_face.insert(
-                {{face.cell, face.face},
-                 static_cast<unsigned int>(interfaces.size() - 1)});
-              if (!is_new)
-                throw UserError(
-                  place + ": " + describe_face(mesh, face) + " belongs to \"" +
-                  interfaces[entry->second].name + "\" and \"" + name +
-                  "\"; a face can belong to one interface only.");
-            }
         if (mesh.face_sets.count(name + other_side) > 0)
           throw UserError(place + ": the mesh has a face set \"" + name +
                           other_side +
@@ -194,51 +243,11 @@ namespace Voussoir
                           "of \"" +
                           name + "\"; rename it.");
       }
-
-    std::map<unsigned int, std::vector<unsigned int>> cells_at_vertex;
+    const SplitFaces   split_faces = collect_faces(mesh, interfaces, place);
+    const VertexCopies copies =
+      split_vertices(mesh, neighbours, interfaces, split_faces);
     for (const InterfaceSurface &interface : interfaces)
-      for (const auto &sides : interface.faces)
-        for (const unsigned int vertex : face_vertices(mesh, sides[0]))
-          cells_at_vertex[vertex];
-    for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
-      for (const unsigned int vertex : mesh.cells[cell])
-        if (const auto entry = cells_at_vertex.find(vertex);
-            entry != cells_at_vertex.end())
-          entry->second.push_back(cell);
-    std::map<unsigned int, std::vector<unsigned int>> copies;
-    for (const auto &[vertex, cells] : cells_at_vertex)
-      copies[vertex] =
-        split_vertex(mesh, neighbours, interface_of_face, vertex, cells);
-
-    for (const InterfaceSurface &interface : interfaces)
-      {
-        auto &first = mesh.face_sets[interface.name];
-        auto &other = mesh.face_sets[interface.name + other_side];
-        first.clear();
-        for (const auto &sides : interface.faces)
-          {
-            auto a = face_vertices(mesh, sides[0]),
-                 b = face_vertices(mesh, sides[1]);
-            std::sort(a.begin(), a.end());
-            std::sort(b.begin(), b.end());
-            if (a == b)
-              throw UserError(
-                place + ": the interface \"" + interface.name +
-                "\" cannot open at " + describe_face(mesh, sides[0]) +
-                ", because all vertices of this face lie where it ends inside "
-                "the body; use smaller cells or extend the interface.");
-            first.push_back(sides[0]);
-            other.push_back(sides[1]);
-          }
-      }
-    for (auto &set : mesh.vertex_sets)
-      {
-        const std::vector<unsigned int> members = set.second;
-        for (const unsigned int vertex : members)
-          if (const auto entry = copies.find(vertex); entry != copies.end())
-            set.second.insert(set.second.end(),
-                              entry->second.begin(),
-                              entry->second.end());
-      }
+      name_sides(mesh, interface, place);
+    add_copies_to_sets(mesh, copies);
   }
 } // namespace Voussoir

@@ -6,11 +6,12 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/base/geometry_info.h>
 
+#include <boost/pending/disjoint_sets.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <sstream>
 #include <unordered_map>
 
@@ -176,25 +177,40 @@ namespace Voussoir
     std::vector<std::size_t>
     connected_parts(const CoarseMesh &mesh)
     {
-      std::vector<unsigned int> parent(mesh.cells.size());
-      std::iota(parent.begin(), parent.end(), 0U);
-      const auto root = [&](unsigned int cell) {
-        while (parent[cell] != cell)
-          cell = parent[cell] = parent[parent[cell]];
-        return cell;
-      };
-
-      const std::vector<SortedFace> faces = sorted_faces(mesh);
+      boost::disjoint_sets_with_storage<> parts(mesh.cells.size());
+      const std::vector<SortedFace>       faces = sorted_faces(mesh);
       for (unsigned int i = 1; i < faces.size(); ++i)
         if (same_vertices(faces[i - 1], faces[i]))
-          parent[root(faces[i].face.cell)] = root(faces[i - 1].face.cell);
+          parts.union_set(faces[i].face.cell, faces[i - 1].face.cell);
 
       std::vector<std::size_t> size(mesh.cells.size(), 0);
       for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
-        ++size[root(cell)];
+        ++size[parts.find_set(cell)];
       std::sort(size.rbegin(), size.rend());
       size.erase(std::find(size.begin(), size.end(), 0U), size.end());
       return size;
+    }
+
+
+    // The shortest and the longest one [m].
+    std::pair<double, double>
+    edge_lengths(const CoarseMesh &mesh)
+    {
+      double shortest = std::numeric_limits<double>::max(), longest = 0;
+      for (const auto &cell : mesh.cells)
+        for (unsigned int line = 0; line < GeometryInfo<3>::lines_per_cell;
+             ++line)
+          {
+            const auto &a =
+              mesh.vertices[cell[GeometryInfo<3>::line_to_cell_vertices(line,
+                                                                        0)]];
+            const auto &b =
+              mesh.vertices[cell[GeometryInfo<3>::line_to_cell_vertices(line,
+                                                                        1)]];
+            shortest = std::min(shortest, a.distance(b));
+            longest  = std::max(longest, a.distance(b));
+          }
+      return {shortest, longest};
     }
 
 
@@ -239,6 +255,100 @@ namespace Voussoir
         }
       return n;
     }
+
+
+    void
+    describe_shape(const CoarseMesh   &mesh,
+                   const double        shortest_edge,
+                   const double        longest_edge,
+                   std::ostringstream &text)
+    {
+      double volume = 0, worst_corner = 1;
+      for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
+        {
+          volume += cell_volume(mesh, cell);
+          const auto shapes = corner_shapes(mesh, cell);
+          worst_corner =
+            std::min(worst_corner,
+                     *std::min_element(shapes.begin(), shapes.end()));
+        }
+
+      const BoundingBox<3> box(mesh.vertices);
+      text << "Mesh: " << counted(mesh.cells.size(), "cell", "cells") << ", "
+           << counted(mesh.vertices.size(), "vertex", "vertices") << ", volume "
+           << volume << " m3\n  extent";
+      for (unsigned int d = 0; d < 3; ++d)
+        text << (d == 0 ? " " : ", ") << "xyz"[d] << " " << box.lower_bound(d)
+             << " to " << box.upper_bound(d) << " m";
+      text << "\n  edges " << shortest_edge << " to " << longest_edge
+           << " m, worst corner " << worst_corner
+           << " (1: right angle, 0: flat)\n";
+    }
+
+
+    void
+    describe_connection(const CoarseMesh   &mesh,
+                        const double        shortest_edge,
+                        std::ostringstream &text)
+    {
+      const std::vector<std::size_t> parts = connected_parts(mesh);
+      if (parts.size() > 1)
+        {
+          text << "  " << parts.size()
+               << " parts that share no face, of these numbers of cells:";
+          for (unsigned int i = 0; i < std::min<std::size_t>(parts.size(), 10);
+               ++i)
+            text << " " << parts[i];
+          text << (parts.size() > 10 ? " ...\n" : "\n");
+        }
+      const unsigned int n_coincident =
+        n_coincident_vertices(mesh, shortest_edge);
+      if (n_coincident > 0)
+        text << "  "
+             << counted(n_coincident,
+                        "vertex lies on another vertex",
+                        "vertices lie on another vertex")
+             << ": the cells there are not connected (right for a joint or "
+                "slit)\n";
+    }
+
+
+    void
+    describe_sets(const CoarseMesh &mesh, std::ostringstream &text)
+    {
+      std::vector<bool> is_named(mesh.cells.size(), false);
+      for (const auto &[name, cells] : mesh.cell_sets)
+        {
+          double volume = 0;
+          for (const unsigned int cell : cells)
+            {
+              volume += cell_volume(mesh, cell);
+              is_named[cell] = true;
+            }
+          text << "  cells \"" << name
+               << "\": " << counted(cells.size(), "cell", "cells")
+               << ", volume " << volume << " m3\n";
+        }
+      const std::size_t n_unnamed =
+        std::count(is_named.begin(), is_named.end(), false);
+      if (n_unnamed > 0)
+        text << "  " << counted(n_unnamed, "cell belongs", "cells belong")
+             << " to no named set\n";
+
+      for (const auto &[name, faces] : mesh.face_sets)
+        {
+          double area = 0;
+          for (const CoarseMesh::Face &face : faces)
+            area += face_area(mesh, face);
+          text << "  faces \"" << name
+               << "\": " << counted(faces.size(), "face", "faces") << ", area "
+               << area << " m2\n";
+        }
+      for (const auto &[name, vertices] : mesh.vertex_sets)
+        text << "  vertices \"" << name
+             << "\": " << counted(vertices.size(), "vertex", "vertices")
+             << "\n";
+    }
   } // namespace
 
 
@@ -259,89 +369,11 @@ namespace Voussoir
   std::string
   describe_mesh(const CoarseMesh &mesh)
   {
-    double volume = 0, shortest = std::numeric_limits<double>::max(),
-           longest = 0, worst_corner = 1;
-    for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
-      {
-        volume += cell_volume(mesh, cell);
-        const auto shapes = corner_shapes(mesh, cell);
-        worst_corner =
-          std::min(worst_corner,
-                   *std::min_element(shapes.begin(), shapes.end()));
-        for (unsigned int line = 0; line < 12; ++line)
-          {
-            const double length =
-              mesh
-                .vertices[mesh.cells[cell][GeometryInfo<
-                  3>::line_to_cell_vertices(line, 0)]]
-                .distance(mesh.vertices[mesh.cells[cell][GeometryInfo<
-                  3>::line_to_cell_vertices(line, 1)]]);
-            shortest = std::min(shortest, length);
-            longest  = std::max(longest, length);
-          }
-      }
-
-    const BoundingBox<3> box(mesh.vertices);
-    std::ostringstream   text;
-    text << "Mesh: " << counted(mesh.cells.size(), "cell", "cells") << ", "
-         << counted(mesh.vertices.size(), "vertex", "vertices") << ", volume "
-         << volume << " m3\n  extent";
-    for (unsigned int d = 0; d < 3; ++d)
-      text << (d == 0 ? " " : ", ") << "xyz"[d] << " " << box.lower_bound(d)
-           << " to " << box.upper_bound(d) << " m";
-    text << "\n  edges " << shortest << " to " << longest << " m, worst corner "
-         << worst_corner << " (1: right angle, 0: flat)\n";
-
-    const std::vector<std::size_t> parts = connected_parts(mesh);
-    if (parts.size() > 1)
-      {
-        text << "  " << parts.size()
-             << " parts that share no face, of these numbers of cells:";
-        for (unsigned int i = 0; i < std::min<std::size_t>(parts.size(), 10);
-             ++i)
-          text << " " << parts[i];
-        text << (parts.size() > 10 ? " ...\n" : "\n");
-      }
-    const unsigned int n_coincident = n_coincident_vertices(mesh, shortest);
-    if (n_coincident > 0)
-      text
-        << "  "
-        << counted(n_coincident,
-                   "vertex lies on another vertex",
-                   "vertices lie on another vertex")
-        << ": the cells there are not connected (right for a joint or slit)\n";
-
-    std::vector<bool> is_named(mesh.cells.size(), false);
-    for (const auto &[name, cells] : mesh.cell_sets)
-      {
-        double set_volume = 0;
-        for (const unsigned int cell : cells)
-          {
-            set_volume += cell_volume(mesh, cell);
-            is_named[cell] = true;
-          }
-        text << "  cells \"" << name
-             << "\": " << counted(cells.size(), "cell", "cells") << ", volume "
-             << set_volume << " m3\n";
-      }
-    const std::size_t n_unnamed =
-      std::count(is_named.begin(), is_named.end(), false);
-    if (n_unnamed > 0)
-      text << "  " << counted(n_unnamed, "cell belongs", "cells belong")
-           << " to no named set\n";
-
-    for (const auto &[name, faces] : mesh.face_sets)
-      {
-        double area = 0;
-        for (const CoarseMesh::Face &face : faces)
-          area += face_area(mesh, face);
-        text << "  faces \"" << name
-             << "\": " << counted(faces.size(), "face", "faces") << ", area "
-             << area << " m2\n";
-      }
-    for (const auto &[name, vertices] : mesh.vertex_sets)
-      text << "  vertices \"" << name
-           << "\": " << counted(vertices.size(), "vertex", "vertices") << "\n";
+    const auto [shortest_edge, longest_edge] = edge_lengths(mesh);
+    std::ostringstream text;
+    describe_shape(mesh, shortest_edge, longest_edge, text);
+    describe_connection(mesh, shortest_edge, text);
+    describe_sets(mesh, text);
     return text.str();
   }
 } // namespace Voussoir

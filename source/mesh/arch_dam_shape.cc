@@ -4,8 +4,11 @@
 #include <deal.II/base/numbers.h>
 #include <deal.II/base/quadrature_lib.h>
 
+#include <boost/math/tools/toms748_solve.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 
 namespace Voussoir
@@ -19,6 +22,9 @@ namespace Voussoir
 
     // Length over the dam's height in which the arch turns, inside the rock.
     constexpr double relative_turning_length = 0.75;
+
+    // To which lines are cut and the contour is found, over the dam's height.
+    constexpr double tolerance = 1e-12;
 
 
     std::map<std::string, ArchDamShape>
@@ -285,7 +291,7 @@ namespace Voussoir
         const double slope = cosine + sine * std::tan(shape.angle(x, z));
         t -= residual / slope;
         x = crest.centre[0] + t * sine;
-        if (std::abs(residual) < 1e-12 * shape.height)
+        if (std::abs(residual) < tolerance * shape.height)
           break;
       }
     return x;
@@ -298,20 +304,30 @@ namespace Voussoir
     if (s <= right_end || s >= left_end)
       return shape.height;
 
-    const Line section    = crest(s);
-    const auto is_in_rock = [&](const double z) {
+    // How far the section ends beyond the canyon, into the rock.
+    const Line section       = crest(s);
+    const auto depth_in_rock = [&](const double z) {
       const double x = cut(section, z);
-      return std::abs(x) > shape.half_width(x, z);
+      return std::abs(x) - shape.half_width(x, z);
     };
-    if (!is_in_rock(0.))
+    const double at_base  = depth_in_rock(0.),
+                 at_crest = depth_in_rock(shape.height);
+    if (at_base <= 0.)
       return 0.;
-    double below = 0., above = shape.height;
-    while (above - below > 1e-10 * shape.height)
-      {
-        const double middle                  = 0.5 * (below + above);
-        (is_in_rock(middle) ? below : above) = middle;
-      }
-    return above;
+    if (at_crest >= 0.)
+      return shape.height;
+    std::uintmax_t n_steps = 100;
+    return boost::math::tools::toms748_solve(
+             depth_in_rock,
+             0.,
+             shape.height,
+             at_base,
+             at_crest,
+             [&](const double below, const double above) {
+               return above - below < tolerance * shape.height;
+             },
+             n_steps)
+      .second;
   }
 
 

@@ -73,85 +73,32 @@ namespace Voussoir
       faces.push_back({{a, b, d, c, (a + b + d + c) / 4.}});
     if (faces.empty())
       throw UserError(place + " names face sets without faces.");
-    add_box(0, faces.size());
-  }
-
-
-  unsigned int
-  FaceDistance::add_box(const unsigned int begin, const unsigned int end)
-  {
-    const unsigned int number = boxes.size();
-    Box                box{faces[begin][0], faces[begin][0], begin, end};
-    for (unsigned int f = begin; f < end; ++f)
-      for (const Point<3> &corner : faces[f])
-        for (unsigned int d = 0; d < 3; ++d)
-          {
-            box.lower[d] = std::min(box.lower[d], corner[d]);
-            box.upper[d] = std::max(box.upper[d], corner[d]);
-          }
-    boxes.push_back(box);
-    if (end - begin > 4)
-      {
-        unsigned int longest = 0;
-        for (unsigned int d = 1; d < 3; ++d)
-          if (box.upper[d] - box.lower[d] >
-              box.upper[longest] - box.lower[longest])
-            longest = d;
-        const unsigned int middle = begin + (end - begin) / 2;
-        std::nth_element(faces.begin() + begin,
-                         faces.begin() + middle,
-                         faces.begin() + end,
-                         [longest](const auto &a, const auto &b) {
-                           return a[4][longest] < b[4][longest];
-                         });
-        add_box(begin, middle);
-        const unsigned int second = add_box(middle, end);
-        boxes[number].second_half = second;
-      }
-    return number;
+    std::vector<std::pair<BoundingBox<3>, unsigned int>> numbered_boxes;
+    for (unsigned int f = 0; f < faces.size(); ++f)
+      numbered_boxes.emplace_back(BoundingBox<3>(faces[f]), f);
+    boxes = pack_rtree(numbered_boxes);
   }
 
 
   double
   FaceDistance::operator()(const Point<3> &point) const
   {
+    // The boxes come in the order of their distance.
     double nearest = std::numeric_limits<double>::infinity();
-    search(0, point, nearest);
-    return nearest;
-  }
-
-
-  void
-  FaceDistance::search(const unsigned int box,
-                       const Point<3>    &point,
-                       double            &nearest) const
-  {
-    const auto distance = [&](const unsigned int b) {
-      Tensor<1, 3> outside;
-      for (unsigned int d = 0; d < 3; ++d)
-        outside[d] = std::max(
-          {boxes[b].lower[d] - point[d], 0., point[d] - boxes[b].upper[d]});
-      return outside.norm();
-    };
-    const unsigned int second = boxes[box].second_half;
-    if (second > 0)
+    for (auto entry =
+           boxes.qbegin(boost::geometry::index::nearest(point, boxes.size()));
+         entry != boxes.qend() &&
+         boost::geometry::distance(point, entry->first) < nearest;
+         ++entry)
       {
-        // the nearer half first, which may save the other one
-        std::array<std::pair<double, unsigned int>, 2> halves{
-          {{distance(box + 1), box + 1}, {distance(second), second}}};
-        if (halves[1] < halves[0])
-          std::swap(halves[0], halves[1]);
-        for (const auto &[away, half] : halves)
-          if (away < nearest)
-            search(half, point, nearest);
-      }
-    else
-      for (unsigned int f = boxes[box].begin; f < boxes[box].end; ++f)
+        const auto &face = faces[entry->second];
         for (unsigned int side = 0; side < 4; ++side)
           nearest = std::min(nearest,
                              distance_to_triangle(point,
-                                                  faces[f][side],
-                                                  faces[f][(side + 1) % 4],
-                                                  faces[f][4]));
+                                                  face[side],
+                                                  face[(side + 1) % 4],
+                                                  face[4]));
+      }
+    return nearest;
   }
 } // namespace Voussoir

@@ -3,6 +3,8 @@
 
 #include <voussoir/mesh/grid.h>
 
+#include <deal.II/numerics/rtree.h>
+
 namespace Voussoir
 {
   /** In deal.II's order [m]. */
@@ -35,27 +37,10 @@ namespace Voussoir
     operator()(const dealii::Point<3> &point) const;
 
   private:
-    /** A box around some of the faces, cut into two until they are few. */
-    struct Box
-    {
-      dealii::Point<3> lower, upper;
-      unsigned int     begin, end;      // its faces
-      unsigned int     second_half = 0; // the first half comes next; 0: uncut
-    };
-
-    /** Makes the box of these faces and those inside it. */
-    unsigned int
-    add_box(const unsigned int begin, const unsigned int end);
-
-    /** Lowers @p nearest to the distance of a face in the box, if it is less.
-     */
-    void
-    search(const unsigned int      box,
-           const dealii::Point<3> &point,
-           double                 &nearest) const;
-
     std::vector<std::array<dealii::Point<3>, 5>> faces; // around, and centre
-    std::vector<Box>                             boxes;
+
+    /** Boxes around the faces, with their numbers. */
+    dealii::RTree<std::pair<dealii::BoundingBox<3>, unsigned int>> boxes;
   };
 } // namespace Voussoir
 

@@ -1,4 +1,7 @@
+#include <voussoir/base/error.h>
 #include <voussoir/mesh/gmsh_reader.h>
+
+#include <gmsh.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -8,329 +11,344 @@ namespace Voussoir
 {
   namespace
   {
-    // Kinds of elements by Gmsh's type number.
-    const std::map<int, std::string> refused_types = {
-      {4, "tetrahedra"},
-      {6, "wedges"},
-      {7, "pyramids"},
-      {11, "tetrahedra with 10 nodes"},
-      {12, "hexahedra with 27 nodes"},
-      {13, "wedges with 18 nodes"},
-      {14, "pyramids with 14 nodes"},
-      {17, "hexahedra with 20 nodes"},
-      {18, "wedges with 15 nodes"},
-      {19, "pyramids with 13 nodes"}};
-
-    const std::map<int, std::string> ignored_types = {
-      {2, "triangles"},
-      {9, "triangles with 6 nodes"},
-      {8, "lines with 3 nodes"},
-      {10, "quadrilaterals with 9 nodes"},
-      {16, "quadrilaterals with 8 nodes"}};
+    // What Gmsh calls the shapes of elements.
+    const std::map<std::string, std::string> shapes = {
+      {"Line", "lines"},
+      {"Triangle", "triangles"},
+      {"Quadrilateral", "quadrilaterals"},
+      {"Tetrahedron", "tetrahedra"},
+      {"Prism", "wedges"},
+      {"Pyramid", "pyramids"},
+      {"Hexahedron", "hexahedra"}};
 
 
-    class GmshReader
+    /**
+     * Looks through a file before Gmsh's library reads it, which takes a
+     * shortened binary file for a small mesh, leaves out elements beyond their
+     * number and says of no error in which line it is.
+     */
+    class GmshFileCheck
     {
     public:
-      explicit GmshReader(MeshFile &file)
+      explicit GmshFileCheck(MeshFile &file)
         : file(file)
       {}
 
-      FileMesh
+      /** Whether the format is 2.0, 2.1 or 2.2, and not 4.0 or 4.1. */
+      bool
       run()
       {
-        read_format();
-        while (!file.at_end())
-          {
-            const std::string section(file.word("a section"));
-            const std::string end = "$End" + section.substr(1);
-            if (section.front() != '$')
-              file.fail("expected a section such as $Nodes, but found \"" +
-                        section + "\"; the file is damaged.");
-            if (read_section(section))
-              file.expect(end);
-            else
-              while (file.line(end) != end)
-                continue;
-          }
-        return std::move(mesh);
-      }
-
-    private:
-      using Groups = std::vector<int>;
-
-      // Whether the section concerns us and has been read up to its end.
-      bool
-      read_section(const std::string &section)
-      {
-        if (section == "$PhysicalNames")
-          read_physical_names();
-        else if (section == "$Entities")
-          read_entities();
-        else if (section == "$Nodes" || section == "$ParametricNodes")
-          is_version_2 ? read_nodes_2() : read_nodes_4();
-        else if (section == "$Elements")
-          is_version_2 ? read_elements_2() : read_elements_4();
-        else if (section == "$PartitionedEntities")
+        check_format();
+        if (file.go_to("$PartitionedEntities"))
           file.fail(
             "the mesh is partitioned; save it in one piece (the program "
             "divides it itself).");
+        if (is_binary)
+          {
+            for (const std::string end : {"$EndNodes", "$EndElements"})
+              if (!file.go_to(end))
+                file.fail("the file ends before " + end +
+                          "; export it again, it is incomplete.");
+          }
         else
-          return false;
-        return true;
+          while (!file.at_end())
+            check_section();
+        return is_version_2;
       }
 
-
+    private:
       void
-      read_format()
+      check_format()
       {
-        if (file.word("$MeshFormat") != "$MeshFormat")
+        // Gmsh would run anything else as a script
+        if (file.peek_line() != "$MeshFormat")
           file.fail("a Gmsh file begins with $MeshFormat; export the mesh from "
-                    "Gmsh in format 2.2 or 4.1 (ASCII).");
+                    "Gmsh in format 4.1 or 2.2.");
+        file.skip_line();
         const std::string version(file.word("the version"));
-        if (file.number<int>("0 for ASCII") != 0)
-          file.fail("binary Gmsh files are not read; save as ASCII (in Gmsh: "
-                    "File > Export without \"Binary\", or set Mesh.Binary = 0; "
-                    "on the command line leave out -bin).");
         is_version_2 = (version == "2" || version.substr(0, 2) == "2.");
-        if (!is_version_2 && version != "4.1")
+        if (!is_version_2 && version.substr(0, 1) != "4")
           file.fail("Gmsh format " + version +
                     " is not read; save in format 4.1 or 2.2 (in Gmsh: File > "
                     "Export, or set Mesh.MshFileVersion = 4.1).");
+        is_binary = file.number<int>("0 for ASCII or 1 for binary") != 0;
         file.skip_line();
+        if (is_binary)
+          {
+            // in either order of bytes
+            const std::string_view one = file.bytes(4, "the number 1");
+            if (std::count(one.begin(), one.end(), '\0') != 3 ||
+                (one.front() != 1 && one.back() != 1))
+              file.fail("the file should be binary, as it says one line above, "
+                        "but is not; export it again.");
+          }
         file.expect("$EndMeshFormat");
       }
 
 
       void
-      read_physical_names()
+      check_section()
       {
-        const auto n = file.count("the number of names");
-        file.skip_line();
-        for (unsigned int i = 0; i < n; ++i)
+        const std::string section(file.word("a section"));
+        const std::string end = "$End" + section.substr(1);
+        if (section.front() != '$')
+          file.fail("expected a section such as $Nodes, but found \"" +
+                    section + "\"; the file is damaged.");
+        if (section == "$Nodes" || section == "$ParametricNodes")
+          for (auto word = file.word(end); word != end; word = file.word(end))
+            file.to_number<double>(word, "a number");
+        else if (section == "$Elements")
           {
-            std::string_view line      = file.line("a physical name");
-            const int        dimension = number<int>(line, "a dimension");
-            const int        group     = number<int>(line, "a group number");
-            line                       = trimmed(line);
-            if (line.size() < 2 || line.front() != '"' || line.back() != '"')
-              file.fail("expected a name in quotation marks; the file is "
-                        "damaged.");
-            names[{dimension, group}] = line.substr(1, line.size() - 2);
+            check_elements();
+            file.expect(end);
           }
+        else
+          while (file.line(end) != end)
+            continue;
       }
 
 
+      // One line each, in format 4 also for each block.
       void
-      read_entities()
+      check_elements()
       {
-        std::array<unsigned int, 4> n;
-        for (unsigned int &n_entities : n)
-          n_entities = file.count("a number of entities");
-        file.skip_line();
-        for (int dimension = 0; dimension < 4; ++dimension)
-          for (unsigned int i = 0; i < n[dimension]; ++i)
-            {
-              std::string_view line = file.line("an entity");
-              Groups          &groups =
-                groups_of_entity[{dimension,
-                                  number<int>(line, "an entity number")}];
-              // the position of a point, the bounding box of the others
-              for (int c = 0; c < (dimension == 0 ? 3 : 6); ++c)
-                number<double>(line, "a coordinate");
-              const int n_groups = number<int>(line, "a number of groups");
-              // The sign is the orientation of a surface.
-              for (int g = 0; g < n_groups; ++g)
-                groups.push_back(
-                  std::abs(number<int>(line, "a physical group")));
-            }
-      }
-
-
-      void
-      read_nodes_2()
-      {
-        const auto n = file.count("the number of nodes");
-        for (std::size_t i = 0; i < n; ++i)
-          {
-            const auto tag = file.number<std::int64_t>("a node number");
-            read_vertex(tag);
-          }
-      }
-
-
-      void
-      read_nodes_4()
-      {
-        const auto n_blocks = file.count("the number of blocks");
-        file.skip_line();
-        for (unsigned int block = 0; block < n_blocks; ++block)
-          {
-            file.number<int>("a dimension");
-            file.number<int>("an entity number");
-            file.number<int>("0 or 1");
-            std::vector<std::int64_t> tags(file.count("the number of nodes"));
-            for (std::int64_t &tag : tags)
-              tag = file.number<std::int64_t>("a node number");
-            for (const std::int64_t tag : tags)
-              read_vertex(tag);
-          }
-      }
-
-
-      void
-      read_vertex(const std::int64_t tag)
-      {
-        dealii::Point<3> position;
-        for (unsigned int d = 0; d < 3; ++d)
-          position[d] = file.number<double>("a coordinate");
-        file.skip_line(); // parametric coordinates may follow
-        mesh.vertices.emplace_back(tag, position);
-      }
-
-
-      void
-      read_elements_2()
-      {
-        const auto n = file.count("the number of elements");
+        std::size_t n = is_version_2 ? 0 : file.count("the number of blocks");
+        n += file.count("the number of elements");
         file.skip_line();
         for (std::size_t i = 0; i < n; ++i)
           {
             std::string_view line = file.line("an element");
-            const auto tag  = number<std::int64_t>(line, "an element number");
-            const auto type = number<int>(line, "an element type");
-            // the physical group, the entity, and of no use here partitions
-            const auto n_tags = number<int>(line, "a number of tags");
-            Groups     groups;
-            for (int t = 0; t < n_tags; ++t)
-              {
-                const int value = number<int>(line, "a tag");
-                if (t == 0 && value != 0)
-                  groups.push_back(std::abs(value));
-              }
-            add_element(tag, type, line, groups);
+            do
+              file.to_number<double>(take_word(line), "a number");
+            while (!line.empty());
           }
       }
 
+      MeshFile &file;
+      bool      is_version_2 = false, is_binary = false;
+    };
 
-      void
-      read_elements_4()
+
+    /** Gmsh's library, which has one state for the whole program. */
+    class GmshLibrary
+    {
+    public:
+      explicit GmshLibrary(const bool is_version_2)
       {
-        const auto n_blocks = file.count("the number of blocks");
-        file.skip_line();
-        for (unsigned int block = 0; block < n_blocks; ++block)
+        gmsh::initialize(0, nullptr, false);
+        gmsh::option::setNumber("General.Terminal", 0);
+        // Gmsh knows groups of entities, but other programs write in format 2
+        // one entity with elements of several groups. So let each group be an
+        // entity.
+        gmsh::option::setNumber("Mesh.SwitchElementTags", is_version_2);
+      }
+
+      GmshLibrary(const GmshLibrary &) = delete;
+
+      ~GmshLibrary()
+      {
+        gmsh::finalize();
+      }
+
+      void
+      open(const std::string &filename) const
+      {
+        try
           {
-            const auto dimension = file.number<int>("a dimension");
-            const auto entity    = file.number<int>("an entity number");
-            const auto type      = file.number<int>("an element type");
-            const auto n         = file.count("the number of elements");
-            file.skip_line();
-            const Groups &groups = groups_of_entity[{dimension, entity}];
-            for (std::size_t i = 0; i < n; ++i)
-              {
-                std::string_view line = file.line("an element");
-                const auto       tag =
-                  number<std::int64_t>(line, "an element number");
-                add_element(tag, type, line, groups);
-              }
+            gmsh::merge(filename);
           }
+        catch (...) // a string before Gmsh 4.9, then an exception
+          {
+            std::string problem;
+            gmsh::logger::getLastError(problem);
+            throw UserError(filename +
+                            ": Gmsh's library cannot read the file "
+                            "(\"" +
+                            problem +
+                            "\"); it is damaged, so export nodes and elements "
+                            "together once more.");
+          }
+      }
+    };
+
+
+    class GmshReader
+    {
+    public:
+      GmshReader(const std::string &filename, const bool is_version_2)
+        : filename(filename)
+        , is_version_2(is_version_2)
+        , library(is_version_2)
+      {}
+
+      FileMesh
+      run()
+      {
+        library.open(filename);
+        read_nodes();
+        gmsh::vectorpair entities;
+        gmsh::model::getEntities(entities);
+        for (const auto &[dimension, entity] : entities)
+          read_entity(dimension, entity);
+        number_hexahedra();
+        return std::move(mesh);
+      }
+
+    private:
+      using Groups = std::vector<std::string>;
+
+      void
+      read_nodes()
+      {
+        std::vector<std::size_t> numbers;
+        std::vector<double>      coordinates, parametric;
+        gmsh::model::mesh::getNodes(numbers, coordinates, parametric);
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+          mesh.vertices.emplace_back(numbers[i],
+                                     dealii::Point<3>(coordinates[3 * i],
+                                                      coordinates[3 * i + 1],
+                                                      coordinates[3 * i + 2]));
       }
 
 
       void
-      add_element(const std::int64_t tag,
-                  const int          type,
-                  std::string_view   line,
-                  const Groups      &groups)
+      read_entity(const int dimension, const int entity)
+      {
+        if (entity < 0)
+          throw UserError(filename + ": the physical group " +
+                          std::to_string(entity) +
+                          " has a negative number; number the groups from 1 "
+                          "on.");
+        groups.push_back(groups_of(dimension, entity));
+        std::vector<int>                      types;
+        std::vector<std::vector<std::size_t>> numbers, nodes;
+        gmsh::model::mesh::getElements(
+          types, numbers, nodes, dimension, entity);
+        for (std::size_t i = 0; i < types.size(); ++i)
+          add_elements(types[i], numbers[i], nodes[i]);
+      }
+
+
+      Groups
+      groups_of(const int dimension, const int entity) const
+      {
+        std::vector<int> group_numbers;
+        if (!is_version_2)
+          gmsh::model::getPhysicalGroupsForEntity(dimension,
+                                                  entity,
+                                                  group_numbers);
+        else if (entity != 0)
+          group_numbers = {entity};
+
+        const std::array<std::string, 4> kinds = {
+          {"point", "curve", "surface", "volume"}};
+        Groups result;
+        for (const int signed_number : group_numbers)
+          {
+            // the sign is the orientation of a surface
+            const int   number = std::abs(signed_number);
+            std::string name;
+            gmsh::model::getPhysicalName(dimension, number, name);
+            result.push_back(name.empty() ?
+                               kinds[dimension] + " " + std::to_string(number) :
+                               name);
+          }
+        return result;
+      }
+
+
+      // Of the entity that was read last.
+      void
+      add_elements(const int                       type,
+                   const std::vector<std::size_t> &numbers,
+                   const std::vector<std::size_t> &nodes)
       {
         if (type == 5)
-          {
-            const auto         vertices = read_vertices<8>(line);
-            const unsigned int cell     = find_or_add_cell(tag, vertices);
-            for (const int group : groups)
-              mesh.hexahedron_sets[group_name(3, group)].push_back(cell);
-          }
+          for (std::size_t i = 0; i < numbers.size(); ++i)
+            hexahedra.push_back(
+              {element<8>(numbers, nodes, i), groups.size() - 1});
         else if (type == 3)
-          {
-            for (const int group : groups)
-              mesh.quadrilateral_sets[group_name(2, group)].push_back(
-                mesh.quadrilaterals.size());
-            mesh.quadrilaterals.push_back({tag, read_vertices<4>(line)});
-          }
-        else if (type == 1 || type == 15)
-          for (const int group : groups)
+          for (std::size_t i = 0; i < numbers.size(); ++i)
             {
-              auto &set =
-                mesh.vertex_sets[group_name(type == 1 ? 1 : 0, group)];
-              set.push_back(number<std::int64_t>(line, "a node number"));
-              if (type == 1)
-                set.push_back(number<std::int64_t>(line, "a node number"));
+              for (const std::string &group : groups.back())
+                mesh.quadrilateral_sets[group].push_back(
+                  mesh.quadrilaterals.size());
+              mesh.quadrilaterals.push_back(element<4>(numbers, nodes, i));
             }
-        else if (refused_types.count(type) > 0)
-          ++mesh.refused[refused_types.at(type)];
-        else if (ignored_types.count(type) > 0)
-          ++mesh.ignored[ignored_types.at(type)];
+        else if (type == 1 || type == 15) // lines and points
+          for (const std::string &group : groups.back())
+            mesh.vertex_sets[group].insert(mesh.vertex_sets[group].end(),
+                                           nodes.begin(),
+                                           nodes.end());
         else
-          ++mesh.refused["elements of Gmsh's type " + std::to_string(type)];
+          leave_out(type, numbers.size());
+      }
+
+
+      // Other solids are refused later, lines and surfaces are of no use.
+      void
+      leave_out(const int type, const std::size_t n)
+      {
+        std::string         name;
+        int                 dimension, order, n_nodes, n_corners;
+        std::vector<double> positions;
+        gmsh::model::mesh::getElementProperties(
+          type, name, dimension, order, n_nodes, positions, n_corners);
+        const auto  shape = shapes.find(name.substr(0, name.find(' ')));
+        std::string kind  = shape != shapes.end() ?
+                              shape->second :
+                              "elements of Gmsh's type " + std::to_string(type);
+        if (order > 1)
+          kind += " with " + std::to_string(n_nodes) + " nodes";
+        (dimension == 3 ? mesh.refused : mesh.ignored)[kind] += n;
       }
 
 
       template <int n>
-      std::array<std::int64_t, n>
-      read_vertices(std::string_view &line) const
+      static FileMesh::Element<n>
+      element(const std::vector<std::size_t> &numbers,
+              const std::vector<std::size_t> &nodes,
+              const std::size_t               i)
       {
-        std::array<std::int64_t, n> vertices;
-        for (std::int64_t &vertex : vertices)
-          vertex = number<std::int64_t>(line, "a node number");
-        return vertices;
+        FileMesh::Element<n> result;
+        result.number = numbers[i];
+        std::copy_n(nodes.begin() + n * i, n, result.vertices.begin());
+        return result;
       }
 
 
-      // Format 2.2 writes an element once for each of its physical groups.
-      unsigned int
-      find_or_add_cell(const std::int64_t                 tag,
-                       const std::array<std::int64_t, 8> &vertices)
+      // In the file's order, not that of the entities. Format 2 gives an
+      // element once for each of its groups.
+      void
+      number_hexahedra()
       {
-        if (is_version_2)
+        std::stable_sort(hexahedra.begin(),
+                         hexahedra.end(),
+                         [](const auto &a, const auto &b) {
+                           return a.first.number < b.first.number;
+                         });
+        std::map<std::array<std::int64_t, 8>, unsigned int> cell_of_vertices;
+        for (const auto &[hexahedron, entity] : hexahedra)
           {
-            const auto [cell, is_new] =
-              cell_of_vertices.emplace(vertices, mesh.hexahedra.size());
-            if (!is_new)
-              return cell->second;
+            unsigned int cell = mesh.hexahedra.size();
+            if (is_version_2)
+              cell = cell_of_vertices.emplace(hexahedron.vertices, cell)
+                       .first->second;
+            if (cell == mesh.hexahedra.size())
+              mesh.hexahedra.push_back(hexahedron);
+            for (const std::string &group : groups[entity])
+              mesh.hexahedron_sets[group].push_back(cell);
           }
-        mesh.hexahedra.push_back({tag, vertices});
-        return mesh.hexahedra.size() - 1;
       }
 
+      const std::string &filename;
+      const bool         is_version_2;
+      const GmshLibrary  library;
+      FileMesh           mesh;
 
-      std::string
-      group_name(const int dimension, const int group) const
-      {
-        const std::array<std::string, 4> kinds = {
-          {"point", "curve", "surface", "volume"}};
-        const auto name = names.find({dimension, group});
-        return name != names.end() ?
-                 name->second :
-                 kinds[dimension] + " " + std::to_string(group);
-      }
-
-
-      template <typename Number>
-      Number
-      number(std::string_view &line, const std::string &expected) const
-      {
-        return file.to_number<Number>(take_word(line), expected);
-      }
-
-      MeshFile &file;
-      FileMesh  mesh;
-      bool      is_version_2 = false;
-
-      // by dimension and number
-      std::map<std::pair<int, int>, std::string> names;
-      std::map<std::pair<int, int>, Groups>      groups_of_entity;
-
-      std::map<std::array<std::int64_t, 8>, unsigned int> cell_of_vertices;
+      // Names of the groups of each entity; hexahedra with their entities.
+      std::vector<Groups>                                       groups;
+      std::vector<std::pair<FileMesh::Element<8>, std::size_t>> hexahedra;
     };
   } // namespace
 
@@ -338,6 +356,7 @@ namespace Voussoir
   FileMesh
   read_gmsh(MeshFile &file)
   {
-    return GmshReader(file).run();
+    const bool is_version_2 = GmshFileCheck(file).run();
+    return GmshReader(file.name, is_version_2).run();
   }
 } // namespace Voussoir

@@ -73,7 +73,7 @@ namespace Voussoir
     prm.add_parameter(
       "File",
       file,
-      "Mesh of hexahedra with eight vertices: Gmsh (.msh, ASCII 2.2 or 4.1), "
+      "Mesh of hexahedra with eight vertices: Gmsh (.msh, format 2 or 4), "
       "Abaqus (.inp), AVS UCD (.inp or .ucd) or VTK legacy (.vtk). Named sets "
       "are physical groups in Gmsh, ELSET, NSET and SURFACE in Abaqus; the "
       "others call cells \"material 3\" and faces \"boundary 2\" after their "

@@ -73,6 +73,17 @@ namespace Voussoir
   }
 
 
+  bool
+  MeshFile::go_to(const std::string &text)
+  {
+    const std::size_t found = content.find(text, position);
+    if (found == std::string::npos)
+      return false;
+    position = piece = found;
+    return true;
+  }
+
+
   void
   MeshFile::expect(const std::string &expected)
   {

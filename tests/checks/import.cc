@@ -27,7 +27,11 @@ namespace Voussoir
       {
         const std::string folder = file.resolve("../data/meshes/");
         for (const std::string ending : {"gmsh22.msh",
+                                         "gmsh22_binary.msh",
+                                         "gmsh22_one_entity.msh",
+                                         "gmsh40.msh",
                                          "gmsh41.msh",
+                                         "gmsh41_binary.msh",
                                          "abaqus.inp",
                                          "ucd.inp",
                                          "vtk3.vtk",

@@ -11,10 +11,10 @@
 namespace Voussoir
 {
   /**
-   * Read a mesh of hexahedra with its named sets from a Gmsh (.msh, ASCII 2.2
-   * or 4.1), Abaqus (.inp), AVS UCD (.ucd or .inp) or VTK legacy (.vtk) file.
-   * What is left out goes to @p report (may be null), one line each. The mesh
-   * has passed check_mesh(). Lengths are those of the file. Throws UserError.
+   * Read a mesh of hexahedra with its named sets from a Gmsh (.msh), Abaqus
+   * (.inp), AVS UCD (.ucd or .inp) or VTK legacy (.vtk) file. What is left out
+   * goes to @p report (may be null), one line each. The mesh has passed
+   * check_mesh(). Lengths are those of the file. Throws UserError.
    */
   CoarseMesh
   read_mesh(const std::string &filename, std::ostream *report);

@@ -34,6 +34,10 @@ namespace Voussoir
     void
     skip_line();
 
+    /** Go to where @p text comes next; false, and stay, if it does not. */
+    bool
+    go_to(const std::string &text);
+
     /** Take the next word and fail if it is another one. */
     void
     expect(const std::string &expected);

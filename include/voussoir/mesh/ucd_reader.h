@@ -9,7 +9,9 @@ namespace Voussoir
   /**
    * Read an AVS UCD file (ASCII). The material numbers of hexahedra make cell
    * sets "material 3", those of quadrilaterals face sets "boundary 3". Throws
-   * UserError.
+   * UserError. (deal.II's GridIn::read_ucd() refuses quadrilaterals inside the
+   * mesh, which name interfaces here, and of a damaged file tells neither line
+   * nor remedy.)
    */
   FileMesh
   read_ucd(MeshFile &file);

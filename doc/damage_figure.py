@@ -10,7 +10,6 @@ without damage (of the elastic dam) is drawn in the history only. Needs the
 Debian packages python3-matplotlib and python3-vtk9.
 """
 
-import csv
 import sys
 
 import matplotlib
@@ -20,6 +19,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PolyCollection
 
+from figures import column_of, read_histories
 from joints_figure import read
 
 
@@ -45,11 +45,8 @@ def draw_damage(axes, name):
 
 
 def crest_motion(folder):
-    with open(folder + "/histories.csv") as file:
-        rows = list(csv.reader(file))
-    column = rows[0].index("crest displacement y [m]")
-    return np.array([(float(row[0]), -100. * float(row[column])) for row in rows[1:]]).T
-
+    titles, data = read_histories(folder)
+    return data[:, 0], -100. * data[:, column_of(titles, "crest", "displacement y")]
 
 
 def pictures_of(folder):

@@ -23,6 +23,25 @@ HEXAHEDRON_FACES = ((0, 3, 7, 4), (1, 2, 6, 5), (0, 1, 5, 4), (3, 2, 6, 7),
                     (0, 1, 2, 3), (4, 5, 6, 7))
 
 
+def read_histories(folder):
+    """Titles and numbers of histories.csv."""
+    with open(folder + "/histories.csv") as file:
+        rows = list(csv.reader(file))
+    return rows[0], np.array(rows[1:], float)
+
+
+def column_of(titles, point, quantity):
+    """Number of a column, of absolute or relative motion."""
+    return next(i for i, title in enumerate(titles)
+                if title.startswith(f"{point} {quantity} "))
+
+
+def number_of(grid, kind, name):
+    """The number that stands for a name in the field of this kind."""
+    names = grid.GetFieldData().GetAbstractArray(kind + "_names")
+    return [names.GetValue(i) for i in range(names.GetNumberOfValues())].index(name)
+
+
 def faces_of(grid, material):
     """Outer faces of one material: corner points (n, 4, 3) and point values.
 
@@ -34,7 +53,7 @@ def faces_of(grid, material):
     values = vtk_to_numpy(data.GetArray("largest_acceleration_m_per_s2"))
     materials = vtk_to_numpy(data.GetArray("material"))
     cells = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 8)
-    cells = cells[materials[cells[:, 0]] == material]
+    cells = cells[materials[cells[:, 0]] == number_of(grid, "material", material)]
     faces = np.concatenate([cells[:, corners] for corners in HEXAHEDRON_FACES])
     centres = np.round(points[faces].mean(axis=1), 2)
     _, first, counts = np.unique(centres, axis=0, return_index=True,
@@ -54,18 +73,15 @@ def without_outer_planes(faces):
 
 
 def main(folder, point, name):
-    with open(folder + "/histories.csv") as file:
-        rows = list(csv.reader(file))
-    data = np.array(rows[1:], float)
-    column = {title: i for i, title in enumerate(rows[0])}
-
+    titles, data = read_histories(folder)
     figure = plt.figure(figsize=(11, 4.6))
     left = figure.add_subplot(2, 2, 1)
     below = figure.add_subplot(2, 2, 3, sharex=left)
     for axes, quantity, scale, label in (
-            (left, "displacement y [m]", 100., "displacement [cm]"),
-            (below, "acceleration y [m/s2]", 1. / 9.81, "acceleration [g]")):
-        axes.plot(data[:, 0], scale * data[:, column[f"{point} {quantity}"]],
+            (left, "displacement y", 100., "displacement [cm]"),
+            (below, "acceleration y", 1. / 9.81, "acceleration [g]")):
+        axes.plot(data[:, 0],
+                  scale * data[:, column_of(titles, point, quantity)],
                   linewidth=0.9)
         axes.set_ylabel(label)
         axes.grid(alpha=0.3)
@@ -76,8 +92,8 @@ def main(folder, point, name):
     reader.SetFileName(folder + "/envelopes.vtu")
     reader.Update()
     scene = figure.add_subplot(1, 2, 2, projection="3d", computed_zorder=False)
-    dam, acceleration = faces_of(reader.GetOutput(), 0)
-    rock, _ = faces_of(reader.GetOutput(), 1)
+    dam, acceleration = faces_of(reader.GetOutput(), "concrete")
+    rock, _ = faces_of(reader.GetOutput(), "rock")
     rock, _ = without_outer_planes(rock)
     near = np.all(np.abs(rock.mean(axis=1)[:, :2]) < (480., 330.), axis=1)
     # from upstream, left of the river, above

@@ -107,8 +107,8 @@ def main(folder, name):
     # developed: each joint in a panel of its own, upstream to the left
     norm = plt.Normalize(0, opening.max())
     offset = 0.
-    for joint in np.unique(values["face_set"]):
-        mine = quads[values["face_set"][quads[:, 0]] == joint]
+    for joint in np.unique(values["interface"]):
+        mine = quads[values["interface"][quads[:, 0]] == joint]
         across = points[mine][:, :, 1]
         x = across - across.min() + offset
         for u, z, value in zip(x, points[mine][:, :, 2],

@@ -213,7 +213,9 @@ namespace Voussoir
             folder,
             time_step,
             parameters.time.end_time,
-            [this](const double time) { return base_motion(time); }}
+            [this](const double time) { return base_motion(time); },
+            rigid_base(),
+            ResultNames(parameters.material_names(), grid, contact.get())}
     , energy(discretization,
              internal_force,
              mass,

@@ -143,6 +143,7 @@ namespace Voussoir
     if (internal_force.has_memory())
       result["materials"] = memory_summary(model, parameters.material_names());
     result["energy balance"] = energy.summary();
+    result["names"]          = model.names.json();
     return result;
   }
 

@@ -19,14 +19,14 @@ namespace Voussoir
     class StressEnvelope
     {
     public:
-      /** @param sets cell sets to look at; none for all cells */
+      /** @param sets cell sets to look at; none for all cells. Of a SIMD batch
+       *  with a cell in one of them all cells are looked at, and given. */
       StressEnvelope(const ObservedModel            &model,
                      const std::vector<std::string> &sets)
         : model(model)
         , matrix_free(model.discretization.matrix_free)
       {
-        const auto    &scalar = model.discretization.fe.base_element(0);
-        const Point<3> centre(0.5, 0.5, 0.5);
+        const auto &scalar = model.discretization.fe.base_element(0);
         for (const unsigned int j :
              FETools::lexicographic_to_hierarchic_numbering<3>(
                model.discretization.degree))
@@ -42,40 +42,8 @@ namespace Voussoir
           }
         Evaluation cells(matrix_free);
         for (unsigned int b = 0; b < matrix_free.n_cell_batches(); ++b)
-          {
-            bool wanted = sets.empty();
-            for (unsigned int lane = 0; lane < n_lanes(b); ++lane)
-              for (const std::string &set : sets)
-                wanted =
-                  wanted || model.discretization.grid.in_cell_set(
-                              matrix_free.get_cell_iterator(b, lane), set);
-            if (!wanted)
-              continue;
-            Batch batch;
-            batch.number = b;
-            for (unsigned int lane = 0; lane < n_lanes(b); ++lane)
-              {
-                const Tensor<2, 3> inverse =
-                  inverse_jacobian(matrix_free.get_cell_iterator(b, lane),
-                                   centre);
-                batch.laws.emplace_back(model,
-                                        matrix_free.get_cell_iterator(b, lane),
-                                        centre);
-                for (unsigned int i = 0; i < 3; ++i)
-                  for (unsigned int k = 0; k < 3; ++k)
-                    batch.inverse_jacobian[i][k][lane] = inverse[i][k];
-              }
-            if (is_static)
-              {
-                batch.initial_strain =
-                  strain(cells, batch, model.initial.displacement);
-                cells.read_dof_values(model.initial.temperature);
-                for (unsigned int j = 0; j < shape_values.size(); ++j)
-                  batch.temperature +=
-                    shape_values[j] * cells.begin_dof_values()[j];
-              }
-            batches.push_back(batch);
-          }
+          if (sets.empty() || any_cell_in(b, sets))
+            batches.push_back(make_batch(b, is_static, cells));
         if (is_static)
           {
             model.initial.displacement.zero_out_ghost_values();
@@ -149,6 +117,46 @@ namespace Voussoir
         std::array<std::array<double, 2>, Lanes::size()> extremes;
       };
 
+      bool
+      any_cell_in(const unsigned int              batch,
+                  const std::vector<std::string> &sets) const
+      {
+        for (unsigned int lane = 0; lane < n_lanes(batch); ++lane)
+          for (const std::string &set : sets)
+            if (model.discretization.grid.in_cell_set(
+                  matrix_free.get_cell_iterator(batch, lane), set))
+              return true;
+        return false;
+      }
+
+      Batch
+      make_batch(const unsigned int number,
+                 const bool         is_static,
+                 Evaluation        &cells) const
+      {
+        Batch batch;
+        batch.number = number;
+        for (unsigned int lane = 0; lane < n_lanes(number); ++lane)
+          {
+            const auto cell = matrix_free.get_cell_iterator(number, lane);
+            const Tensor<2, 3> inverse = inverse_jacobian(cell, centre);
+            batch.laws.emplace_back(model, cell, centre);
+            for (unsigned int i = 0; i < 3; ++i)
+              for (unsigned int k = 0; k < 3; ++k)
+                batch.inverse_jacobian[i][k][lane] = inverse[i][k];
+          }
+        if (is_static)
+          {
+            batch.initial_strain =
+              strain(cells, batch, model.initial.displacement);
+            cells.read_dof_values(model.initial.temperature);
+            for (unsigned int j = 0; j < shape_values.size(); ++j)
+              batch.temperature +=
+                shape_values[j] * cells.begin_dof_values()[j];
+          }
+        return batch;
+      }
+
       unsigned int
       n_lanes(const unsigned int batch) const
       {
@@ -171,6 +179,7 @@ namespace Voussoir
         return symmetrize(unit_gradient * batch.inverse_jacobian);
       }
 
+      const Point<3>                    centre{0.5, 0.5, 0.5};
       const ObservedModel               model;
       const Discretization::MatrixFree &matrix_free;
       std::vector<double>               shape_values;    // in the centre
@@ -217,6 +226,7 @@ namespace Voussoir
         // the three components of a node hold its three largest amounts
         largest  = model->discretization.create_vector();
         previous = largest;
+        stress.reset();
         if (stress_interval > 0.)
           {
             stress_schedule = Schedule(stress_interval, model->time_step);

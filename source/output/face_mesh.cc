@@ -1,7 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/output/face_mesh.h>
 
-#include <deal.II/base/data_out_base.h>
 #include <deal.II/fe/fe_tools.h>
 
 #include <set>
@@ -43,88 +42,102 @@ namespace Voussoir
 
   FaceMesh::FaceMesh(const ObservedModel            &model,
                      const std::vector<std::string> &sets,
-                     const std::string              &place)
+                     const std::string              &place,
+                     const std::string              &kind,
+                     const std::vector<std::string> &all_names)
     : folder(model.folder)
     , discretization(model.discretization)
+    , kind(kind)
+    , all_names(all_names)
   {
     if (sets.empty())
       throw UserError(place + " is empty; name the faces to look at.");
-    const auto        &scalar   = discretization.fe.base_element(0);
-    const unsigned int per_edge = discretization.degree + 1;
-    const auto         hierarchic =
-      FETools::lexicographic_to_hierarchic_numbering<3>(discretization.degree);
-
-    std::map<std::pair<unsigned int, types::global_dof_index>, unsigned int>
-                                     nodes;
-    std::vector<StressPoints::Place> places;
-    std::vector<double>              normals_of_places;
+    Places places;
     for (unsigned int s = 0; s < sets.size(); ++s)
       {
         discretization.grid.check_face_set(sets[s], place);
+        number_of_set.push_back(number_of(sets[s], all_names));
         discretization.grid.for_each_face(
-          sets[s], [&](const auto &grid_cell, const unsigned int face) {
-            const auto         cell       = discretization.dof_cell(grid_cell);
-            const auto         cell_nodes = discretization.cell_nodes(cell);
-            const unsigned int across     = face / 2;
-            set_of_face.push_back(s);
-            for (unsigned int i = 0; i < per_edge * per_edge; ++i)
-              {
-                // the two directions along the face, the lower one faster
-                std::array<unsigned int, 3> at;
-                at[across]              = face % 2 * discretization.degree;
-                at[across == 0 ? 1 : 0] = i % per_edge;
-                at[across == 2 ? 1 : 2] = i / per_edge;
-                const unsigned int j =
-                  hierarchic[at[0] + per_edge * (at[1] + per_edge * at[2])];
-
-                const auto [item, is_new] =
-                  nodes.emplace(std::make_pair(s, cell_nodes[j]), nodes.size());
-                const Point<3> unit = scalar.unit_support_point(j);
-                if (is_new)
-                  positions.push_back(
-                    discretization.mapping.transform_unit_to_real_cell(
-                      grid_cell, unit));
-                places.push_back({cell, unit});
-                node_of_place.push_back(item->second);
-                place_keys.push_back(
-                  {s, Grid::global_key(cell) * 128 + j, item->second});
-
-                Tensor<1, 3> outward =
-                  inverse_jacobian(cell, unit)[across] * (face % 2 * 2. - 1.);
-                outward /= outward.norm();
-                normals_of_places.push_back(1.);
-                for (unsigned int d = 0; d < 3; ++d)
-                  normals_of_places.push_back(outward[d]);
-              }
+          sets[s], [&](const auto &cell, const unsigned int face) {
+            add_face(s, discretization.dof_cell(cell), face, places);
           });
       }
-    set_and_node.resize(nodes.size());
-    for (const auto &[key, node] : nodes)
+    set_and_node.resize(places.nodes.size());
+    for (const auto &[key, node] : places.nodes)
       set_and_node[node] = key;
-    points = std::make_unique<StressPoints>(model, places);
-    number_nodes(nodes, sets.size());
+    points = std::make_unique<StressPoints>(model, places.list);
+    number_nodes(places.nodes, sets.size());
+    find_normals(places.normals);
+    mean_stress.resize(places.nodes.size());
+    stress_sums = make_vector(6);
+  }
 
+
+  void
+  FaceMesh::add_face(const unsigned int          set,
+                     const Discretization::Cell &cell,
+                     const unsigned int          face,
+                     Places                     &places)
+  {
+    const auto        &scalar   = discretization.fe.base_element(0);
+    const unsigned int per_edge = discretization.degree + 1;
+    const unsigned int across   = face / 2;
+    const auto         hierarchic =
+      FETools::lexicographic_to_hierarchic_numbering<3>(discretization.degree);
+    const auto cell_nodes = discretization.cell_nodes(cell);
+
+    set_of_face.push_back(set);
+    for (unsigned int i = 0; i < per_edge * per_edge; ++i)
+      {
+        // the two directions along the face, the lower one faster
+        std::array<unsigned int, 3> at;
+        at[across]              = face % 2 * discretization.degree;
+        at[across == 0 ? 1 : 0] = i % per_edge;
+        at[across == 2 ? 1 : 2] = i / per_edge;
+        const unsigned int j =
+          hierarchic[at[0] + per_edge * (at[1] + per_edge * at[2])];
+
+        const auto [item, is_new] =
+          places.nodes.emplace(SetAndNode(set, cell_nodes[j]),
+                               places.nodes.size());
+        const Point<3> unit = scalar.unit_support_point(j);
+        if (is_new)
+          positions.push_back(
+            discretization.mapping.transform_unit_to_real_cell(cell, unit));
+        places.list.push_back({cell, unit});
+        node_of_place.push_back(item->second);
+        place_keys.push_back(
+          {set, Grid::global_key(cell) * 128 + j, item->second});
+
+        Tensor<1, 3> outward =
+          inverse_jacobian(cell, unit)[across] * (face % 2 * 2. - 1.);
+        outward /= outward.norm();
+        places.normals.push_back(1.);
+        for (unsigned int d = 0; d < 3; ++d)
+          places.normals.push_back(outward[d]);
+      }
+  }
+
+
+  void
+  FaceMesh::find_normals(const std::vector<double> &normals_of_places)
+  {
     Vector sums = make_vector(4);
     sum_at_nodes(sums, 4, normals_of_places);
-    for (unsigned int node = 0; node < nodes.size(); ++node)
+    for (const unsigned int node_entry : entries)
       {
-        const unsigned int entry = 4 * entries[node];
+        const unsigned int entry = 4 * node_entry;
         n_places_of_node.push_back(std::lround(sums.local_element(entry)));
         normals.push_back(Tensor<1, 3>({sums.local_element(entry + 1),
                                         sums.local_element(entry + 2),
                                         sums.local_element(entry + 3)}));
         normals.back() /= normals.back().norm();
       }
-    mean_stress.resize(nodes.size());
-    stress_sums = make_vector(6);
   }
 
 
   void
-  FaceMesh::number_nodes(
-    const std::map<std::pair<unsigned int, types::global_dof_index>,
-                   unsigned int> &nodes,
-    const unsigned int            n_sets)
+  FaceMesh::number_nodes(const NodeNumbers &nodes, const unsigned int n_sets)
   {
     // the owner of a node numbers it, in each set it lies in
     std::vector<std::pair<types::global_dof_index, unsigned int>> records;
@@ -249,14 +262,15 @@ namespace Voussoir
 
 
   std::string
-  FaceMesh::write(const std::vector<std::string> &names,
+  FaceMesh::write(const std::vector<std::string> &fields,
                   const std::vector<double>      &values,
                   const std::string              &name,
-                  const double                    time) const
+                  const double                    time,
+                  const std::vector<VtuText>     &texts) const
   {
     const unsigned int per_edge = discretization.degree + 1;
     const unsigned int per_face = per_edge * per_edge;
-    const unsigned int width    = names.size();
+    const unsigned int width    = fields.size();
 
     std::vector<DataOutBase::Patch<2, 3>> patches(set_of_face.size());
     for (unsigned int f = 0; f < patches.size(); ++f)
@@ -272,7 +286,7 @@ namespace Voussoir
             const unsigned int node = node_of_place[per_face * f + i];
             for (unsigned int c = 0; c < width; ++c)
               patch.data(c, i) = values[width * node + c];
-            patch.data(width, i) = set_of_face[f];
+            patch.data(width, i) = number_of_set[set_of_face[f]];
             for (unsigned int d = 0; d < 3; ++d)
               patch.data(width + 1 + d, i) = positions[node][d];
           }
@@ -282,16 +296,13 @@ namespace Voussoir
           patch.vertices[v] =
             positions[node_of_place[per_face * f + corners[v]]];
       }
-    std::vector<std::string> all_names = names;
-    all_names.push_back("face_set");
-    SurfaceOutput         output(std::move(patches), all_names);
-    DataOutBase::VtkFlags flags;
-    flags.time              = time;
-    flags.compression_level = DataOutBase::VtkFlags::best_speed;
-    output.set_flags(flags);
+    std::vector<std::string> all_fields = fields;
+    all_fields.push_back(kind);
+    std::vector<VtuText> all_texts = texts;
+    all_texts.push_back({kind + "_names", all_names});
+    SurfaceOutput     output(std::move(patches), all_fields);
     const std::string file = name + ".vtu";
-    output.write_vtu_in_parallel(folder + "/" + file,
-                                 discretization.grid.communicator());
+    write_vtu(output, folder + "/" + file, time, all_texts, communicator());
     return file;
   }
 } // namespace Voussoir

@@ -38,10 +38,10 @@ namespace Voussoir
       check(const ObservedModel &model) const override
       {
         pictures.check(model);
-        const FaceMesh mesh(model, split_list(sets), place);
-        int            level = 0;
-        for (unsigned int node = 0; node < mesh.n_nodes(); ++node)
-          if (std::abs(mesh.normal(node)[2]) > 1. - 1e-6)
+        const auto mesh  = make_mesh(model);
+        int        level = 0;
+        for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
+          if (std::abs(mesh->normal(node)[2]) > 1. - 1e-6)
             level = 1;
         if (Utilities::MPI::max(level,
                                 model.discretization.grid.communicator()) == 1)
@@ -58,7 +58,9 @@ namespace Voussoir
       {
         pictures.prepare(model, start_time, restarted);
         schedule = Schedule(envelope_interval, model.time_step);
-        mesh     = std::make_unique<FaceMesh>(model, split_list(sets), place);
+        mesh     = make_mesh(model);
+        arch_directions.clear();
+        cantilever_directions.clear();
         envelopes.assign(6 * mesh->n_nodes(), 0.);
         for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
           {
@@ -145,6 +147,13 @@ namespace Voussoir
       }
 
     private:
+      std::unique_ptr<FaceMesh>
+      make_mesh(const ObservedModel &model) const
+      {
+        return std::make_unique<FaceMesh>(
+          model, split_list(sets), place, "face_set", model.names.face_sets);
+      }
+
       /** Of the six envelopes every other one, from the first, is a largest
        *  value. */
       static bool

@@ -3,6 +3,7 @@
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/law_stress.h>
 #include <voussoir/output/material_memory.h>
+#include <voussoir/output/vtu_file.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
@@ -108,11 +109,8 @@ namespace Voussoir
       const QIterated<3>                   points;  // that are drawn
       const std::unique_ptr<InitialPoints> initial; // null: no static stage
     };
-  } // namespace
 
 
-  namespace
-  {
     /** "crack opening [mm]" as "crack_opening_mm". */
     std::string
     vtk_name(std::string name)
@@ -125,6 +123,30 @@ namespace Voussoir
                  name.end());
       std::replace(name.begin(), name.end(), ' ', '_');
       return name;
+    }
+
+
+    dealii::Vector<float>
+    material_of_cells(const ObservedModel &model)
+    {
+      dealii::Vector<float> result(
+        model.discretization.grid.triangulation().n_active_cells());
+      for (const auto &cell :
+           model.discretization.dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          result[cell->active_cell_index()] = model.material_of_cell(cell);
+      return result;
+    }
+
+
+    std::vector<VtuText>
+    texts(const ObservedModel &model)
+    {
+      std::vector<VtuText> result{{"material_names", model.names.materials},
+                                  {"cell_set_names", model.names.cell_sets}};
+      if (model.relative_to_base)
+        result.push_back({"motion", {"relative to the rigid base"}});
+      return result;
     }
   } // namespace
 
@@ -163,27 +185,24 @@ namespace Voussoir
         data_out.add_data_vector(vectors.back(), stresses);
       }
 
-    dealii::Vector<float> material(
-      discretization.grid.triangulation().n_active_cells());
-    for (const auto &cell : discretization.dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        material[cell->active_cell_index()] = model.material_of_cell(cell);
+    const auto material = material_of_cells(model);
+    const auto cell_set =
+      smallest_cell_sets(discretization.grid, model.names.cell_sets);
     data_out.add_data_vector(material, "material");
+    data_out.add_data_vector(cell_set, "cell_set");
     for (const CellField &field : cell_fields)
       data_out.add_data_vector(*field.values, field.name);
     const auto memory = memory_of_cells(model);
     for (const auto &[memory_name, values] : memory)
       data_out.add_data_vector(values, vtk_name(memory_name));
 
-    DataOutBase::VtkFlags flags;
-    flags.time                     = time;
-    flags.compression_level        = DataOutBase::VtkFlags::best_speed;
-    flags.write_higher_order_cells = false;
-    data_out.set_flags(flags);
     data_out.build_patches(discretization.mapping, discretization.degree);
     const std::string file = name + ".vtu";
-    data_out.write_vtu_in_parallel(model.folder + "/" + file,
-                                   discretization.grid.communicator());
+    write_vtu(data_out,
+              model.folder + "/" + file,
+              time,
+              texts(model),
+              discretization.grid.communicator());
     return file;
   }
 } // namespace Voussoir

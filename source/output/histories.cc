@@ -1,6 +1,4 @@
-#include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
-#include <voussoir/base/text.h>
 #include <voussoir/output/point_recorder.h>
 #include <voussoir/output/table.h>
 
@@ -10,9 +8,13 @@ namespace Voussoir
 
   namespace
   {
-    const std::string place = "\"Points\" in section \"Output/histories\"";
-    const std::string reference_place =
-      "\"Relative to\" in section \"Output/histories\"";
+    struct Quantity
+    {
+      const char *name, *unit;
+    };
+    const std::array<Quantity, 3> all_quantities{
+      {{"displacement", "m"}, {"velocity", "m/s"}, {"acceleration", "m/s2"}}};
+
 
     /** Displacement, velocity and acceleration of named points, as columns of
      *  histories.csv. */
@@ -22,15 +24,10 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Points",
-                          points_text,
-                          "Named points \"name: x y z\" [m], separated by "
-                          "\";\".");
-        prm.add_parameter(
-          "Relative to",
-          reference_name,
-          "Name of the point whose motion is subtracted; empty for absolute "
-          "motion.");
+        recorder.declare_parameters(
+          prm,
+          "Name of the point whose motion is subtracted, which the headings "
+          "then say; empty for absolute motion.");
         prm.add_parameter("Quantities",
                           quantities,
                           "What to write: displacement [m], velocity [m/s], "
@@ -46,9 +43,7 @@ namespace Voussoir
       void
       check(const ObservedModel &model) const override
       {
-        const auto parsed = parse_points(points_text, place);
-        find_point(reference_name, parsed, reference_place);
-        PointWeights(model.discretization, parsed, place);
+        recorder.check(model);
       }
 
       void
@@ -56,20 +51,20 @@ namespace Voussoir
               const double         start_time,
               const bool           restarted) override
       {
-        points    = parse_points(points_text, place);
-        reference = find_point(reference_name, points, reference_place);
-        recorder =
-          std::make_unique<PointRecorder>(model, points, place, interval);
-        largest.assign(points.size(), {{0., 0., 0.}});
+        recorder.prepare(model, interval);
+        largest.assign(recorder.points().size(), {{0., 0., 0.}});
+        const std::string relative =
+          recorder.reference() < 0 ?
+            "" :
+            " relative to " + recorder.points()[recorder.reference()].name;
         std::vector<std::string> columns;
-        for (const NamedPoint &point : points)
+        for (const NamedPoint &point : recorder.points())
           for (unsigned int d = 0; d < 3; ++d)
             for (unsigned int k = 0; k < 3; ++k)
               if (wanted(k))
-                columns.push_back(
-                  point.name + ' ' + all_quantities()[k] + ' ' + "xyz"[d] +
-                  " [" + std::array<const char *, 3>{{"m", "m/s", "m/s2"}}[k] +
-                  ']');
+                columns.push_back(point.name + ' ' + all_quantities[k].name +
+                                  ' ' + "xyz"[d] + relative + " [" +
+                                  all_quantities[k].unit + ']');
         table.open(model.discretization.grid.communicator(),
                    model.folder + "/histories.csv",
                    columns,
@@ -81,25 +76,30 @@ namespace Voussoir
       void
       observe(const State &state) override
       {
-        if (points.empty())
+        if (recorder.points().empty())
           return;
-        recorder->observe(state);
-        if (recorder->n_waiting() >= 100)
+        recorder.observe(state);
+        if (recorder.n_waiting() >= 100)
           flush();
       }
 
       void
       finish(const State &, nlohmann::json &summary) override
       {
-        if (points.empty())
+        if (recorder.points().empty())
           return;
         flush();
         auto &result = summary["histories"];
-        for (unsigned int p = 0; p < points.size(); ++p)
-          result[points[p].name] = {{"largest displacement [m]", largest[p][0]},
-                                    {"largest velocity [m/s]", largest[p][1]},
-                                    {"largest acceleration [m/s2]",
-                                     largest[p][2]}};
+        for (unsigned int p = 0; p < recorder.points().size(); ++p)
+          {
+            auto &point = result[recorder.points()[p].name];
+            point["largest displacement [m]"]    = largest[p][0];
+            point["largest velocity [m/s]"]      = largest[p][1];
+            point["largest acceleration [m/s2]"] = largest[p][2];
+            if (recorder.reference() >= 0)
+              point["relative to"] =
+                recorder.points()[recorder.reference()].name;
+          }
       }
 
       nlohmann::json
@@ -117,30 +117,23 @@ namespace Voussoir
       }
 
     private:
-      static const std::array<std::string, 3> &
-      all_quantities()
-      {
-        static const std::array<std::string, 3> names{
-          {"displacement", "velocity", "acceleration"}};
-        return names;
-      }
-
       bool
       wanted(const unsigned int quantity) const
       {
         const auto list = split_list(quantities);
         return std::find(list.begin(),
                          list.end(),
-                         all_quantities()[quantity]) != list.end();
+                         all_quantities[quantity].name) != list.end();
       }
 
       void
       flush()
       {
-        for (const auto &line : recorder->take())
+        const int reference = recorder.reference();
+        for (const auto &line : recorder.take())
           {
             std::vector<double> values;
-            for (unsigned int p = 0; p < points.size(); ++p)
+            for (unsigned int p = 0; p < line.points.size(); ++p)
               {
                 PointMotion motion = line.points[p];
                 for (unsigned int k = 0; k < 3; ++k)
@@ -159,14 +152,13 @@ namespace Voussoir
         table.flush();
       }
 
-      std::string points_text, reference_name;
       std::string quantities = "displacement, velocity, acceleration";
       double      interval   = 0.01;
 
-      std::vector<NamedPoint>            points;
-      int                                reference = -1; // none
-      std::unique_ptr<PointRecorder>     recorder;
-      TimeTable                          table;
+      PointRecorder recorder{"Output/histories", "Relative to"};
+      TimeTable     table;
+
+      // of each point: displacement, velocity, acceleration [m, m/s, m/s2]
       std::vector<std::array<double, 3>> largest;
     };
 

@@ -16,7 +16,7 @@ namespace Voussoir
     Envelopes
     envelopes_of(const ContactPoint &point, const InterfaceExtremes &extremes)
     {
-      double state = 0.;
+      double state = 0.; // a place in ResultNames::interface_states()
       if (point.status == ContactStatus::sliding)
         state = 1.;
       if (point.status == ContactStatus::open)
@@ -81,7 +81,11 @@ namespace Voussoir
   {
     const Contact        &contact        = *model.contact;
     const Discretization &discretization = model.discretization;
-    const FaceMesh mesh(model, contact.surface_names(), "\"Interfaces\"");
+    const FaceMesh        mesh(model,
+                        contact.surface_names(),
+                        "\"Interfaces\"",
+                        "interface",
+                        model.names.interfaces);
 
     // from the ranks of the points to the owners of the nodes
     struct Record
@@ -121,6 +125,7 @@ namespace Voussoir
       {"largest_opening_mm", "largest_slip_mm", "residual_slip_mm", "state"},
       values,
       "interface_envelopes",
-      time);
+      time,
+      {{"state_names", ResultNames::interface_states()}});
   }
 } // namespace Voussoir

@@ -46,6 +46,27 @@ namespace Voussoir
   }
 
 
+  std::array<double, n_surface_columns>
+  surface_values(const double *sum, const double *largest, const double area)
+  {
+    // infinite without shear, as in an open joint without keys, or with as good
+    // as none
+    const double       safety = sum[shear_of_points] > 1e-6 * sum[resistance] ?
+                                  sum[resistance] / sum[shear_of_points] :
+                                  std::numeric_limits<double>::infinity();
+    const Tensor<1, 3> shear({sum[shear_x], sum[shear_y], sum[shear_z]});
+    return {{1e3 * largest[0],
+             1e3 * sum[opening] / area,
+             1e3 * largest[1],
+             1e3 * sum[slip] / area,
+             sum[open_area],
+             sum[sliding_area],
+             1e-6 * sum[pressure],
+             1e-6 * shear.norm(),
+             safety}};
+  }
+
+
   double
   safety_from_sums(const SlidingBlock        &block,
                    const double              *sums,

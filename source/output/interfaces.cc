@@ -83,6 +83,10 @@ namespace Voussoir
         for (const ContactPoint &point : contact->points())
           areas[point.surface] += point.area;
         areas = sum_over_ranks(areas, communicator);
+        sums.clear();
+        largest_now.clear();
+        times.clear();
+        last_look = 0.;
         extremes.assign(contact->points().size(), {{0., 0.}});
         smallest_safety.assign(names.size(),
                                std::numeric_limits<double>::infinity());
@@ -94,27 +98,9 @@ namespace Voussoir
         safety_of_blocks.assign(blocks.size(), {});
         energies_at_start = energies();
 
-        std::vector<std::string> columns;
-        for (const std::string &name : names)
-          for (const char *quantity : {"largest opening [mm]",
-                                       "mean opening [mm]",
-                                       "largest slip [mm]",
-                                       "mean slip [mm]",
-                                       "open area [m2]",
-                                       "sliding area [m2]",
-                                       "normal force [MN]",
-                                       "shear force [MN]",
-                                       "sliding safety [-]"})
-            columns.push_back(name + ' ' + quantity);
-        for (const NearestContactPoint &point : points)
-          for (const char *quantity :
-               {"opening [mm]", "level slip [mm]", "upward slip [mm]"})
-            columns.push_back(point.name + ' ' + quantity);
-        for (const SlidingBlock &block : blocks)
-          columns.push_back(block.name + " block safety [-]");
         table.open(communicator,
                    observed.folder + "/interfaces.csv",
-                   columns,
+                   columns(),
                    observed.time_step,
                    start_time,
                    restarted);
@@ -158,65 +144,17 @@ namespace Voussoir
         flush();
         write_interface_envelopes(*model, extremes, state.time);
 
-        const auto         &names = contact->surface_names();
-        std::vector<double> values(3 * names.size());
-        for (unsigned int k = 0; k < extremes.size(); ++k)
-          {
-            const ContactPoint &point      = contact->points()[k];
-            double             *of_surface = &values[3 * point.surface];
-            of_surface[0] = std::max(of_surface[0], extremes[k][0]);
-            of_surface[1] = std::max(of_surface[1], extremes[k][1]);
-            of_surface[2] = std::max(of_surface[2], slip_of(point));
-          }
-        Utilities::MPI::max(values, communicator, values);
-        const auto  energies_now = energies();
-        auto       &result       = summary["interfaces"];
-        const char *kinds[] = {"impact", "friction", "bond", "bars", "uplift"};
-        for (unsigned int s = 0; s < names.size(); ++s)
-          {
-            auto &surface                   = result["surfaces"][names[s]];
-            surface["area [m2]"]            = areas[s];
-            surface["largest opening [mm]"] = 1e3 * values[3 * s];
-            surface["largest slip [mm]"]    = 1e3 * values[3 * s + 1];
-            surface["residual slip [mm]"]   = 1e3 * values[3 * s + 2];
-            // null if there never was a shear force
-            surface["smallest sliding safety"]         = smallest_safety[s];
-            surface["time at safety one or below [s]"] = time_at_one[s];
-            for (unsigned int k = 0; k < 5; ++k)
-              surface["energies [J]"][kinds[k]] =
-                energies_now[5 * s + k] - energies_at_start[5 * s + k];
-          }
+        auto &result = summary["interfaces"];
+        describe_surfaces(result["surfaces"]);
         for (unsigned int b = 0; b < blocks.size(); ++b)
-          result["blocks"][blocks[b].name] = safety_of_blocks[b].summary();
-        for (const NearestContactPoint &point : points)
           {
-            std::vector<double> largest(2);
-            if (point.is_mine)
-              largest.assign(extremes[point.number].begin(),
-                             extremes[point.number].end());
-            largest = sum_over_ranks(largest, communicator);
-            result["points"][point.name] = {
-              {"position [m]",
-               {point.position[0], point.position[1], point.position[2]}},
-              {"surface", names[point.surface]},
-              {"largest opening [mm]", 1e3 * largest[0]},
-              {"largest slip [mm]", 1e3 * largest[1]}};
+            auto &block = result["blocks"][blocks[b].name];
+            block       = safety_of_blocks[b].summary();
+            block["id"] = number_of(blocks[b].name, model->names.cell_sets);
           }
-
-        // of the static stage too
-        const auto &effort = contact->effort();
-        const auto  n_clusters =
-          Utilities::MPI::sum(effort.clusters, communicator);
-        result["effort"] = {
-          {"largest penetration over cell size",
-           Utilities::MPI::max(effort.penetration, communicator) /
-             contact->cell_size},
-          {"largest residual",
-           Utilities::MPI::max(effort.residual, communicator)},
-          {"most sweeps", Utilities::MPI::max(effort.sweeps, communicator)},
-          {"mean sweeps",
-           double(Utilities::MPI::sum(effort.all_sweeps, communicator)) /
-             std::max(n_clusters, 1ULL)}};
+        for (const NearestContactPoint &point : points)
+          describe_point(point, result["points"][point.name]);
+        result["effort"] = effort();
       }
 
       std::map<std::string, KeyedValues>
@@ -262,6 +200,23 @@ namespace Voussoir
       }
 
     private:
+      /** Titles of the columns of interfaces.csv. */
+      std::vector<std::string>
+      columns() const
+      {
+        std::vector<std::string> titles;
+        for (const std::string &name : contact->surface_names())
+          for (const char *quantity : surface_columns)
+            titles.push_back(name + ' ' + quantity);
+        for (const NearestContactPoint &point : points)
+          for (const char *quantity :
+               {"opening [mm]", "level slip [mm]", "upward slip [mm]"})
+            titles.push_back(point.name + ' ' + quantity);
+        for (const SlidingBlock &block : blocks)
+          titles.push_back(block.name + " block safety [-]");
+        return titles;
+      }
+
       /** Impact, friction, bond, bars and uplift of each surface [J]. */
       std::vector<double>
       energies() const
@@ -277,6 +232,7 @@ namespace Voussoir
         return sum_over_ranks(values, communicator);
       }
 
+      /** The lines of all looks that wait. */
       void
       flush()
       {
@@ -286,44 +242,29 @@ namespace Voussoir
         Utilities::MPI::max(largest_now, communicator, largest_now);
         for (std::size_t i = 0; i < times.size(); ++i)
           {
-            const double *sums_now = &all_sums[width * i], *sum = sums_now;
+            const double *sums_now = &all_sums[width * i];
+            const double  interval = std::max(0., times[i] - last_look);
+
             std::vector<double> line;
-            for (unsigned int s = 0; s < areas.size(); ++s, sum += n_quantities)
+            for (unsigned int s = 0; s < areas.size(); ++s)
               {
-                const double *largest =
-                  &largest_now[2 * (areas.size() * i + s)];
-                // infinite without shear, as in an open joint without keys, or
-                // with as good as none
-                const double safety =
-                  sum[shear_of_points] > 1e-6 * sum[resistance] ?
-                    sum[resistance] / sum[shear_of_points] :
-                    std::numeric_limits<double>::infinity();
-                for (const double value :
-                     {1e3 * largest[0],
-                      1e3 * sum[opening] / areas[s],
-                      1e3 * largest[1],
-                      1e3 * sum[slip] / areas[s],
-                      sum[open_area],
-                      sum[sliding_area],
-                      1e-6 * sum[pressure],
-                      1e-6 *
-                        Tensor<1, 3>({sum[shear_x], sum[shear_y], sum[shear_z]})
-                          .norm(),
-                      safety})
-                  line.push_back(value);
-                smallest_safety[s] = std::min(smallest_safety[s], line.back());
+                const auto values =
+                  surface_values(sums_now + n_quantities * s,
+                                 &largest_now[2 * (areas.size() * i + s)],
+                                 areas[s]);
+                line.insert(line.end(), values.begin(), values.end());
+                const double safety = values.back();
+                smallest_safety[s]  = std::min(smallest_safety[s], safety);
                 // points that slide are at their limit, not beyond it
-                if (line.back() < 1. + 1e-6 && times[i] > last_look)
-                  time_at_one[s] += times[i] - last_look;
+                if (safety < 1. + 1e-6)
+                  time_at_one[s] += interval;
               }
             for (unsigned int k = 0; k < 3 * points.size(); ++k)
-              line.push_back(1e3 * sum[k]);
+              line.push_back(1e3 * sums_now[n_quantities * areas.size() + k]);
             for (unsigned int b = 0; b < blocks.size(); ++b)
               {
                 line.push_back(safety_from_sums(blocks[b], sums_now, areas));
-                safety_of_blocks[b].add(times[i],
-                                        std::max(0., times[i] - last_look),
-                                        line.back());
+                safety_of_blocks[b].add(times[i], interval, line.back());
               }
             last_look = std::max(last_look, times[i]);
             table.write(times[i], line);
@@ -332,6 +273,74 @@ namespace Voussoir
         sums.clear();
         largest_now.clear();
         times.clear();
+      }
+
+      void
+      describe_surfaces(nlohmann::json &result) const
+      {
+        const auto         &names = contact->surface_names();
+        std::vector<double> values(3 * names.size());
+        for (unsigned int k = 0; k < extremes.size(); ++k)
+          {
+            const ContactPoint &point      = contact->points()[k];
+            double             *of_surface = &values[3 * point.surface];
+            of_surface[0] = std::max(of_surface[0], extremes[k][0]);
+            of_surface[1] = std::max(of_surface[1], extremes[k][1]);
+            of_surface[2] = std::max(of_surface[2], slip_of(point));
+          }
+        Utilities::MPI::max(values, communicator, values);
+        const auto  energies_now = energies();
+        const char *kinds[] = {"impact", "friction", "bond", "bars", "uplift"};
+        for (unsigned int s = 0; s < names.size(); ++s)
+          {
+            auto &surface                   = result[names[s]];
+            surface["id"]                   = s;
+            surface["area [m2]"]            = areas[s];
+            surface["largest opening [mm]"] = 1e3 * values[3 * s];
+            surface["largest slip [mm]"]    = 1e3 * values[3 * s + 1];
+            surface["residual slip [mm]"]   = 1e3 * values[3 * s + 2];
+            // null if there never was a shear force
+            surface["smallest sliding safety"]         = smallest_safety[s];
+            surface["time at safety one or below [s]"] = time_at_one[s];
+            for (unsigned int k = 0; k < 5; ++k)
+              surface["energies [J]"][kinds[k]] =
+                energies_now[5 * s + k] - energies_at_start[5 * s + k];
+          }
+      }
+
+      void
+      describe_point(const NearestContactPoint &point,
+                     nlohmann::json            &result) const
+      {
+        std::vector<double> largest(2);
+        if (point.is_mine)
+          largest.assign(extremes[point.number].begin(),
+                         extremes[point.number].end());
+        largest = sum_over_ranks(largest, communicator);
+        result  = {{"position [m]",
+                    {point.position[0], point.position[1], point.position[2]}},
+                   {"surface", contact->surface_names()[point.surface]},
+                   {"largest opening [mm]", 1e3 * largest[0]},
+                   {"largest slip [mm]", 1e3 * largest[1]}};
+      }
+
+      /** What finding the contact forces took, in the static stage too. */
+      nlohmann::json
+      effort() const
+      {
+        const auto &effort = contact->effort();
+        const auto  n_clusters =
+          Utilities::MPI::sum(effort.clusters, communicator);
+        return {{"largest penetration over cell size",
+                 Utilities::MPI::max(effort.penetration, communicator) /
+                   contact->cell_size},
+                {"largest residual",
+                 Utilities::MPI::max(effort.residual, communicator)},
+                {"most sweeps",
+                 Utilities::MPI::max(effort.sweeps, communicator)},
+                {"mean sweeps",
+                 double(Utilities::MPI::sum(effort.all_sweeps, communicator)) /
+                   std::max(n_clusters, 1ULL)}};
       }
 
       std::string points_text, blocks_text;
@@ -361,6 +370,7 @@ namespace Voussoir
     const Registry<Observer>::Add<Interfaces> registered(
       "interfaces",
       "Opening, slip, forces and sliding safety of the interfaces, in "
-      "interfaces.csv; extremes on their faces in interface_envelopes.vtu.");
+      "interfaces.csv; extremes on their faces in interface_envelopes.vtu, with "
+      "the state at the end: 0 closed, 1 sliding, 2 open.");
   } // namespace
 } // namespace Voussoir

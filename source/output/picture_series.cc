@@ -57,6 +57,7 @@ namespace Voussoir
     folder       = model.folder;
     time_step    = model.time_step;
     communicator = model.discretization.grid.communicator();
+    pictures.clear();
     if (!restarted)
       return;
     std::ifstream list(folder + "/" + name + ".txt");

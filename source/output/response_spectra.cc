@@ -2,9 +2,7 @@
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/loads/response_spectrum.h>
 #include <voussoir/output/point_recorder.h>
-
-#include <fstream>
-#include <iomanip>
+#include <voussoir/output/table.h>
 
 namespace Voussoir
 {
@@ -12,9 +10,8 @@ namespace Voussoir
 
   namespace
   {
-    const std::string section = "in section \"Output/response spectra\"";
-    const std::string place   = "\"Points\" " + section;
-    const std::string reference_place = "\"Reference\" " + section;
+    const std::string section = "Output/response spectra";
+
 
     /** Response spectra of the absolute acceleration of chosen points. */
     class ResponseSpectra : public Observer
@@ -23,19 +20,14 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Points",
-                          points_text,
-                          "Named points \"name: x y z\" [m], separated by "
-                          "\";\".");
+        recorder.declare_parameters(
+          prm,
+          "Name of the point whose largest acceleration the amplification in "
+          "the summary is relative to; empty for none.");
         prm.add_parameter("Components",
                           components,
                           "Directions of motion.",
                           Patterns::MultipleSelection("x|y|z"));
-        prm.add_parameter("Reference",
-                          reference_name,
-                          "Name of the point whose largest acceleration the "
-                          "amplification in the summary is relative to; empty "
-                          "for none.");
         prm.add_parameter("Damping ratio",
                           damping_ratio,
                           "Of the oscillators [-].",
@@ -62,14 +54,13 @@ namespace Voussoir
       void
       check(const ObservedModel &model) const override
       {
+        const std::string place = "in section \"" + section + "\" ";
         if (longest <= shortest)
-          throw UserError("\"Longest period\" " + section +
-                          " must be longer than the \"Shortest period\".");
-        const auto parsed = parse_points(points_text, place);
-        if (parsed.empty())
-          throw UserError(place + " is empty; name at least one point.");
-        find_point(reference_name, parsed, reference_place);
-        PointWeights(model.discretization, parsed, place);
+          throw UserError("\"Longest period\" " + place +
+                          "must be longer than the \"Shortest period\".");
+        if (recorder.check(model) == 0)
+          throw UserError("\"Points\" " + place +
+                          "is empty; name at least one point.");
       }
 
       void
@@ -77,23 +68,21 @@ namespace Voussoir
       {
         folder       = model.folder;
         communicator = model.discretization.grid.communicator();
-        points       = parse_points(points_text, place);
-        reference    = find_point(reference_name, points, reference_place);
         sample_step =
           model.time_step *
           std::max(1., std::floor(interval / model.time_step + 1e-9));
-        recorder =
-          std::make_unique<PointRecorder>(model, points, place, sample_step);
+        recorder.prepare(model, sample_step);
+        directions.clear();
         for (const std::string &component : split_list(components))
           directions.push_back(component[0] - 'x');
-        accelerations.resize(points.size() * directions.size());
+        accelerations.assign(recorder.points().size() * directions.size(), {});
       }
 
       void
       observe(const State &state) override
       {
-        recorder->observe(state);
-        if (recorder->n_waiting() >= 1000)
+        recorder.observe(state);
+        if (recorder.n_waiting() >= 1000)
           collect();
       }
 
@@ -102,33 +91,27 @@ namespace Voussoir
       {
         collect();
         const auto periods = logarithmic_grid(shortest, longest, n_periods);
-        std::vector<ResponseSpectrum> spectra;
-        auto                         &result = summary["response spectra"];
-        for (unsigned int p = 0; p < points.size(); ++p)
+        std::vector<std::string>         titles{"period [s]"};
+        std::vector<std::vector<double>> columns{periods};
+        for (unsigned int p = 0; p < recorder.points().size(); ++p)
           for (unsigned int i = 0; i < directions.size(); ++i)
             {
-              const auto &record = accelerations[p * directions.size() + i];
-              spectra.push_back(response_spectrum({sample_step, record},
+              const std::string &name      = recorder.points()[p].name;
+              const char         component = "xyz"[directions[i]];
+              columns.push_back(response_spectrum({sample_step, record(p, i)},
                                                   periods,
-                                                  damping_ratio));
-              const auto &values = spectra.back().pseudo_acceleration;
-              const auto  highest =
-                std::max_element(values.begin(), values.end());
-              auto &entry =
-                result[points[p].name][std::string(1, "xyz"[directions[i]])];
-              entry["peak acceleration [m/s2]"]      = peak(record);
-              entry["largest spectral value [m/s2]"] = *highest;
-              entry["at period [s]"] = periods[highest - values.begin()];
-              if (reference >= 0)
-                {
-                  const double base =
-                    peak(accelerations[reference * directions.size() + i]);
-                  if (base > 0.)
-                    entry["amplification of the peak"] = peak(record) / base;
-                }
+                                                  damping_ratio)
+                                  .pseudo_acceleration);
+              titles.push_back(name + ' ' + component + " [m/s2]");
+              describe(
+                p,
+                i,
+                periods,
+                columns.back(),
+                summary["response spectra"][name][std::string(1, component)]);
             }
         if (Utilities::MPI::this_mpi_process(communicator) == 0)
-          write(periods, spectra);
+          write(titles, columns);
       }
 
       nlohmann::json
@@ -149,47 +132,69 @@ namespace Voussoir
       void
       collect()
       {
-        for (const auto &line : recorder->take())
-          for (unsigned int p = 0; p < points.size(); ++p)
+        for (const auto &line : recorder.take())
+          for (unsigned int p = 0; p < line.points.size(); ++p)
             for (unsigned int i = 0; i < directions.size(); ++i)
               accelerations[p * directions.size() + i].push_back(
                 line.points[p][2][directions[i]]);
       }
 
-      void
-      write(const std::vector<double>           &periods,
-            const std::vector<ResponseSpectrum> &spectra) const
+      /** Acceleration of a point in one of the chosen directions [m/s2]. */
+      const std::vector<double> &
+      record(const unsigned int point, const unsigned int direction) const
       {
-        std::ofstream file(folder + "/response_spectra.csv");
-        file << std::setprecision(9) << "period [s]";
-        for (const NamedPoint &point : points)
-          for (const unsigned int d : directions)
-            file << ',' << point.name << ' ' << "xyz"[d] << " [m/s2]";
-        file << '\n';
-        for (unsigned int i = 0; i < periods.size(); ++i)
+        return accelerations[point * directions.size() + direction];
+      }
+
+      /** What the summary says of a spectrum. */
+      void
+      describe(const unsigned int         point,
+               const unsigned int         direction,
+               const std::vector<double> &periods,
+               const std::vector<double> &spectrum,
+               nlohmann::json            &entry) const
+      {
+        const double largest = peak(record(point, direction));
+        const auto highest = std::max_element(spectrum.begin(), spectrum.end());
+        entry["peak acceleration [m/s2]"]      = largest;
+        entry["largest spectral value [m/s2]"] = *highest;
+        entry["at period [s]"] = periods[highest - spectrum.begin()];
+        if (recorder.reference() >= 0)
           {
-            file << periods[i];
-            for (const ResponseSpectrum &spectrum : spectra)
-              file << ',' << spectrum.pseudo_acceleration[i];
-            file << '\n';
+            const double base = peak(record(recorder.reference(), direction));
+            if (base > 0.)
+              entry["amplification of the peak"] = largest / base;
           }
       }
 
-      std::string  points_text, reference_name;
+      void
+      write(const std::vector<std::string>         &titles,
+            const std::vector<std::vector<double>> &columns) const
+      {
+        std::ofstream file(folder + "/response_spectra.csv");
+        file << csv_heading(titles) << '\n';
+        for (unsigned int i = 0; i < columns[0].size(); ++i)
+          {
+            std::vector<double> line;
+            for (const std::vector<double> &column : columns)
+              line.push_back(column[i]);
+            file << csv_line(line) << '\n';
+          }
+      }
+
       std::string  components    = "x, y, z";
       double       damping_ratio = 0.05;
       double       shortest = 0.02, longest = 4.;
       unsigned int n_periods = 100;
       double       interval  = 0.005;
 
+      PointRecorder recorder{section, "Reference"};
+
       std::string                      folder;
       MPI_Comm                         communicator;
-      std::vector<NamedPoint>          points;
       std::vector<unsigned int>        directions;
-      int                              reference = -1; // none
-      std::unique_ptr<PointRecorder>   recorder;
-      double                           sample_step = 0.;
-      std::vector<std::vector<double>> accelerations; // by point, direction
+      double                           sample_step = 0.; // [s]
+      std::vector<std::vector<double>> accelerations;    // by point, direction
     };
 
     const Registry<Observer>::Add<ResponseSpectra>

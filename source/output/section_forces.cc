@@ -45,10 +45,12 @@ namespace Voussoir
           "moment and shear are per metre of height, those of the cantilever "
           "(vertical force) per metre of arch length [MN/m, MNm/m]; tension is "
           "positive, moments are positive with tension upstream.");
-        prm.add_parameter("Upstream", upstream_sets, "Upstream face sets.");
+        prm.add_parameter("Upstream",
+                          upstream_sets,
+                          "Face sets on which the lines begin.");
         prm.add_parameter("Downstream",
                           downstream_sets,
-                          "Downstream face sets.");
+                          "Face sets on which the lines end.");
         prm.add_parameter("Interval",
                           interval,
                           "Time between two lines of section_forces.csv [s].",
@@ -74,6 +76,8 @@ namespace Voussoir
           for (const auto &point : line.points)
             places.push_back(point.place);
         stress_points = std::make_unique<StressPoints>(model, places);
+        shares.clear();
+        times.clear();
         largest.assign(n_quantities * lines.size(),
                        -std::numeric_limits<double>::max());
         smallest.assign(n_quantities * lines.size(),

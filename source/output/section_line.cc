@@ -5,13 +5,14 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
+#include <optional>
+
 namespace Voussoir
 {
   using namespace dealii;
 
   namespace
   {
-
     /** The bilinear surface between four corners in lexicographic order. */
     struct Surface
     {
@@ -189,6 +190,107 @@ namespace Voussoir
                    breaks.end());
       return breaks;
     }
+
+    using Refuse = SectionLine::Refuse;
+
+
+    /** The point of the upstream face nearest to the wanted one, and the size
+     *  of the cell face there [m]. */
+    std::pair<Point<3>, double>
+    find_upstream_point(const std::vector<FaceCorners> &faces,
+                        const SectionRequest           &request,
+                        const Refuse                   &refuse)
+    {
+      Point<3> result;
+      double   distance = std::numeric_limits<double>::infinity(), size = 0.;
+      for (const FaceCorners &corners : faces)
+        {
+          const Hit hit =
+            nearest(Surface(corners), request.position, request.along_river);
+          if (hit.distance < distance)
+            {
+              distance = hit.distance;
+              result   = Surface(corners).at(hit.a, hit.b);
+              size     = corners[0].distance(corners[3]);
+            }
+        }
+      if (distance > size)
+        refuse("lies beside the upstream face; correct its coordinates.");
+      return {result, size};
+    }
+
+
+    /** Horizontal unit normal at a point of the face; where cell faces meet in
+     *  it, of the mean of their normals. */
+    Tensor<1, 3>
+    horizontal_normal(const std::vector<FaceCorners> &faces,
+                      const Point<3>                 &point,
+                      const double                    size,
+                      const Refuse                   &refuse)
+    {
+      Tensor<1, 3> sum;
+      for (const FaceCorners &corners : faces)
+        {
+          const Surface surface(corners);
+          const Hit     hit = nearest(surface, point, false);
+          if (hit.distance < 1e-6 * size)
+            {
+              const Tensor<1, 3> n = surface.unit_normal(hit.a, hit.b);
+              sum += (n * sum < 0. ? -1. : 1.) * n;
+            }
+        }
+      sum[2] = 0.;
+      if (sum.norm() < 1e-3)
+        refuse("lies where the upstream face is level; move it.");
+      return sum / sum.norm();
+    }
+
+
+    /** Where the line along @p normal first meets the downstream face [m];
+     *  negative behind the point. */
+    double
+    distance_of_downstream_face(const std::vector<FaceCorners> &faces,
+                                const Point<3>                 &point,
+                                const Tensor<1, 3>             &normal,
+                                const double                    size,
+                                const Refuse                   &refuse)
+    {
+      double ahead = std::numeric_limits<double>::infinity(), behind = ahead;
+      for (const FaceCorners &corners : faces)
+        {
+          const double along = pierce(Surface(corners), point, normal).distance;
+          if (!std::isfinite(along))
+            continue;
+          if (along > 1e-6 * size)
+            ahead = std::min(ahead, along);
+          else if (along < -1e-6 * size)
+            behind = std::min(behind, -along);
+        }
+      if (std::min(ahead, behind) == std::numeric_limits<double>::infinity())
+        refuse("has no downstream face behind it on a horizontal line; move it "
+               "away from the rim of the dam.");
+      return ahead < behind ? ahead : -behind;
+    }
+
+
+    /** Where a point lies in the reference cell, if it lies in the cell. */
+    std::optional<Point<3>>
+    position_in(const Discretization::Cell &cell,
+                const Point<3>             &x,
+                const Mapping<3>           &mapping)
+    {
+      if (!cell->bounding_box().point_inside(x, 1e-6))
+        return {};
+      try
+        {
+          const Point<3> unit = mapping.transform_real_to_unit_cell(cell, x);
+          if (GeometryInfo<3>::is_inside_unit_cell(unit, 1e-6))
+            return unit;
+        }
+      catch (const Mapping<3>::ExcTransformationFailed &)
+        {}
+      return {};
+    }
   } // namespace
 
 
@@ -234,66 +336,31 @@ namespace Voussoir
                            const std::string                             &place)
     : name(request.name)
   {
-    const auto refuse = [&](const std::string &reason) {
+    const Refuse refuse = [&](const std::string &reason) {
       std::ostringstream position;
       position << request.position;
       throw UserError(place + ": the section \"" + name + "\" at (" +
                       position.str() + ") m " + reason);
     };
 
-    // the nearest point; where faces meet in it, the mean of their normals
-    double distance = std::numeric_limits<double>::infinity(), size = 0.;
-    for (const FaceCorners &corners : faces[0])
-      {
-        const Hit hit =
-          nearest(Surface(corners), request.position, request.along_river);
-        if (hit.distance < distance)
-          {
-            distance = hit.distance;
-            upstream = Surface(corners).at(hit.a, hit.b);
-            size     = corners[0].distance(corners[3]);
-          }
-      }
-    if (distance > size)
-      refuse("lies beside the upstream face; correct its coordinates.");
-    Tensor<1, 3> sum;
-    for (const FaceCorners &corners : faces[0])
-      {
-        const Surface surface(corners);
-        const Hit     hit = nearest(surface, upstream, false);
-        if (hit.distance < 1e-6 * size)
-          {
-            const Tensor<1, 3> n = surface.unit_normal(hit.a, hit.b);
-            sum += (n * sum < 0. ? -1. : 1.) * n;
-          }
-      }
-    sum[2] = 0.;
-    if (sum.norm() < 1e-3)
-      refuse("lies where the upstream face is level; move it.");
-    normal = sum / sum.norm();
-
+    double size; // of the faces there
+    std::tie(upstream, size) = find_upstream_point(faces[0], request, refuse);
+    normal = horizontal_normal(faces[0], upstream, size, refuse);
+    const double downstream =
+      distance_of_downstream_face(faces[1], upstream, normal, size, refuse);
     // outward is away from the downstream face, wherever that is met
-    double ahead = std::numeric_limits<double>::infinity(), behind = ahead;
-    for (const FaceCorners &corners : faces[1])
-      {
-        const double along =
-          pierce(Surface(corners), upstream, normal).distance;
-        if (!std::isfinite(along))
-          continue;
-        if (along > 1e-6 * size)
-          ahead = std::min(ahead, along);
-        else if (along < -1e-6 * size)
-          behind = std::min(behind, -along);
-      }
-    if (std::min(ahead, behind) == std::numeric_limits<double>::infinity())
-      refuse("has no downstream face behind it on a horizontal line; move it "
-             "away from the rim of the dam.");
-    if (ahead < behind)
+    if (downstream > 0.)
       normal *= -1.;
-    thickness = std::min(ahead, behind);
+    thickness = std::abs(downstream);
     arch      = Tensor<1, 3>({-normal[1], normal[0], 0.});
+    place_points(model.discretization, refuse);
+  }
 
-    const Discretization             &discretization = model.discretization;
+
+  void
+  SectionLine::place_points(const Discretization &discretization,
+                            const Refuse         &refuse)
+  {
     std::vector<Discretization::Cell> cells;
     const std::vector<double>         breaks =
       find_breaks(discretization, upstream, -normal, thickness, cells);
@@ -308,22 +375,9 @@ namespace Voussoir
           const Point<3> x     = upstream - depth * normal;
           n_cells.push_back(0);
           for (const auto &cell : cells)
-            if (cell->bounding_box().point_inside(x, 1e-6))
+            if (const auto unit = position_in(cell, x, discretization.mapping))
               {
-                Point<3> unit;
-                try
-                  {
-                    unit =
-                      discretization.mapping.transform_real_to_unit_cell(cell,
-                                                                         x);
-                  }
-                catch (const Mapping<3>::ExcTransformationFailed &)
-                  {
-                    continue;
-                  }
-                if (!GeometryInfo<3>::is_inside_unit_cell(unit, 1e-6))
-                  continue;
-                points.push_back({{cell, unit},
+                points.push_back({{cell, *unit},
                                   0.5 * thickness - depth,
                                   width * gauss.weight(q)});
                 number.push_back(n_cells.size() - 1);

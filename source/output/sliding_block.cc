@@ -11,6 +11,52 @@ namespace Voussoir
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** The side of a surface on which a block lies: 1 if on the second, -1 if
+     * on the first. */
+    double
+    side_of(const std::string &block,
+            const std::string &surface,
+            const Grid        &grid,
+            const std::string &place)
+    {
+      // faces of the first side, and those of the block among them
+      std::vector<double> sums(2);
+      grid.for_each_face(surface, [&](const auto &cell, const unsigned int) {
+        sums[0] += 1.;
+        sums[1] += grid.in_cell_set(cell, block) ? 1. : 0.;
+      });
+      grid.for_each_face(surface + other_side,
+                         [&](const auto &cell, const unsigned int) {
+                           sums[1] -= grid.in_cell_set(cell, block) ? 1. : 0.;
+                         });
+      sums = sum_over_ranks(sums, grid.communicator());
+      if (std::abs(sums[1]) != sums[0])
+        throw UserError(place + ": the surface \"" + surface +
+                        "\" does not separate the cell set \"" + block +
+                        "\" from other cells; choose the surfaces on which the "
+                        "block rests.");
+      return sums[1] < 0. ? 1. : -1.;
+    }
+
+
+    /** Sum of the normals of a surface's points times their areas [m2], into
+     *  its second side. */
+    Tensor<1, 3>
+    normal_area(const unsigned int surface,
+                const Contact     &contact,
+                const MPI_Comm     communicator)
+    {
+      Tensor<1, 3> sum;
+      for (const ContactPoint &point : contact.points())
+        if (point.surface == surface)
+          sum += point.area * point.frame[0];
+      return Utilities::MPI::sum(sum, communicator);
+    }
+  } // namespace
+
+
   std::vector<SlidingBlock>
   find_sliding_blocks(const std::string    &text,
                       const std::string    &place,
@@ -19,11 +65,7 @@ namespace Voussoir
   {
     const Grid               &grid  = discretization.grid;
     const auto               &names = contact.surface_names();
-    std::vector<Tensor<1, 3>> normals(names.size());
     std::vector<SlidingBlock> blocks;
-    for (const ContactPoint &point : contact.points())
-      normals[point.surface] += point.area * point.frame[0];
-
     for (const std::string &item : split_list(text, ';'))
       {
         const auto   colon = item.find(':');
@@ -42,29 +84,9 @@ namespace Voussoir
                               "\", which is no surface of an interface; list "
                               "it in section \"Interfaces\".");
             const unsigned int surface = found - names.begin();
-
-            // faces of the first side, and those of the block among them
-            std::vector<double> sums(5);
-            grid.for_each_face(name, [&](const auto &cell, const unsigned int) {
-              ++sums[0];
-              sums[1] += grid.in_cell_set(cell, block.name) ? 1. : 0.;
-            });
-            grid.for_each_face(name + other_side,
-                               [&](const auto &cell, const unsigned int) {
-                                 sums[1] -=
-                                   grid.in_cell_set(cell, block.name) ? 1. : 0.;
-                               });
-            for (unsigned int d = 0; d < 3; ++d)
-              sums[2 + d] = normals[surface][d];
-            sums = sum_over_ranks(sums, grid.communicator());
-            if (std::abs(sums[1]) != sums[0])
-              throw UserError(place + ": the surface \"" + name +
-                              "\" does not separate the cell set \"" +
-                              block.name +
-                              "\" from other cells; choose the surfaces on "
-                              "which the block rests.");
-            const double       side = sums[1] < 0. ? 1. : -1.;
-            const Tensor<1, 3> normal({sums[2], sums[3], sums[4]});
+            const double       side    = side_of(block.name, name, grid, place);
+            const Tensor<1, 3> normal =
+              normal_area(surface, contact, grid.communicator());
             block.planes.push_back(
               {surface, side, side / normal.norm() * normal});
           }

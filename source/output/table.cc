@@ -1,9 +1,38 @@
 #include <voussoir/output/table.h>
 
 #include <iomanip>
+#include <sstream>
 
 namespace Voussoir
 {
+  std::string
+  csv_heading(const std::vector<std::string> &titles)
+  {
+    std::ostringstream line;
+    for (std::size_t i = 0; i < titles.size(); ++i)
+      {
+        line << (i > 0 ? "," : "");
+        // quoted() doubles the quotation marks inside, as RFC 4180 has it
+        if (titles[i].find_first_of(",\"\r\n") != std::string::npos)
+          line << std::quoted(titles[i], '"', '"');
+        else
+          line << titles[i];
+      }
+    return line.str();
+  }
+
+
+  std::string
+  csv_line(const std::vector<double> &values)
+  {
+    std::ostringstream line;
+    line << std::setprecision(9);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      line << (i > 0 ? "," : "") << values[i];
+    return line.str();
+  }
+
+
   void
   TimeTable::open(const MPI_Comm                  communicator,
                   const std::string              &filename,
@@ -25,12 +54,11 @@ namespace Voussoir
       }
     if (lines.empty())
       {
-        lines.push_back("time [s]");
-        for (const std::string &column : columns)
-          lines.back() += ',' + column;
+        std::vector<std::string> titles = columns;
+        titles.insert(titles.begin(), "time [s]");
+        lines.push_back(csv_heading(titles));
       }
-    file.open(filename);
-    file << std::setprecision(9);
+    file = std::ofstream(filename);
     for (const std::string &line : lines)
       file << line << '\n';
     file.flush();
@@ -42,10 +70,9 @@ namespace Voussoir
   {
     if (!file.is_open())
       return;
-    file << time;
-    for (const double value : values)
-      file << ',' << value;
-    file << '\n';
+    std::vector<double> line{time};
+    line.insert(line.end(), values.begin(), values.end());
+    file << csv_line(line) << '\n';
   }
 
 

@@ -2,6 +2,7 @@
 #define voussoir_output_face_mesh_h
 
 #include <voussoir/output/stress_points.h>
+#include <voussoir/output/vtu_file.h>
 
 #include <map>
 
@@ -20,10 +21,17 @@ namespace Voussoir
   class FaceMesh
   {
   public:
-    /** @param sets face sets, each checked; @p place names the entry. */
+    /**
+     * @param sets      face sets, each checked: at least one, and of the mesh
+     * @param place     names the entry with them
+     * @param kind      what they are in VTU files, "face_set" or "interface"
+     * @param all_names of that kind, which give the sets their numbers there
+     */
     FaceMesh(const ObservedModel            &model,
              const std::vector<std::string> &sets,
-             const std::string              &place);
+             const std::string              &place,
+             const std::string              &kind,
+             const std::vector<std::string> &all_names);
 
     MPI_Comm
     communicator() const;
@@ -32,7 +40,7 @@ namespace Voussoir
     unsigned int
     n_nodes() const;
 
-    /** Outward normal at a node, the mean of its faces. */
+    /** Outward unit normal at a node, the mean of its faces. */
     const dealii::Tensor<1, 3> &
     normal(const unsigned int node) const;
 
@@ -59,18 +67,47 @@ namespace Voussoir
     sets_and_nodes() const;
 
     /**
-     * Writes values of the nodes as one VTU file.
+     * Writes values of the nodes as one VTU file, with the numbers of the sets
+     * and their names. All ranks must call this together.
      *
-     * @param values @p names.size() numbers for each node
-     * @return the name of the file without its folder
+     * @param fields names of the values
+     * @param values @p fields.size() numbers for each node
+     * @param name   of the file in the output folder, without its ending
+     * @param time   [s]
+     * @param texts  further ones for the file
+     * @return its name in the output folder
      */
     std::string
-    write(const std::vector<std::string> &names,
+    write(const std::vector<std::string> &fields,
           const std::vector<double>      &values,
           const std::string              &name,
-          const double                    time) const;
+          const double                    time,
+          const std::vector<VtuText>     &texts = {}) const;
 
   private:
+    using NodeNumbers = std::map<SetAndNode, unsigned int>;
+
+    /** What is gathered on the way over the faces. */
+    struct Places
+    {
+      NodeNumbers                      nodes;
+      std::vector<StressPoints::Place> list;
+
+      /** Of each place one, and the outward unit normal. */
+      std::vector<double> normals;
+    };
+
+    /** Adds the nodes of a face in lexicographic order. */
+    void
+    add_face(const unsigned int          set,
+             const Discretization::Cell &cell,
+             const unsigned int          face,
+             Places                     &places);
+
+    /** Means over the places of each node. */
+    void
+    find_normals(const std::vector<double> &normals_of_places);
+
     /** A vector of @p width numbers for each node, with ghosts. */
     Vector
     make_vector(const unsigned int width) const;
@@ -84,13 +121,14 @@ namespace Voussoir
 
     /** Agrees with the other ranks on numbers for the nodes. */
     void
-    number_nodes(
-      const std::map<std::pair<unsigned int, dealii::types::global_dof_index>,
-                     unsigned int> &nodes,
-      const unsigned int            n_sets);
+    number_nodes(const NodeNumbers &nodes, const unsigned int n_sets);
 
-    const std::string                          folder;
-    const Discretization                      &discretization;
+    const std::string              folder;
+    const Discretization          &discretization;
+    const std::string              kind;
+    const std::vector<std::string> all_names;
+    std::vector<unsigned int>      number_of_set; // in all_names
+
     std::vector<dealii::Point<3>>              positions;
     std::vector<dealii::Tensor<1, 3>>          normals;
     std::vector<unsigned int>                  n_places_of_node;

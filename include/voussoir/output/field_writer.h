@@ -22,10 +22,16 @@ namespace Voussoir
   };
 
   /**
-   * Writes nodal fields, and by choice the principal stresses [MPa] under the
-   * displacement @p stress_of, as one grouped VTU file.
+   * Writes fields of the whole model as one VTU file, with those that it always
+   * has: material and cell set of each cell by number, with their names (see
+   * `ResultNames`), and what cells remember, as a mean over their points.
    *
-   * @return the name of the file without its folder
+   * @param fields    of the nodes
+   * @param stress_of displacement whose principal stresses are written [MPa];
+   *   null for none
+   * @param name      of the file in the output folder, without its ending
+   * @param time      [s]
+   * @return its name in the output folder
    */
   std::string
   write_fields(const ObservedModel           &model,

@@ -20,7 +20,8 @@ namespace Voussoir
   /** Largest opening and slip of a contact point [m]. */
   using InterfaceExtremes = std::array<double, 2>;
 
-  /** The same on all ranks, which must call this together. */
+  /** For each place the nearest point of any interface; the same on all ranks
+   *  but for `is_mine`. All ranks must call this together. */
   std::vector<NearestContactPoint>
   find_contact_points(const Contact                 &contact,
                       const std::vector<NamedPoint> &places,
@@ -28,9 +29,12 @@ namespace Voussoir
 
   /**
    * Writes interface_envelopes.vtu: on the faces of the first side of all
-   * interfaces the largest opening and slip, the slip now [mm], and the state
-   * now (0 closed, 1 sliding, 2 open). Where an interface ends inside the body
-   * all of them are zero.
+   * interfaces their number, the largest opening and slip, the slip now [mm],
+   * and the state now as a number (see `ResultNames::interface_states`). Where
+   * an interface ends inside the body all but the number are zero.
+   *
+   * @param extremes of the points of this rank [m]
+   * @param time     [s]
    */
   void
   write_interface_envelopes(const ObservedModel                  &model,

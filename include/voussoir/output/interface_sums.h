@@ -10,12 +10,12 @@ namespace Voussoir
   {
     enum Quantity
     {
-      opening, // times area [m3]
-      slip,    // times area [m3]
-      open_area,
-      sliding_area,
-      pressure, // resultant [N]
-      shear_x,  // resultant, in global directions [N]
+      opening,      // times area [m3]
+      slip,         // times area [m3]
+      open_area,    // [m2]
+      sliding_area, // [m2]
+      pressure,     // resultant [N]
+      shear_x,      // resultant, in global directions [N]
       shear_y,
       shear_z,
       resistance,      // cohesion and friction [N]
@@ -29,15 +29,40 @@ namespace Voussoir
     };
   }
 
+  /** Relative motion along the surface [m]. */
   double
   slip_of(const ContactPoint &point);
 
+  /** Zero if closed [m]. */
   double
   opening_of(const ContactPoint &point);
 
-  /** Adds a point to the sums of its surface. */
+  /** Adds a point to the `n_quantities` sums of its surface. */
   void
   add_to_sums(const ContactPoint &point, double *sums);
+
+  /** What interfaces.csv says of a surface at a look. */
+  constexpr unsigned int                                n_surface_columns = 9;
+  constexpr std::array<const char *, n_surface_columns> surface_columns{
+    {"largest opening [mm]",
+     "mean opening [mm]",
+     "largest slip [mm]",
+     "mean slip [mm]",
+     "open area [m2]",
+     "sliding area [m2]",
+     "normal force [MN]",
+     "shear force [MN]",
+     "sliding safety [-]"}};
+
+  /**
+   * The numbers of these columns.
+   *
+   * @param sums    of the surface over all ranks
+   * @param largest opening and slip of its points [m]
+   * @param area    of the surface [m2]
+   */
+  std::array<double, n_surface_columns>
+  surface_values(const double *sums, const double *largest, const double area);
 
   /**
    * Safety of a block now.

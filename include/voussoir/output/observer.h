@@ -7,6 +7,7 @@
 #include <voussoir/fem/internal_force.h>
 #include <voussoir/fem/state.h>
 #include <voussoir/materials/material.h>
+#include <voussoir/output/names.h>
 
 #include <nlohmann/json.hpp>
 
@@ -29,10 +30,12 @@ namespace Voussoir
     double                                          time_step; // [s]
     double                                          end_time;  // [s]
 
-    /** Motion of a rigid base (displacement, velocity, acceleration), to which
-     *  the state is relative; zero otherwise. */
+    /** Motion of a rigid base (displacement, velocity, acceleration [m, m/s,
+     *  m/s2]) at a time [s], to which the state is relative; zero otherwise. */
     std::function<std::array<dealii::Tensor<1, 3>, 3>(const double)>
-      base_motion;
+                base_motion;
+    bool        relative_to_base; // whether there is one
+    ResultNames names;
   };
 
   /**
@@ -47,12 +50,21 @@ namespace Voussoir
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 
-    /** Refuses entries that do not fit the model. */
+    /** Refuses entries that do not fit the model with a UserError. */
     virtual void
     check(const ObservedModel &model) const = 0;
 
-    /** @p restarted: continue the files of a run that was interrupted at
-     *  @p start_time. */
+    /**
+     * Begins a run: nothing of an earlier one is left, be it finished or not,
+     * on this model or another. Not called if the run has no output folder.
+     *
+     * @param model      of which what is needed later must be copied; what it
+     *   refers to stays until the end of the run
+     * @param start_time of this run [s]
+     * @param restarted  whether to continue the files of a run that was
+     *   interrupted at the start time; `load` and the values of the checkpoint
+     *   follow
+     */
     virtual void
     prepare(const ObservedModel &model,
             const double         start_time,

@@ -23,7 +23,8 @@ namespace Voussoir
     void
     check(const ObservedModel &model) const;
 
-    /** @p restarted: continue the list of a run that was interrupted. */
+    /** Begins a new list. @p restarted: with the pictures that a run which was
+     *  interrupted drew before @p start_time [s]. */
     void
     prepare(const ObservedModel &model,
             const double         start_time,

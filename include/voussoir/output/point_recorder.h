@@ -6,30 +6,48 @@
 
 namespace Voussoir
 {
-  /** Number of the point of this name; -1 for no name. @p place says where it
-   *  was read, for the message when there is no such point. */
-  int
-  find_point(const std::string             &name,
-             const std::vector<NamedPoint> &points,
-             const std::string             &place);
-
   /** Displacement, velocity and acceleration of a point [m, m/s, m/s2]. */
   using PointMotion = std::array<dealii::Tensor<1, 3>, 3>;
 
   /**
-   * Records the absolute motion of points. Velocity and acceleration of a step
-   * need the half steps before and after it, so they come one step late.
+   * What observers of points have in common: the entries that name the points,
+   * and one of them as a reference, and the record of their absolute motion.
+   * Velocity and acceleration of a step need the half steps before and after
+   * it, so they come one step late.
    */
   class PointRecorder
   {
   public:
-    /** Refuses points outside the mesh; @p place names the entry. */
-    PointRecorder(const ObservedModel           &model,
-                  const std::vector<NamedPoint> &points,
-                  const std::string             &place,
-                  const double                   interval);
+    /**
+     * @param section         of the parameter file
+     * @param reference_entry name of the entry that names the reference
+     */
+    PointRecorder(const std::string &section,
+                  const std::string &reference_entry);
 
-    /** To be called after each step. */
+    /** Adds the entries "Points" and that of the reference. */
+    void
+    declare_parameters(dealii::ParameterHandler &prm,
+                       const std::string        &help_of_reference);
+
+    /** Refuses points outside the mesh and a reference that is none of them.
+     *  @return number of points */
+    std::size_t
+    check(const ObservedModel &model) const;
+
+    /** Starts a new record. @p interval between two lines [s]. */
+    void
+    prepare(const ObservedModel &model, const double interval);
+
+    /** In the order of the entry. */
+    const std::vector<NamedPoint> &
+    points() const;
+
+    /** Number of the reference point; -1 for none. */
+    int
+    reference() const;
+
+    /** To be called for the initial state and after each step. */
     void
     observe(const State &state);
 
@@ -39,8 +57,8 @@ namespace Voussoir
 
     struct Line
     {
-      double                   time; // [s]
-      std::vector<PointMotion> points;
+      double                   time;   // [s]
+      std::vector<PointMotion> points; // absolute
     };
 
     /** The lines recorded since the last call, on all ranks, which must call
@@ -49,14 +67,27 @@ namespace Voussoir
     take();
 
   private:
-    const ObservedModel model;
-    const unsigned int  n_points;
-    const PointWeights  values;
-    const Schedule      schedule;
+    /** The points as the entries have them, and the number of the reference. */
+    std::pair<std::vector<NamedPoint>, int>
+    parse() const;
 
-    bool                              has_last = false;
-    std::vector<dealii::Tensor<1, 3>> last_displacement, last_velocity;
-    std::vector<double>               shares, times;
+    const std::string place, reference_entry, reference_place;
+    std::string       points_text, reference_name;
+
+    /** A record from its beginning. */
+    struct Record
+    {
+      std::unique_ptr<const ObservedModel> model;
+      std::unique_ptr<const PointWeights>  weights;
+      Schedule                             schedule;
+      std::vector<NamedPoint>              points;
+      int                                  reference = -1; // none
+
+      bool                              has_last = false;
+      std::vector<dealii::Tensor<1, 3>> last_displacement, last_velocity;
+      std::vector<double>               shares, times;
+    };
+    Record record;
   };
 } // namespace Voussoir
 

@@ -32,17 +32,19 @@ namespace Voussoir
    */
   struct SectionLine
   {
-    /** @param faces the upstream and the downstream faces */
+    /** Throws UserError where there is no such line.
+     *  @param faces the upstream and the downstream faces
+     *  @param place names the entry with the request */
     SectionLine(const ObservedModel                           &model,
                 const SectionRequest                          &request,
                 const std::array<std::vector<FaceCorners>, 2> &faces,
                 const std::string                             &place);
 
     std::string          name;
-    dealii::Point<3>     upstream; // its point on the face [m]
-    dealii::Tensor<1, 3> normal;   // horizontal, pointing upstream
-    dealii::Tensor<1, 3> arch;     // horizontal tangent, z x normal
-    double               thickness;
+    dealii::Point<3>     upstream;  // its point on the face [m]
+    dealii::Tensor<1, 3> normal;    // horizontal, pointing upstream
+    dealii::Tensor<1, 3> arch;      // horizontal tangent, z x normal
+    double               thickness; // [m]
 
     /** An integration point of this rank. */
     struct LinePoint
@@ -52,8 +54,14 @@ namespace Voussoir
       double              weight;     // [m]
     };
     std::vector<LinePoint> points;
-  };
 
+    /** Throws a UserError with this reason. */
+    using Refuse = std::function<void(const std::string &)>;
+
+  private:
+    void
+    place_points(const Discretization &discretization, const Refuse &refuse);
+  };
 } // namespace Voussoir
 
 #endif

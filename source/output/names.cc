@@ -1,0 +1,103 @@
+#include <voussoir/base/mpi.h>
+#include <voussoir/constraints/contact.h>
+#include <voussoir/output/names.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** With numbers in their order: "block 2" comes before "block 10". */
+    std::vector<std::string>
+    sorted(std::vector<std::string> names)
+    {
+      std::sort(names.begin(),
+                names.end(),
+                [](const std::string &a, const std::string &b) {
+                  return strverscmp(a.c_str(), b.c_str()) < 0;
+                });
+      return names;
+    }
+  } // namespace
+
+
+  ResultNames::ResultNames(const std::vector<std::string> &material_names,
+                           const Grid                     &grid,
+                           const Contact                  *contact)
+    : materials(material_names)
+    , cell_sets(sorted(grid.cell_set_names()))
+    , face_sets(sorted(grid.face_set_names()))
+    , interfaces(contact != nullptr ? contact->surface_names() :
+                                      std::vector<std::string>())
+  {}
+
+
+  const std::vector<std::string> &
+  ResultNames::interface_states()
+  {
+    static const std::vector<std::string> states{"closed", "sliding", "open"};
+    return states;
+  }
+
+
+  nlohmann::json
+  ResultNames::json() const
+  {
+    nlohmann::json result{{"materials", materials},
+                          {"cell sets", cell_sets},
+                          {"face sets", face_sets}};
+    if (!interfaces.empty())
+      {
+        result["interfaces"]       = interfaces;
+        result["interface states"] = interface_states();
+      }
+    return result;
+  }
+
+
+  unsigned int
+  number_of(const std::string &name, const std::vector<std::string> &names)
+  {
+    const auto found = std::find(names.begin(), names.end(), name);
+    AssertThrow(found != names.end(), ExcInternalError());
+    return found - names.begin();
+  }
+
+
+  dealii::Vector<float>
+  smallest_cell_sets(const Grid &grid, const std::vector<std::string> &names)
+  {
+    const auto &triangulation = grid.triangulation();
+
+    std::vector<unsigned long long>        sizes(names.size());
+    std::vector<std::vector<unsigned int>> sets_of_cell(
+      triangulation.n_active_cells());
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (unsigned int set = 0; set < names.size(); ++set)
+          if (grid.in_cell_set(cell, names[set]))
+            {
+              ++sizes[set];
+              sets_of_cell[cell->active_cell_index()].push_back(set);
+            }
+    sizes = sum_over_ranks(sizes, grid.communicator());
+
+    dealii::Vector<float> result(sets_of_cell.size());
+    for (unsigned int cell = 0; cell < sets_of_cell.size(); ++cell)
+      {
+        const auto &sets = sets_of_cell[cell];
+        const auto  smallest =
+          std::min_element(sets.begin(),
+                           sets.end(),
+                           [&](const unsigned int a, const unsigned int b) {
+                             return sizes[a] < sizes[b];
+                           });
+        result[cell] = smallest == sets.end() ? -1. : *smallest;
+      }
+    return result;
+  }
+} // namespace Voussoir

@@ -22,14 +22,14 @@ namespace Voussoir
     using Elasticity = std::array<SymmetricTensor<2, 3>, 6>;
 
     Elasticity
-    elasticity_of(const Material &material)
+    elasticity_of(const Material &material, const double factor)
     {
       Elasticity result;
       for (unsigned int i = 0; i < 6; ++i)
         {
           SymmetricTensor<2, 3> strain;
           strain.access_raw_entry(i) = i < 3 ? 1. : 0.5;
-          result[i] = material.stiffness_scale * material.stress(strain);
+          result[i]                  = factor * material.stress(strain);
         }
       return result;
     }
@@ -178,8 +178,9 @@ namespace Voussoir
     matrix.reinit(pattern);
 
     std::vector<Elasticity> elasticities;
-    for (const Material *material : materials)
-      elasticities.push_back(elasticity_of(*material));
+    for (unsigned int m = 0; m < materials.size(); ++m)
+      elasticities.push_back(
+        elasticity_of(*materials[m], internal_force.factors_of(m).stress));
     const TrilinearCell trilinear;
     FullMatrix<double>  cell_matrix(24);
     for_each_trilinear_cell(

@@ -1,7 +1,6 @@
 #include <voussoir/analysis/eigensolver.h>
 #include <voussoir/analysis/elastic_solver.h>
 #include <voussoir/analysis/modes.h>
-#include <voussoir/analysis/scaled_materials.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/text.h>
@@ -352,8 +351,8 @@ namespace Voussoir
   {
     const Discretization &discretization = model.discretization;
     const Timer           clock;
-    const ScaledMaterials as_given(model.materials,
-                                   [](const Material &) { return 1.; });
+    const InternalForce   moduli_as_given = model.internal_force.with(
+      std::vector<StiffnessFactors>(model.materials.size()));
 
     const auto held = among(model.material_names, parameters.held_materials);
     const AffineConstraints<double> constraints =
@@ -362,16 +361,14 @@ namespace Voussoir
         [&](const Grid::Cell &cell) {
           return held[model.material_of_cell(cell)];
         });
-    const ElasticSolver solver(
-      discretization,
-      model.internal_force,
-      std::vector<const Material *>(model.materials.begin(),
-                                    model.materials.end()),
-      model.material_of_cell,
-      constraints,
-      nullptr);
-    const Vector    mass = structural_mass(model, parameters, solver);
-    const ModalMass modal_mass(mass,
+    const ElasticSolver solver(discretization,
+                               moduli_as_given,
+                               model.materials,
+                               model.material_of_cell,
+                               constraints,
+                               nullptr);
+    const Vector        mass = structural_mass(model, parameters, solver);
+    const ModalMass     modal_mass(mass,
                                parameters.water ? &model.terms : nullptr,
                                solver);
 

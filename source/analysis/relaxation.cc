@@ -18,7 +18,7 @@ namespace Voussoir
 
 
   Relaxation::Relaxation(const Discretization            &discretization,
-                         InternalForce                   &internal_force,
+                         const InternalForce             &internal_force,
                          const LumpedMass                &mass_of_run,
                          const NodalTerms                &terms_of_run,
                          const AffineConstraints<double> &constraints,
@@ -99,10 +99,11 @@ namespace Voussoir
 
 
   unsigned int
-  Relaxation::find_equilibrium(Vector       &displacement,
-                               const Vector &force,
-                               const double  tolerance,
-                               Log          &log)
+  Relaxation::find_equilibrium(Vector         &displacement,
+                               MaterialMemory &memory,
+                               const Vector   &force,
+                               const double    tolerance,
+                               Log            &log)
   {
     loaded.displacement = displacement;
     loaded.force        = force;
@@ -111,6 +112,7 @@ namespace Voussoir
     double frequency = 0., mass_coefficient = 0.;
     auto   scheme = std::make_unique<CentralDifference>(make_scheme(0.));
     State  state  = scheme->state_at_rest();
+    state.material_memory = std::move(memory);
     if (contact != nullptr)
       contact->start(state);
     std::array<Vector, 3> velocity;
@@ -139,6 +141,7 @@ namespace Voussoir
         if (moving <= tolerance * largest_amount(state.displacement))
           {
             displacement = state.displacement;
+            memory       = std::move(state.material_memory);
             if (contact != nullptr)
               contact->forget_approach();
             return steps;

@@ -1,6 +1,5 @@
 #include <voussoir/analysis/elastic_solver.h>
 #include <voussoir/analysis/relaxation.h>
-#include <voussoir/analysis/scaled_materials.h>
 #include <voussoir/analysis/static_state.h>
 #include <voussoir/fem/nodal_values.h>
 
@@ -149,7 +148,8 @@ namespace Voussoir
      */
     bool
     correct_by_initial_stresses(const ElasticSolver &solver,
-                                InternalForce       &internal_force,
+                                const InternalForce &internal_force,
+                                MaterialMemory      &memory,
                                 const NodalTerms    *springs,
                                 Vector              &displacement,
                                 const Vector        &force,
@@ -161,20 +161,17 @@ namespace Voussoir
       solver.clear_held(goal);
       for (unsigned int i = 0; i < max_corrections; ++i)
         {
-          internal_force.uses_memory = true;
-          internal_force.respond(residual, displacement);
+          internal_force.respond(residual, displacement, memory);
           if (springs != nullptr)
             springs->add_to(residual, displacement, 0.);
           residual.sadd(-1., 1., force);
           solver.clear_held(residual);
           if (residual.l2_norm() <= tolerance * goal.l2_norm())
             return true;
-          internal_force.uses_memory = false;
-          change                     = 0.;
+          change = 0.;
           iterations += solver.solve(change, residual, 0.01);
           displacement += change;
         }
-      internal_force.uses_memory = true;
       return false;
     }
 
@@ -190,11 +187,13 @@ namespace Voussoir
     {
       const Discretization               &discretization = model.discretization;
       const std::map<std::string, Load *> load_of(loads.begin(), loads.end());
-      const ScaledMaterials               static_moduli(model.materials,
-                                          [](const Material &material) {
-                                            return material.static_factor;
-                                          });
-      const Timer                         clock;
+      const InternalForce internal_force = model.internal_force.with(
+        for_each_material(model.materials, [](const Material &material) {
+          return StiffnessFactors{material.static_factor,
+                                  material.static_factor,
+                                  0.};
+        }));
+      const Timer                     clock;
       const bool springs = parameters.supports == "springs";
       const AffineConstraints<double> constraints =
         discretization.make_constraints(
@@ -203,19 +202,18 @@ namespace Voussoir
                       parameters.supports == "roller"));
       std::unique_ptr<ElasticSolver> solver;
       std::unique_ptr<Relaxation>    relaxation;
-      const bool has_memory = model.internal_force.has_memory();
+      const bool                     has_memory = internal_force.has_memory();
       if (model.contact == nullptr)
-        solver = std::make_unique<ElasticSolver>(
-          discretization,
-          model.internal_force,
-          std::vector<const Material *>(model.materials.begin(),
-                                        model.materials.end()),
-          model.material_of_cell,
-          constraints,
-          springs ? &model.terms : nullptr);
+        solver =
+          std::make_unique<ElasticSolver>(discretization,
+                                          internal_force,
+                                          model.materials,
+                                          model.material_of_cell,
+                                          constraints,
+                                          springs ? &model.terms : nullptr);
       if (model.contact != nullptr || has_memory)
         relaxation = std::make_unique<Relaxation>(discretization,
-                                                  model.internal_force,
+                                                  internal_force,
                                                   model.mass,
                                                   model.terms,
                                                   constraints,
@@ -227,10 +225,11 @@ namespace Voussoir
                duration_text(clock.wall_time()));
 
       InitialState state;
-      state.displacement = discretization.create_vector();
-      state.temperature  = state.displacement;
-      state.force        = state.displacement;
-      Vector applied     = state.displacement; // loads so far
+      state.displacement    = discretization.create_vector();
+      state.temperature     = state.displacement;
+      state.force           = state.displacement;
+      Vector applied        = state.displacement; // loads so far
+      state.material_memory = internal_force.new_memory();
       for (const auto &stage : parameters.stage_names())
         {
           const Timer    stage_clock;
@@ -246,35 +245,36 @@ namespace Voussoir
               applied += force;
             }
           Vector right_side = applied;
-          model.internal_force.add_thermal_force(right_side, state.temperature);
+          internal_force.add_thermal_force(right_side, state.temperature);
           // a state with cracks goes on from where it is
-          unsigned int iterations          = 0;
-          model.internal_force.uses_memory = false;
-          const bool elastic_so_far =
-            Utilities::MPI::max(model.internal_force.dissipated(),
+          unsigned int   iterations = 0;
+          MaterialMemory elastic; // none
+          const bool     elastic_so_far =
+            Utilities::MPI::max(state.material_memory.dissipated(),
                                 discretization.grid.communicator()) == 0.;
           if (!solver)
-            iterations = relaxation->find_equilibrium(state.displacement,
-                                                      right_side,
-                                                      parameters.rest,
-                                                      log);
+            iterations = relaxation->find_equilibrium(
+              state.displacement, elastic, right_side, parameters.rest, log);
           else if (elastic_so_far)
             iterations = solver->solve(state.displacement,
                                        right_side,
                                        parameters.tolerance);
           if (has_memory)
             {
-              model.internal_force.uses_memory = true;
-              model.internal_force.set_static_state(state.displacement,
-                                                    state.temperature);
-              model.internal_force.respond(state.force, state.displacement);
-              if (Utilities::MPI::max(model.internal_force.dissipated(),
+              internal_force.set_static_state(state.displacement,
+                                              state.temperature,
+                                              state.material_memory);
+              internal_force.respond(state.force,
+                                     state.displacement,
+                                     state.material_memory);
+              if (Utilities::MPI::max(state.material_memory.dissipated(),
                                       discretization.grid.communicator()) > 0.)
                 {
                   log.line("  cracks or yields");
                   if (!solver || !correct_by_initial_stresses(
                                    *solver,
-                                   model.internal_force,
+                                   internal_force,
+                                   state.material_memory,
                                    springs ? &model.terms : nullptr,
                                    state.displacement,
                                    right_side,
@@ -282,6 +282,7 @@ namespace Voussoir
                                    iterations))
                     log.line("  by damped motion at rest again after ",
                              relaxation->find_equilibrium(state.displacement,
+                                                          state.material_memory,
                                                           right_side,
                                                           parameters.rest,
                                                           log),
@@ -290,7 +291,9 @@ namespace Voussoir
             }
 
           // f(u) minus loads and contact is what the supports bring
-          model.internal_force.respond(state.force, state.displacement);
+          internal_force.respond(state.force,
+                                 state.displacement,
+                                 state.material_memory);
           state.force -= right_side;
           if (model.contact != nullptr)
             model.contact->add_forces(-1., state.force);
@@ -331,10 +334,12 @@ namespace Voussoir
 
     // the same state in the dynamic model
     model.internal_force.set_static_state(state.displacement,
-                                          state.temperature);
-    model.internal_force.respond(state.force, state.displacement);
-    for (PointHistory &history : model.internal_force.histories)
-      history.mark_start();
+                                          state.temperature,
+                                          state.material_memory);
+    model.internal_force.respond(state.force,
+                                 state.displacement,
+                                 state.material_memory);
+    state.material_memory.set_dissipated(0.);
     model.terms.add_to(state.force, state.displacement, 0.);
     if (model.contact != nullptr)
       {

@@ -90,33 +90,6 @@ namespace Voussoir
     }
 
 
-    // The moduli hold at the reference frequency of the damping.
-    std::vector<const Material *>
-    scaled_materials(Case &parameters, const Damping &damping)
-    {
-      for (auto &item : parameters.materials.objects)
-        {
-          Material    &material     = *item.second;
-          const double factor       = material.damping_factor();
-          material.stiffness_scale  = damping.stiffness_scale(factor);
-          material.filter_stiffness = damping.filter_stiffness(factor);
-        }
-      return parameters.material_list();
-    }
-
-
-    template <typename Function>
-    std::vector<double>
-    for_each_material(const std::vector<const Material *> &materials,
-                      const Function                      &function)
-    {
-      std::vector<double> values;
-      for (const Material *material : materials)
-        values.push_back(function(*material));
-      return values;
-    }
-
-
     double
     driven_density(const Material &material)
     {
@@ -138,7 +111,7 @@ namespace Voussoir
     , water_mesh(take_water(parameters.reservoir, coarse_mesh))
     , coarse_materials(parameters.material_of_coarse_cells(coarse_mesh))
     , damping(parameters.damping)
-    , materials(scaled_materials(parameters, damping))
+    , materials(parameters.material_list())
     , grid(
         coarse_mesh,
         parameters.grid,
@@ -162,7 +135,12 @@ namespace Voussoir
            [this](const Grid::Cell &cell) { return material_of(cell); })
     , internal_force(discretization,
                      std::vector<const CellKernel *>(materials.begin(),
-                                                     materials.end()))
+                                                     materials.end()),
+                     for_each_material(materials,
+                                       [this](const Material &m) {
+                                         return damping.stiffness_factors(
+                                           m.damping_factor());
+                                       }))
     , boundary(
         discretization,
         parameters.boundaries.absorbing,
@@ -206,7 +184,7 @@ namespace Voussoir
     , model{discretization,
             materials,
             [this](const Grid::Cell &cell) { return material_of(cell); },
-            internal_force,
+            state.material_memory,
             initial,
             reservoir.get(),
             contact.get(),
@@ -240,7 +218,7 @@ namespace Voussoir
     for (Projection *projection : projections)
       projection->start(state);
     energy.evaluate(state);
-    last_good = state;
+    keep_last_good();
   }
 
 
@@ -328,7 +306,7 @@ namespace Voussoir
             energy.evaluate(state);
             if (const std::string reason = energy.alarm(); !reason.empty())
               abort_run(reason);
-            last_good = state;
+            keep_last_good();
             attend(); // progress, checkpoint, stop on request
           }
       }
@@ -344,6 +322,15 @@ namespace Voussoir
     TimerOutput::Scope scope(timer, "output");
     for (const auto &observer : parameters.observers)
       observer.second->observe(state);
+  }
+
+
+  void
+  Simulation::keep_last_good()
+  {
+    last_good.displacement = state.displacement;
+    last_good.velocity     = state.velocity;
+    last_good.time         = state.time;
   }
 
 

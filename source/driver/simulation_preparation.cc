@@ -11,19 +11,6 @@ namespace Voussoir
 {
   using namespace dealii;
 
-  namespace
-  {
-    std::vector<Material *>
-    changeable_materials(const Case &parameters)
-    {
-      std::vector<Material *> list;
-      for (const auto &material : parameters.materials.objects)
-        list.push_back(material.second.get());
-      return list;
-    }
-  } // namespace
-
-
   unsigned int
   Simulation::material_of(const Grid::Cell &cell) const
   {
@@ -123,11 +110,15 @@ namespace Voussoir
   Simulation::find_initial_state()
   {
     if (parameters.static_state.stage_names().empty() || options.validate)
-      return {};
+      {
+        InitialState state;
+        state.material_memory = internal_force.new_memory();
+        return state;
+      }
     TimerOutput::Scope scope(timer, "static state");
     return find_static_state({discretization,
                               internal_force,
-                              changeable_materials(parameters),
+                              materials,
                               [this](const Grid::Cell &cell) {
                                 return material_of(cell);
                               },
@@ -152,7 +143,7 @@ namespace Voussoir
       find_modes({discretization,
                   internal_force,
                   parameters.material_names(),
-                  changeable_materials(parameters),
+                  materials,
                   [this](const Grid::Cell &cell) { return material_of(cell); },
                   parameters.boundaries,
                   terms},
@@ -214,10 +205,7 @@ namespace Voussoir
     std::vector<double> density;
     for (const Material *material : materials)
       density.push_back(material->inertial_density());
-    const ElementSteps elements(
-      discretization,
-      std::vector<const CellKernel *>(materials.begin(), materials.end()),
-      density);
+    const ElementSteps elements(discretization, internal_force, density);
     elements.print(text);
     log(text.str());
 

@@ -24,15 +24,19 @@ namespace Voussoir
              discretization.dof_handler.n_dofs(),
              " of degree ",
              discretization.degree);
-    // longest edge of the cells of each material
-    std::vector<double> longest(materials.size(), 0.);
+    // longest edge and widest crack band of the cells of each material
+    std::vector<double> longest(materials.size(), 0.), widest(longest);
     for (const auto &cell : grid.triangulation().active_cell_iterators())
       if (cell->is_locally_owned())
-        for (unsigned int line = 0; line < 12; ++line)
-          {
-            double &edge = longest[material_of(cell)];
-            edge         = std::max(edge, cell->line(line)->diameter());
-          }
+        {
+          const unsigned int m = material_of(cell);
+          for (unsigned int line = 0; line < 12; ++line)
+            longest[m] = std::max(longest[m], cell->line(line)->diameter());
+          widest[m] =
+            std::max(widest[m],
+                     PointHistory::element_length_of(cell,
+                                                     discretization.degree));
+        }
     for (unsigned int m = 0; m < materials.size(); ++m)
       {
         const ElasticConstants c = materials[m]->elastic_constants();
@@ -48,12 +52,7 @@ namespace Voussoir
              << c.s_wave_speed() * discretization.degree / (8. * edge)
              << " Hz with 8 nodes per wavelength";
         log.line(text.str());
-        double band = 0.; // widest of the material
-        for (const auto &cell : internal_force.histories[m].cells())
-          band = std::max(band,
-                          internal_force.histories[m].element_length(
-                            cell.second.batch)[cell.second.lane]);
-        band = Utilities::MPI::max(band, grid.communicator());
+        const double band = Utilities::MPI::max(widest[m], grid.communicator());
         if (const std::string remark = materials[m]->remark(band);
             !remark.empty())
           log.line("  note: ", remark);

@@ -31,9 +31,9 @@ namespace Voussoir
       for (auto &[group_name, group] : observer->checkpoint_values())
         values[name + "/" + group_name] = std::move(group);
     for (unsigned int m = 0; m < materials.size(); ++m)
-      if (materials[m]->n_history() > 0)
+      if (PointHistory *history = state.material_memory.of(m))
         values["material " + parameters.materials.objects[m].first] =
-          internal_force.histories[m].checkpoint_values();
+          history->checkpoint_values();
     if (contact)
       values["contact"] = contact->checkpoint_values();
     if (reservoir)
@@ -112,14 +112,15 @@ namespace Voussoir
   std::vector<double>
   Simulation::accumulated_work() const
   {
-    return sum_over_ranks(std::vector<double>{terms.work_of_forces,
-                                              terms.loss_in_dashpots,
-                                              scheme.work_of_base,
-                                              scheme.work_of_projections,
-                                              scheme.loss_by_mass,
-                                              reservoir ? reservoir->loss : 0.,
-                                              internal_force.dissipated()},
-                          grid.communicator());
+    return sum_over_ranks(
+      std::vector<double>{terms.work_of_forces,
+                          terms.loss_in_dashpots,
+                          scheme.work_of_base,
+                          scheme.work_of_projections,
+                          scheme.loss_by_mass,
+                          reservoir ? reservoir->loss : 0.,
+                          state.material_memory.dissipated()},
+      grid.communicator());
   }
 
 
@@ -163,11 +164,10 @@ namespace Voussoir
     state.time = header.at("time");
     state.step = header.at("step");
     energy.load(header.at("energy"));
-    for (PointHistory &history : internal_force.histories)
-      {
-        history.load();
-        history.dissipated = 0.;
-      }
+    for (unsigned int m = 0; m < materials.size(); ++m)
+      if (PointHistory *history = state.material_memory.of(m))
+        history->load();
+    state.material_memory.set_dissipated(0.);
     if (contact)
       contact->load(header.at("contact"));
     for (const auto &[name, observer] : parameters.observers)
@@ -183,7 +183,7 @@ namespace Voussoir
         scheme.loss_by_mass        = work[4];
         if (reservoir)
           reservoir->loss = work[5];
-        internal_force.histories[0].dissipated = work[6];
+        state.material_memory.set_dissipated(work[6]);
       }
     // the free field has no checkpoint: it is marched again, which is cheap
     for (unsigned long long step = 0; step < state.step; ++step)

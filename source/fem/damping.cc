@@ -219,6 +219,13 @@ namespace Voussoir
   }
 
 
+  StiffnessFactors
+  Damping::stiffness_factors(const double factor) const
+  {
+    return {stiffness_scale(factor), 1., filter_stiffness(factor)};
+  }
+
+
   void
   Damping::print(std::ostream &out) const
   {

@@ -6,13 +6,14 @@ namespace Voussoir
 
   namespace
   {
-    // Calls run(material, begin, end) for the runs of batches of one material.
+    // Calls run(material, cells) for the runs of batches of one material.
     template <typename Run>
     void
-    for_each_run(const std::vector<unsigned int> &material_of_batch,
-                 const unsigned int               first,
-                 const unsigned int               last,
-                 const Run                       &run)
+    for_each_run(const Discretization::MatrixFree &matrix_free,
+                 const std::vector<unsigned int>  &material_of_batch,
+                 const unsigned int                first,
+                 const unsigned int                last,
+                 const Run                        &run)
     {
       for (unsigned int begin = first; begin < last;)
         {
@@ -20,7 +21,7 @@ namespace Voussoir
           while (end < last &&
                  material_of_batch[end] == material_of_batch[begin])
             ++end;
-          run(material_of_batch[begin], begin, end);
+          run(material_of_batch[begin], CellRange{matrix_free, begin, end});
           begin = end;
         }
     }
@@ -32,8 +33,8 @@ namespace Voussoir
                          const Vector &,
                          const std::pair<unsigned int, unsigned int> &)>;
 
-    // What a cell loop does: run(matrix_free, dst, src, material, begin, end)
-    // for the runs of batches of one material.
+    // What a cell loop does: run(material, cells, dst, src) for the runs of
+    // batches of one material.
     template <typename Run>
     CellLoop
     on_runs(const std::vector<unsigned int> &material_of_batch, const Run &run)
@@ -42,13 +43,12 @@ namespace Voussoir
                  Vector                                      &dst,
                  const Vector                                &src,
                  const std::pair<unsigned int, unsigned int> &range) {
-        for_each_run(material_of_batch,
+        for_each_run(matrix_free,
+                     material_of_batch,
                      range.first,
                      range.second,
-                     [&](const unsigned int material,
-                         const unsigned int begin,
-                         const unsigned int end) {
-                       run(matrix_free, dst, src, material, begin, end);
+                     [&](const unsigned int material, const CellRange &cells) {
+                       run(material, cells, dst, src);
                      });
       };
     }
@@ -56,12 +56,25 @@ namespace Voussoir
 
 
   InternalForce::InternalForce(const Discretization &discretization,
-                               const std::vector<const CellKernel *> &kernels)
+                               const std::vector<const CellKernel *> &kernels,
+                               const std::vector<StiffnessFactors>   &factors)
     : discretization(discretization)
     , kernels(kernels)
+    , factors(factors)
+  {}
+
+
+  InternalForce
+  InternalForce::with(const std::vector<StiffnessFactors> &other_factors) const
   {
-    for (unsigned int m = 0; m < kernels.size(); ++m)
-      histories.emplace_back(discretization, m, kernels[m]->n_history());
+    return {discretization, kernels, other_factors};
+  }
+
+
+  const StiffnessFactors &
+  InternalForce::factors_of(const unsigned int material) const
+  {
+    return factors[material];
   }
 
 
@@ -82,99 +95,6 @@ namespace Voussoir
   }
 
 
-  void
-  InternalForce::sweep(Vector          &force,
-                       const Vector    &displacement,
-                       const Vector    *memory,
-                       const Vector    &undamped,
-                       const double     time_step,
-                       const RangeWork &before,
-                       const RangeWork &after)
-  {
-    const auto run = [&](const auto        &matrix_free,
-                         Vector            &dst,
-                         const Vector      &src,
-                         const unsigned int material,
-                         const unsigned int begin,
-                         const unsigned int end) {
-      if (uses_memory && !histories[material].empty())
-        kernels[material]->add_response(matrix_free,
-                                        dst,
-                                        src,
-                                        memory,
-                                        undamped,
-                                        begin,
-                                        end,
-                                        histories[material],
-                                        time_step);
-      else
-        kernels[material]->add_force(matrix_free, dst, src, memory, begin, end);
-    };
-    const CellLoop cells = on_runs(discretization.material_of_batch, run);
-
-    // The library overlaps the exchange of one source vector with the cell
-    // work; the others are exchanged beforehand.
-    const bool reads_undamped =
-      &undamped != &displacement && uses_memory && has_memory();
-    if (reads_undamped)
-      undamped.update_ghost_values();
-    if (memory == nullptr)
-      discretization.matrix_free.cell_loop(
-        cells, force, displacement, before, after);
-    else
-      {
-        before(0, force.locally_owned_size());
-        memory->update_ghost_values();
-        discretization.matrix_free.cell_loop(
-          cells, force, displacement, {}, after);
-        memory->zero_out_ghost_values();
-      }
-    if (reads_undamped)
-      undamped.zero_out_ghost_values();
-  }
-
-
-  void
-  InternalForce::apply(Vector       &force,
-                       const Vector &displacement,
-                       const Vector *memory) const
-  {
-    if (memory != nullptr)
-      memory->update_ghost_values();
-    const auto run = [&](const auto        &matrix_free,
-                         Vector            &dst,
-                         const Vector      &src,
-                         const unsigned int material,
-                         const unsigned int begin,
-                         const unsigned int end) {
-      kernels[material]->add_force(matrix_free, dst, src, memory, begin, end);
-    };
-    discretization.matrix_free.cell_loop(
-      on_runs(discretization.material_of_batch, run),
-      force,
-      displacement,
-      true);
-    if (memory != nullptr)
-      memory->zero_out_ghost_values();
-  }
-
-
-  void
-  InternalForce::respond(Vector &force, const Vector &displacement)
-  {
-    sweep(force,
-          displacement,
-          nullptr,
-          displacement,
-          // the laws follow at once
-          std::numeric_limits<double>::max(),
-          [&](const unsigned int begin, const unsigned int end) {
-            std::fill(force.begin() + begin, force.begin() + end, 0.);
-          },
-          {});
-  }
-
-
   bool
   InternalForce::has_memory() const
   {
@@ -184,31 +104,132 @@ namespace Voussoir
   }
 
 
+  MaterialMemory
+  InternalForce::new_memory() const
+  {
+    std::vector<unsigned int> widths;
+    for (const CellKernel *kernel : kernels)
+      widths.push_back(kernel->n_history());
+    return {discretization, widths};
+  }
+
+
   void
-  InternalForce::set_static_state(const Vector &displacement,
-                                  const Vector &temperature)
+  InternalForce::sweep(Vector          &force,
+                       const Vector    &displacement,
+                       const Vector    *damping_memory,
+                       const Vector    &undamped,
+                       MaterialMemory  &memory,
+                       const double     time_step,
+                       const RangeWork &before,
+                       const RangeWork &after) const
+  {
+    const auto run = [&](const unsigned int material,
+                         const CellRange   &cells,
+                         Vector            &dst,
+                         const Vector      &src) {
+      if (PointHistory *history = memory.of(material))
+        kernels[material]->add_response(cells,
+                                        factors[material],
+                                        dst,
+                                        src,
+                                        damping_memory,
+                                        undamped,
+                                        *history,
+                                        time_step);
+      else
+        kernels[material]->add_force(
+          cells, factors[material], dst, src, damping_memory);
+    };
+    const CellLoop loop = on_runs(discretization.material_of_batch, run);
+
+    // The library overlaps the exchange of one source vector with the cell
+    // work; the others are exchanged beforehand.
+    const bool reads_undamped = &undamped != &displacement && !memory.empty();
+    if (reads_undamped)
+      undamped.update_ghost_values();
+    if (damping_memory == nullptr)
+      discretization.matrix_free.cell_loop(
+        loop, force, displacement, before, after);
+    else
+      {
+        before(0, force.locally_owned_size());
+        damping_memory->update_ghost_values();
+        discretization.matrix_free.cell_loop(
+          loop, force, displacement, {}, after);
+        damping_memory->zero_out_ghost_values();
+      }
+    if (reads_undamped)
+      undamped.zero_out_ghost_values();
+  }
+
+
+  void
+  InternalForce::apply(Vector       &force,
+                       const Vector &displacement,
+                       const Vector *damping_memory) const
+  {
+    if (damping_memory != nullptr)
+      damping_memory->update_ghost_values();
+    const auto run = [&](const unsigned int material,
+                         const CellRange   &cells,
+                         Vector            &dst,
+                         const Vector      &src) {
+      kernels[material]->add_force(
+        cells, factors[material], dst, src, damping_memory);
+    };
+    discretization.matrix_free.cell_loop(
+      on_runs(discretization.material_of_batch, run),
+      force,
+      displacement,
+      true);
+    if (damping_memory != nullptr)
+      damping_memory->zero_out_ghost_values();
+  }
+
+
+  void
+  InternalForce::respond(Vector         &force,
+                         const Vector   &displacement,
+                         MaterialMemory &memory) const
+  {
+    sweep(force,
+          displacement,
+          nullptr,
+          displacement,
+          memory,
+          // the laws follow at once
+          std::numeric_limits<double>::max(),
+          [&](const unsigned int begin, const unsigned int end) {
+            std::fill(force.begin() + begin, force.begin() + end, 0.);
+          },
+          {});
+  }
+
+
+  void
+  InternalForce::set_static_state(const Vector   &displacement,
+                                  const Vector   &temperature,
+                                  MaterialMemory &memory) const
   {
     if (displacement.size() == 0)
       return;
     displacement.update_ghost_values();
     temperature.update_ghost_values();
-    for_each_run(discretization.material_of_batch,
+    for (unsigned int m = 0; m < kernels.size(); ++m)
+      if (PointHistory *history = memory.of(m))
+        history->make_static_strains();
+    for_each_run(discretization.matrix_free,
+                 discretization.material_of_batch,
                  0,
                  discretization.matrix_free.n_cell_batches(),
-                 [&](const unsigned int material,
-                     const unsigned int begin,
-                     const unsigned int end) {
-                   PointHistory &history = histories[material];
-                   if (history.empty())
-                     return;
-                   if (!history.has_offset)
-                     history.make_offsets();
-                   kernels[material]->set_offset(discretization.matrix_free,
-                                                 history,
-                                                 displacement,
-                                                 temperature,
-                                                 begin,
-                                                 end);
+                 [&](const unsigned int material, const CellRange &cells) {
+                   if (PointHistory *history = memory.of(material))
+                     kernels[material]->set_static_state(cells,
+                                                         factors[material],
+                                                         *history,
+                                                         displacement,
+                                                         temperature);
                  });
     displacement.zero_out_ghost_values();
     temperature.zero_out_ghost_values();
@@ -219,13 +240,11 @@ namespace Voussoir
   InternalForce::add_thermal_force(Vector       &force,
                                    const Vector &temperature) const
   {
-    const auto run = [&](const auto        &matrix_free,
+    const auto run = [&](const unsigned int material,
+                         const CellRange   &cells,
                          Vector            &dst,
-                         const Vector      &src,
-                         const unsigned int material,
-                         const unsigned int begin,
-                         const unsigned int end) {
-      kernels[material]->add_thermal_force(matrix_free, dst, src, begin, end);
+                         const Vector      &src) {
+      kernels[material]->add_thermal_force(cells, factors[material], dst, src);
     };
     discretization.matrix_free.cell_loop(
       on_runs(discretization.material_of_batch, run), force, temperature);
@@ -234,22 +253,20 @@ namespace Voussoir
 
   double
   InternalForce::sum(
-    const std::vector<const Vector *>               &read,
-    const std::function<double(const unsigned int,
-                               const unsigned int,
-                               const unsigned int)> &evaluate) const
+    const std::vector<const Vector *> &read,
+    const std::function<double(const unsigned int, const CellRange &)>
+      &evaluate) const
   {
     for (const Vector *vector : read)
       if (!vector->has_ghost_elements())
         vector->update_ghost_values();
     double sum = 0.;
-    for_each_run(discretization.material_of_batch,
+    for_each_run(discretization.matrix_free,
+                 discretization.material_of_batch,
                  0,
                  discretization.matrix_free.n_cell_batches(),
-                 [&](const unsigned int material,
-                     const unsigned int begin,
-                     const unsigned int end) {
-                   sum += evaluate(material, begin, end);
+                 [&](const unsigned int material, const CellRange &cells) {
+                   sum += evaluate(material, cells);
                  });
     for (const Vector *vector : read)
       vector->zero_out_ghost_values();
@@ -258,66 +275,63 @@ namespace Voussoir
 
 
   double
-  InternalForce::stored_energy(const Vector &displacement,
-                               const Vector &u_static,
-                               const Vector &moved,
-                               const Vector &moved_before) const
+  InternalForce::stored_energy(const Vector         &displacement,
+                               const MaterialMemory &memory,
+                               const InitialState   &initial,
+                               const Vector         &moved,
+                               const Vector         &moved_before) const
   {
     std::vector<const Vector *> read{&displacement, &moved, &moved_before};
-    if (u_static.size() > 0)
-      read.push_back(&u_static);
-    return sum(read,
-               [&](const unsigned int material,
-                   const unsigned int begin,
-                   const unsigned int end) {
-                 const CellKernel   &kernel  = *kernels[material];
-                 const PointHistory &history = histories[material];
-                 double              energy =
-                   0.5 * kernel.work(discretization.matrix_free,
-                                     moved,
-                                     moved_before,
-                                     begin,
-                                     end,
-                                     history,
-                                     CellKernel::Inelastic::not_at_all);
-                 if (!history.empty())
-                   energy += kernel.inelastic_energy(discretization.matrix_free,
-                                                     history,
-                                                     displacement,
-                                                     u_static,
-                                                     begin,
-                                                     end);
-                 return energy;
-               });
+    if (initial.displacement.size() > 0)
+      read.push_back(&initial.displacement);
+    return sum(read, [&](const unsigned int material, const CellRange &cells) {
+      const CellKernel   &kernel  = *kernels[material];
+      const PointHistory *history = memory.of(material);
+      double              energy  = 0.5 * kernel.work(cells,
+                                        factors[material],
+                                        moved,
+                                        moved_before,
+                                        history,
+                                        CellKernel::Inelastic::not_at_all);
+      if (history != nullptr)
+        energy += kernel.inelastic_energy(cells,
+                                          factors[material],
+                                          *history,
+                                          displacement,
+                                          initial.material_memory.of(material),
+                                          initial.displacement);
+      return energy;
+    });
   }
 
 
   double
-  InternalForce::dissipated() const
-  {
-    double energy = 0.;
-    for (const PointHistory &history : histories)
-      energy += history.dissipated;
-    return energy;
-  }
-
-
-  double
-  InternalForce::damping_work(const Vector &u, const Vector &v) const
+  InternalForce::damping_work(const Vector         &u,
+                              const Vector         &v,
+                              const MaterialMemory &memory) const
   {
     return sum({&u, &v},
-               [&](const unsigned int material,
-                   const unsigned int begin,
-                   const unsigned int end) {
+               [&](const unsigned int material, const CellRange &cells) {
                  const CellKernel &kernel = *kernels[material];
                  return kernel.damping_factor() *
-                        kernel.work(discretization.matrix_free,
+                        kernel.work(cells,
+                                    factors[material],
                                     u,
                                     v,
-                                    begin,
-                                    end,
-                                    histories[material],
+                                    memory.of(material),
                                     CellKernel::Inelastic::by_damping_share);
                });
+  }
+
+
+  Lanes
+  InternalForce::element_eigenvalues(const unsigned int          batch,
+                                     const AlignedVector<Lanes> &masses) const
+  {
+    const unsigned int material = discretization.material_of_batch[batch];
+    return kernels[material]->element_eigenvalues(discretization.matrix_free,
+                                                  batch,
+                                                  factors[material],
+                                                  masses);
   }
 } // namespace Voussoir

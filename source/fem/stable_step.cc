@@ -63,9 +63,9 @@ namespace Voussoir
   }
 
 
-  ElementSteps::ElementSteps(const Discretization &discretization,
-                             const std::vector<const CellKernel *> &kernels,
-                             const std::vector<double>             &density)
+  ElementSteps::ElementSteps(const Discretization      &discretization,
+                             const InternalForce       &force,
+                             const std::vector<double> &density)
     : smallest(std::numeric_limits<double>::max())
   {
     const auto         &matrix_free = discretization.matrix_free;
@@ -96,8 +96,7 @@ namespace Voussoir
                           .system_to_component_index(lexicographic[i])
                           .second];
           }
-        const Lanes rates =
-          kernels[material]->element_eigenvalues(matrix_free, batch, masses);
+        const Lanes rates = force.element_eigenvalues(batch, masses);
         for (unsigned int lane = 0; lane < n_lanes; ++lane)
           {
             const double step = 2. / std::sqrt(rates[lane]);

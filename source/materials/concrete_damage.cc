@@ -1,10 +1,8 @@
 // Concrete that cracks in tension and is crushed in compression.
 
 #include <voussoir/base/error.h>
-#include <voussoir/materials/isotropic_elasticity.h>
 #include <voussoir/materials/material_of.h>
-#include <voussoir/materials/softening_curve.h>
-#include <voussoir/materials/tension_split.h>
+#include <voussoir/materials/split_damage.h>
 
 namespace Voussoir
 {
@@ -13,18 +11,14 @@ namespace Voussoir
   namespace
   {
     /**
-     * Two scalar damages on the effective stress s = C : (e - e_p), split into
-     * tension and compression,
-     *   sigma = (1 - d+) s+ + (1 - d-) s-
-     * (Faria, Oliver, Cervera 1998, here with a split that has a potential: see
-     * split_tension). Each is driven by the largest equivalent strain so far:
-     * in tension that of the largest principal stress, in compression that of
-     * the surface of Lubliner et al. (1989) at s-. The damages follow from
-     * uniaxial curves, so that a step needs no iteration, and a crack that
-     * closes has its stiffness back. A share of the inelastic strain may be
-     * irreversible.
+     * A SplitDamage (after Faria, Oliver, Cervera 1998, with a split that has a
+     * potential) of the effective stress s = C : (e - e_p). Each damage is
+     * driven by the largest equivalent strain so far: in tension that of the
+     * largest principal stress, in compression that of the surface of Lubliner
+     * et al. (1989) at s-. A share of the inelastic strain may be irreversible,
+     * which makes e_p.
      */
-    struct ConcreteDamage : IsotropicElasticity, TensileCrack
+    struct ConcreteDamage : SplitDamage
     {
       // equivalent strains in tension and compression, damages, e_p
       static constexpr unsigned int n_history = 10;
@@ -41,14 +35,12 @@ namespace Voussoir
       std::string compression_law = "GB 50010";
       std::string tension_table, compression_table;
 
-      SofteningCurve tension, compression;
-      double         alpha = 0.; // of Lubliner's surface
+      double alpha = 0.; // of Lubliner's surface
 
       void
       declare_parameters(ParameterHandler &prm)
       {
-        IsotropicElasticity::declare_parameters(prm);
-        TensileCrack::declare_parameters(prm);
+        SplitDamage::declare_parameters(prm);
         prm.add_parameter("Compressive strength",
                           compressive_strength,
                           "Uniaxial compressive strength fc [Pa].",
@@ -231,14 +223,75 @@ namespace Voussoir
       load_level(const SymmetricTensor3<Number> &stress,
                  const Number                   &element_length) const
       {
-        // principal values lie within mean -+ 2 sqrt(J2 / 3)
-        const auto [first, second] = invariants(stress);
-        const Number mean          = (1. / 3.) * first,
-                     radius        = std::sqrt(Number((4. / 3.) * second));
-        return std::max(
-          tension.load_level(Number(mean + radius), element_length),
-          compression.load_level(Number((radius - mean) * (1. / (1. - alpha))),
-                                 element_length));
+        const auto [smallest, largest] = principal_bounds(stress);
+        return std::max(tension.load_level(largest, element_length),
+                        compression.load_level(Number(-smallest *
+                                                      (1. / (1. - alpha))),
+                                               element_length));
+      }
+
+      /** Uniaxial compression as severe as the principal stresses s-, largest
+       *  first. */
+      template <typename Number>
+      Number
+      equivalent_compression(const std::array<Number, 3> &pressed) const
+      {
+        Number first = 0., squares = 0.;
+        for (unsigned int i = 0; i < 3; ++i)
+          {
+            const Number difference = pressed[i] - pressed[(i + 1) % 3];
+            first += pressed[i];
+            squares += difference * difference; // 6 J2
+          }
+        // gamma = 3: Kc = 2/3
+        return 1. / (1. - alpha) *
+               (alpha * first + std::sqrt(Number(0.5 * squares)) +
+                3. * pressed[0]);
+      }
+
+      /**
+       * Lets one damage go on where it grows, or may: only there the curve is
+       * looked up.
+       *
+       * @param equivalent effective stress of a uniaxial test [Pa]
+       * @param largest    effective strain so far
+       */
+      template <typename Number>
+      DamageProgress<Number>
+      grow(const unsigned int            sign,
+           const Number                 &equivalent,
+           Number                       &largest,
+           Number                       &damage,
+           const PointSituation<Number> &situation) const
+      {
+        // share of what damage lags behind by that this step makes up for
+        const double followed =
+          relaxation_time == 0. ?
+            1. :
+            situation.time_step / (relaxation_time + situation.time_step);
+        const bool irreversible =
+          (sign == 0 ? irreversible_tension : irreversible_crushing) > 0.;
+        DamageProgress<Number> progress;
+        progress.intact = 1. - damage;
+        const Number growth =
+          std::min(Number(equivalent - young_modulus * largest),
+                   Number(curve(sign).load_level(equivalent,
+                                                 situation.element_length) -
+                          1.));
+        if (any_above(irreversible ? std::max(growth, largest) : growth, 0.))
+          for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
+            if (lane_of(growth, lane) > 0. ||
+                (irreversible && lane_of(largest, lane) > 0.))
+              {
+                progress.set_lane(
+                  lane,
+                  curve(sign).go_on(lane_of(equivalent, lane),
+                                    lane_of(largest, lane),
+                                    lane_of(situation.element_length, lane),
+                                    followed));
+                lane_of(damage, lane) = 1. - lane_of(progress.intact, lane);
+              }
+        return progress;
       }
 
       template <typename Number>
@@ -247,98 +300,61 @@ namespace Voussoir
               Number                         *history,
               const PointSituation<Number>   &situation) const
       {
-        SymmetricTensor3<Number> plastic;
-        for (unsigned int i = 0; i < 6; ++i)
-          plastic.access_raw_entry(i) = history[4 + i];
-        const auto   split   = split_tension(stress(strain - plastic), *this);
-        const auto  &pressed = split.compression;
-        const Number largest = split.principal.values[0];
-        Number       first = 0., squares = 0.;
-        for (unsigned int i = 0; i < 3; ++i)
-          {
-            const Number difference = pressed[i] - pressed[(i + 1) % 3];
-            first += pressed[i];
-            squares += difference * difference; // 6 J2
-          }
-        // gamma = 3: Kc = 2/3
-        const Number equivalent_compression =
-          1. / (1. - alpha) *
-          (alpha * first + std::sqrt(Number(0.5 * squares)) + 3. * pressed[0]);
-
-        // share of what damage lags behind by that this step makes up for
-        const double followed =
-          relaxation_time == 0. ?
-            1. :
-            situation.time_step / (relaxation_time + situation.time_step);
-        bool   goes_on = false;
-        Number factor[2], intact[2], dissipation[2];
+        const SymmetricTensor3<Number> plastic = tensor_of(history + 4);
+        const auto split = split_tension(stress(strain - plastic), *this);
+        const OfBoth<Number> equivalent{
+          {split.principal.values[0],
+           equivalent_compression(split.compression)}};
+        OfBoth<DamageProgress<Number>>   damage;
+        OfBoth<SymmetricTensor3<Number>> effective = split.parts();
         for (const unsigned int sign : {0, 1})
           {
-            const SofteningCurve &curve = sign == 0 ? tension : compression;
-            const Number          equivalent =
-              sign == 0 ? largest : equivalent_compression;
-            factor[sign]      = 1.;
-            intact[sign]      = 1. - history[2 + sign];
-            dissipation[sign] = 0.;
-            // only where damage grows, or may: look up the curve
-            const bool irreversible =
-              (sign == 0 ? irreversible_tension : irreversible_crushing) > 0.;
-            const Number growth =
-              std::min(Number(equivalent - young_modulus * history[sign]),
-                       Number(curve.load_level(equivalent,
-                                               situation.element_length) -
-                              1.));
-            if (!any_above(irreversible ? std::max(growth, history[sign]) :
-                                          growth,
-                           0.))
-              continue;
-            goes_on = true;
-            for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
-              if (lane_of(growth, lane) > 0. ||
-                  (irreversible && lane_of(history[sign], lane) > 0.))
-                {
-                  const auto progress =
-                    curve.go_on(lane_of(equivalent, lane),
-                                lane_of(history[sign], lane),
-                                lane_of(situation.element_length, lane),
-                                followed);
-                  lane_of(factor[sign], lane)      = progress.effective;
-                  lane_of(intact[sign], lane)      = progress.intact;
-                  lane_of(dissipation[sign], lane) = progress.dissipation;
-                  lane_of(history[2 + sign], lane) = 1. - progress.intact;
-                }
+            damage[sign]    = grow(sign,
+                                equivalent[sign],
+                                history[sign],
+                                history[2 + sign],
+                                situation);
+            effective[sign] = damage[sign].effective * effective[sign];
           }
+        PointResponse<Number> result =
+          response(effective,
+                   damage,
+                   this->strain(effective[0] + effective[1]));
+        if (irreversible_tension > 0. || irreversible_crushing > 0.)
+          flow(strain, plastic, damage, history + 4, result);
+        return result;
+      }
 
-        PointResponse<Number>    response;
-        SymmetricTensor3<Number> effective[2];
-        for (const unsigned int sign : {0, 1})
-          effective[sign] =
-            factor[sign] * split.principal.compose(
-                             sign == 0 ? split.tension : split.compression);
-        response.stress = intact[0] * effective[0] + intact[1] * effective[1];
-        response.elastic_strain = this->strain(effective[0] + effective[1]);
-        response.damping_share  = intact[0] * intact[1];
-        response.dissipation =
-          0.5 * (dissipation[0] * (effective[0] * response.elastic_strain) +
-                 dissipation[1] * (effective[1] * response.elastic_strain));
-        for (unsigned int lane = 0; goes_on && lane < n_lanes<Number>(); ++lane)
-          if (lane_of(factor[0], lane) * lane_of(factor[1], lane) != 1.)
+      /** Adds to the plastic strain where the step has made some. */
+      template <typename Number>
+      static void
+      flow(const SymmetricTensor3<Number>       &strain,
+           const SymmetricTensor3<Number>       &plastic_before,
+           const OfBoth<DamageProgress<Number>> &damage,
+           Number                               *plastic,
+           PointResponse<Number>                &response)
+      {
+        for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
+          if (lane_of(damage[0].effective, lane) *
+                lane_of(damage[1].effective, lane) !=
+              1.)
             for (unsigned int i = 0; i < 6; ++i)
               {
                 const double flowed =
                   lane_of(strain.access_raw_entry(i), lane) -
                   lane_of(response.elastic_strain.access_raw_entry(i), lane);
                 lane_of(response.plastic_increment.access_raw_entry(i), lane) =
-                  flowed - lane_of(plastic.access_raw_entry(i), lane);
-                lane_of(history[4 + i], lane) = flowed;
+                  flowed - lane_of(plastic_before.access_raw_entry(i), lane);
+                lane_of(plastic[i], lane) = flowed;
               }
-        return response;
       }
 
       static std::vector<std::string>
       output_names()
       {
-        return {"tension damage", "compression damage", "crack opening [mm]"};
+        return {OutputName::tension_damage,
+                OutputName::compression_damage,
+                OutputName::crack_opening};
       }
 
       std::vector<double>
@@ -350,12 +366,6 @@ namespace Voussoir
                            1e3 * element_length *
                              tension.at(history[0], element_length).inelastic);
         return result;
-      }
-
-      std::string
-      remark(const double element_length) const
-      {
-        return tension.remark(element_length);
       }
     };
 

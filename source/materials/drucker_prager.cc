@@ -86,7 +86,7 @@ namespace Voussoir
               const PointSituation<Number> &) const
       {
         const SymmetricTensor3<Number> trial =
-          stress(strain - plastic_strain(history));
+          stress(strain - tensor_of(history));
         const auto [first, second] = invariants(trial);
         const Number shear         = std::sqrt(Number(second));
         const double G = shear_modulus(), nine_K = 9. * bulk_modulus();

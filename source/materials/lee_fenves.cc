@@ -315,9 +315,7 @@ namespace Voussoir
               Number                         *history,
               const PointSituation<Number>   &situation) const
       {
-        SymmetricTensor3<Number> plastic;
-        for (unsigned int i = 0; i < 6; ++i)
-          plastic.access_raw_entry(i) = history[i];
+        const SymmetricTensor3<Number> plastic   = tensor_of(history);
         const SymmetricTensor3<Number> trial     = stress(strain - plastic);
         auto                           principal = spectrum(trial);
 
@@ -367,7 +365,7 @@ namespace Voussoir
             (tension_intact * effective + (1. - tension_intact) * closed));
         };
 
-        PointResponse<Number> response;
+        PointResponse<Number> response(strain);
         response.stress         = weakened(tension_now, crushing_now);
         response.elastic_strain = strain - plastic - increment;
         response.damping_share  = tension_now * crushing_now;
@@ -383,7 +381,9 @@ namespace Voussoir
       static std::vector<std::string>
       output_names()
       {
-        return {"tension damage", "compression damage", "crack opening [mm]"};
+        return {OutputName::tension_damage,
+                OutputName::compression_damage,
+                OutputName::crack_opening};
       }
 
       std::vector<double>
@@ -393,12 +393,6 @@ namespace Voussoir
         return {1. - now.tension_intact,
                 1. - now.crushing_intact,
                 1e3 * element_length * history[6]};
-      }
-
-      std::string
-      remark(const double) const
-      {
-        return {};
       }
     };
 

@@ -142,11 +142,10 @@ namespace Voussoir
             lane_of(intact, lane) = 1. - damage;
           }
 
-        PointResponse<Number> response;
-        response.stress         = intact * effective;
-        response.elastic_strain = strain;
-        response.dissipation    = 0.5 * lost * (effective * strain);
-        response.damping_share  = intact;
+        PointResponse<Number> response(strain);
+        response.stress        = intact * effective;
+        response.dissipation   = 0.5 * lost * (effective * strain);
+        response.damping_share = intact;
         return response;
       }
 

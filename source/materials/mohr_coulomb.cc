@@ -175,7 +175,7 @@ namespace Voussoir
               const PointSituation<Number> &) const
       {
         const SymmetricTensor3<Number> trial =
-          stress(strain - plastic_strain(history));
+          stress(strain - tensor_of(history));
         const auto            principal = spectrum(trial);
         std::array<Number, 3> excess;
         for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)

@@ -15,10 +15,9 @@ namespace Voussoir
      * joints (or layers), 2 points down their dip and 3 is normal to them; the
      * compliances are 1 / E_i, -nu_ij / E_i and 1 / G_ij.
      */
-    struct OrthotropicElastic
+    struct OrthotropicElastic : LawDefaults
     {
-      static constexpr unsigned int n_history = 0;
-      static constexpr bool         isotropic = false;
+      static constexpr bool isotropic = false;
 
       Tensor<1, 3> young{{15e9, 15e9, 6e9}};     // E1, E2, E3 [Pa]
       Tensor<1, 3> shear{{6e9, 2.5e9, 2.5e9}};   // G12, G13, G23 [Pa]

@@ -16,14 +16,7 @@ namespace Voussoir
   PerfectPlasticity::declare_parameters(ParameterHandler &prm)
   {
     IsotropicElasticity::declare_parameters(prm);
-    prm.add_parameter("Cohesion",
-                      cohesion,
-                      "Shear strength c without normal stress [Pa].",
-                      Patterns::Double(1.));
-    prm.add_parameter("Friction angle",
-                      friction_angle,
-                      "Angle phi of internal friction [degrees].",
-                      Patterns::Double(0., 70.));
+    CohesionAndFriction::declare_parameters(prm);
     prm.add_parameter("Dilation angle",
                       dilation_angle,
                       "Angle psi by which plastic flow gains volume, from 0 to "
@@ -54,12 +47,5 @@ namespace Voussoir
   PerfectPlasticity::outputs(const double *history, const double) const
   {
     return {history[6]};
-  }
-
-
-  std::string
-  PerfectPlasticity::remark(const double) const
-  {
-    return {};
   }
 } // namespace Voussoir

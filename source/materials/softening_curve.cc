@@ -90,7 +90,7 @@ namespace Voussoir
   }
 
 
-  SofteningCurve::Progress
+  DamageProgress<double>
   SofteningCurve::go_on(const double equivalent_stress,
                         double      &largest,
                         const double band,

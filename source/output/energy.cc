@@ -75,12 +75,13 @@ namespace Voussoir
                              terms.work_of_forces + scheme.work_of_base,
                              scheme.work_of_projections,
                              scheme.loss_by_mass,
-                             internal_force.dissipated()};
+                             state.material_memory.dissipated()};
     sums = sum_over_ranks(sums, discretization.grid.communicator());
 
     terms_now.kinetic = sums[0];
     terms_now.strain  = internal_force.stored_energy(state.displacement,
-                                                    initial_state.displacement,
+                                                    state.material_memory,
+                                                    initial_state,
                                                     moved,
                                                     moved_before) +
                        sums[1];
@@ -102,14 +103,18 @@ namespace Voussoir
       if (damping.coefficients[i] > 0.)
         {
           const double work =
-            internal_force.damping_work(state.memory[i], state.memory[i]);
+            internal_force.damping_work(state.memory[i],
+                                        state.memory[i],
+                                        state.material_memory);
           terms_now.memory += 0.5 * work / damping.coefficients[i];
           loss_rate +=
             work / (damping.coefficients[i] * damping.relaxation_times[i]);
         }
     if (damping.stiffness_coefficient > 0.)
       loss_rate += damping.stiffness_coefficient *
-                   internal_force.damping_work(state.velocity, state.velocity);
+                   internal_force.damping_work(state.velocity,
+                                               state.velocity,
+                                               state.material_memory);
     const double mass_loss_before = mass_loss;
     mass_loss                     = sums[5];
     if (first)

@@ -10,8 +10,8 @@ namespace Voussoir
   {
     const unsigned int number = model.material_of_cell(cell);
     material                  = model.materials[number];
-    history                   = &model.internal_force.histories[number];
-    if (history->empty())
+    history                   = model.material_memory.of(number);
+    if (history == nullptr)
       return;
     place = history->place_of(cell);
     const auto &points =
@@ -30,7 +30,7 @@ namespace Voussoir
   {
     const auto strain_of_law =
       material->strain_of_law(strain, initial_strain, temperature);
-    if (history->empty() || !history->is_active(place.batch, q))
+    if (history == nullptr || !history->is_active(place.batch, q))
       return material->stress(strain_of_law);
     std::vector<double> memory = history->read(place, q);
     return material

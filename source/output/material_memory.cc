@@ -18,7 +18,7 @@ namespace Voussoir
     {
       const std::vector<double> nothing(material.output_names().size());
       for (const auto &[cell, place] : history.cells())
-        for (unsigned int q = 0; q < history.n_points; ++q)
+        for (unsigned int q = 0; q < history.n_points(); ++q)
           {
             // lanes of one batch are active together
             const std::vector<double> memory = history.read(place, q);
@@ -44,20 +44,22 @@ namespace Voussoir
     std::map<std::string, dealii::Vector<float>> result;
     for (unsigned int m = 0; m < model.materials.size(); ++m)
       {
-        const PointHistory &history = model.internal_force.histories[m];
+        const PointHistory *history = model.material_memory.of(m);
         const auto          names   = model.materials[m]->output_names();
         for (const std::string &name : names)
           if (result[name].size() == 0)
             result[name].reinit(n);
+        if (history == nullptr)
+          continue;
         for_each_point(*model.materials[m],
-                       history,
+                       *history,
                        [&](const Discretization::Cell &cell,
                            const bool                  active,
                            const std::vector<double>  &outputs) {
                          for (unsigned int i = 0; active && i < names.size();
                               ++i)
                            result[names[i]][cell->active_cell_index()] +=
-                             outputs[i] / history.n_points;
+                             outputs[i] / history->n_points();
                        });
       }
     return result;
@@ -72,25 +74,25 @@ namespace Voussoir
     const MPI_Comm communicator = model.discretization.grid.communicator();
     for (unsigned int m = 0; m < model.materials.size(); ++m)
       {
-        const PointHistory &history = model.internal_force.histories[m];
-        if (history.empty())
+        const PointHistory *history = model.material_memory.of(m);
+        if (history == nullptr)
           continue;
         const auto          names = model.materials[m]->output_names();
         std::vector<double> largest(names.size()), volumes(3);
         for_each_point(*model.materials[m],
-                       history,
+                       *history,
                        [&](const Discretization::Cell &cell,
                            const bool                  active,
                            const std::vector<double>  &outputs) {
                          const double volume =
-                           cell->measure() / history.n_points;
+                           cell->measure() / history->n_points();
                          volumes[0] += volume;
                          if (active)
                            volumes[1] += volume;
                          for (unsigned int i = 0; i < names.size(); ++i)
                            largest[i] = std::max(largest[i], outputs[i]);
                        });
-        volumes[2] = history.dissipated;
+        volumes[2] = history->dissipated;
         volumes    = sum_over_ranks(volumes, communicator);
         auto &item = result[material_names[m]];
         item["share of the volume that left the elastic range"] =

@@ -9,7 +9,7 @@ namespace Voussoir
 
   CentralDifference::CentralDifference(
     const Discretization                            &discretization,
-    InternalForce                                   &internal_force,
+    const InternalForce                             &internal_force,
     const LumpedMass                                &mass,
     const Damping                                   &damping,
     NodalTerms                                      &terms,
@@ -88,6 +88,7 @@ namespace Voussoir
     state.memory.assign(n_branches, state.velocity);
     state.displacement =
       initial.displacement.size() > 0 ? initial.displacement : state.velocity;
+    state.material_memory = initial.material_memory;
     return state;
   }
 
@@ -108,6 +109,7 @@ namespace Voussoir
       effective,
       uniform ? nullptr : &memory,
       uniform && damped ? state.displacement : effective,
+      state.material_memory,
       time_step,
       [&](const unsigned int begin, const unsigned int end) {
         update_memory(state, begin, end);

@@ -205,8 +205,9 @@ namespace Voussoir
                     Verdicts          &verdicts,
                     const MPI_Comm     communicator) const
       {
-        const auto     simulation = make_simulation(parameters, communicator);
-        InternalForce &internal   = simulation->internal_force;
+        const auto simulation = make_simulation(parameters, communicator);
+        const InternalForce  &internal       = simulation->internal_force;
+        MaterialMemory        memory         = internal.new_memory();
         const Discretization &discretization = simulation->discretization;
         const Material       &material       = *simulation->materials[0];
 
@@ -226,7 +227,7 @@ namespace Voussoir
                     (step % 3 == 0 ? -3e-4 : 1e-4) * step *
                     std::sin(3. * x[d] + 2. * x[(d + 1) % 3] + d);
               }
-            internal.respond(force, u);
+            internal.respond(force, u, memory);
             respond_plainly(*simulation, u, plain, histories);
             plain -= force;
             worst = std::max(worst, plain.linfty_norm() / force.linfty_norm());
@@ -237,20 +238,20 @@ namespace Voussoir
 
         if (material.n_history() > 0)
           {
-            PointHistory &history = internal.histories[0];
+            PointHistory &history = *memory.of(0);
             KeyedValues   saved   = history.checkpoint_values();
             std::vector<std::vector<double>> kept;
             for (const auto &item : saved.items)
               kept.emplace_back(item.second, item.second + saved.width);
             Vector after = force;
             u *= 1.1;
-            internal.respond(after, u);
+            internal.respond(after, u, memory);
             saved = history.checkpoint_values();
             for (unsigned int i = 0; i < kept.size(); ++i)
               std::copy(kept[i].begin(), kept[i].end(), saved.items[i].second);
             history.load();
             Vector again = force;
-            internal.respond(again, u);
+            internal.respond(again, u, memory);
             again -= after;
             verdicts.below(name + ": force from saved memory",
                            again.linfty_norm(),
@@ -280,7 +281,9 @@ namespace Voussoir
             for (unsigned int d = 0; d < 3; ++d)
               u.local_element(3 * node + d) = value[d];
           }
-        simulation->internal_force.respond(force, u);
+        simulation->internal_force.respond(force,
+                                           u,
+                                           simulation->state.material_memory);
         double inside = 0.;
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
              ++node)

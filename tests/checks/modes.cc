@@ -41,14 +41,11 @@ namespace Voussoir
                   const Case           &parameters,
                   const ModeParameters &mode_parameters)
     {
-      std::vector<Material *> materials;
-      for (const auto &material : parameters.materials.objects)
-        materials.push_back(material.second.get());
       Log log(simulation.grid.communicator(), true);
       return find_modes({simulation.discretization,
                          simulation.internal_force,
                          parameters.material_names(),
-                         materials,
+                         simulation.materials,
                          [&](const Grid::Cell &cell) {
                            return simulation.material_of(cell);
                          },

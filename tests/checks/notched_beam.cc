@@ -148,7 +148,8 @@ namespace Voussoir
             if (simulation.state.step % 10 != 0)
               continue;
             simulation.internal_force.respond(force,
-                                              simulation.state.displacement);
+                                              simulation.state.displacement,
+                                              simulation.state.material_memory);
             double load = 0.;
             for (const unsigned int node : pressed)
               load -= node_value(force, node)[2];
@@ -158,7 +159,8 @@ namespace Voussoir
               sum -= loads[loads.size() - 1 - window / 10];
             largest = std::max(largest, sum / (window / 10));
           }
-        return {largest, simulation.internal_force.dissipated() / thickness};
+        return {largest,
+                simulation.state.material_memory.dissipated() / thickness};
       }
     };
 

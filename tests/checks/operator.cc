@@ -99,16 +99,17 @@ namespace Voussoir
              discretization.dof_handler.active_cell_iterators())
           if (cell->is_locally_owned())
             {
-              const Material &material =
-                *simulation.materials[simulation.material_of(cell)];
+              const unsigned int number   = simulation.material_of(cell);
+              const Material    &material = *simulation.materials[number];
+              const double       factor =
+                simulation.internal_force.factors_of(number).stress;
               values.reinit(cell);
               values[displacement].get_function_symmetric_gradients(source,
                                                                     strains);
               force = 0.;
               for (const unsigned int q : values.quadrature_point_indices())
                 {
-                  const auto stress =
-                    material.stiffness_scale * material.stress(strains[q]);
+                  const auto stress = factor * material.stress(strains[q]);
                   for (const unsigned int i : values.dof_indices())
                     force(i) += stress *
                                 values[displacement].symmetric_gradient(i, q) *

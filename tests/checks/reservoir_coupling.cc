@@ -28,7 +28,7 @@ namespace Voussoir
                               {materials[0]->density},
                               {0.},
                               [](const Grid::Cell &) { return 0U; });
-        InternalForce    internal_force(tank.discretization, {materials[0]});
+        InternalForce internal_force(tank.discretization, {materials[0]}, {{}});
 
         StepLimits limits;
         limits.stiffening   = [](const double) { return 0.; };
@@ -92,7 +92,8 @@ namespace Voussoir
                 const double total =
                   0.5 * (momentum * state.velocity) +
                   internal_force.stored_energy(state.displacement,
-                                               Vector(),
+                                               state.material_memory,
+                                               initial_state,
                                                state.displacement,
                                                before) +
                   water + tank.reservoir.work_ahead(state.velocity);

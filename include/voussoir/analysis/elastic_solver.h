@@ -11,9 +11,9 @@
 namespace Voussoir
 {
   /**
-   * Solves K u = f for the elastic stiffness of the materials (with their
-   * present `stiffness_scale`) by conjugate gradients: the matrix-free operator
-   * of the run, preconditioned by Trilinos' smoothed aggregation with the six
+   * Solves K u = f for the elastic stiffness of the materials, with the factors
+   * of the internal force, by conjugate gradients: its matrix-free operator,
+   * preconditioned by Trilinos' smoothed aggregation with the six
    * rigid-body modes, on trilinear cells between neighbouring Gauss-Lobatto
    * nodes (for degree 1 the cells themselves). Such a low-order matrix is
    * spectrally equivalent to that of any degree (Orszag 1980).

@@ -33,7 +33,7 @@ namespace Voussoir
     const Discretization                           &discretization;
     const InternalForce                            &internal_force;
     std::vector<std::string>                        material_names;
-    std::vector<Material *>                         materials;
+    std::vector<const Material *>                   materials;
     std::function<unsigned int(const Grid::Cell &)> material_of_cell;
     const BoundaryParameters                       &boundaries;
     const NodalTerms                               &terms;
@@ -72,8 +72,7 @@ namespace Voussoir
 
   /**
    * The lowest natural modes, K phi = omega^2 (M + M_a) phi, with the moduli as
-   * given, absorbing faces held. Leaves the materials at the `stiffness_scale`
-   * they had.
+   * given, absorbing faces held.
    */
   Modes
   find_modes(const ModalModel     &model,

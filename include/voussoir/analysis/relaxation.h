@@ -19,13 +19,14 @@ namespace Voussoir
   {
   public:
     /**
+     * @param internal_force of the static stage
      * @param mass        of the run; what the static stage holds loses its own
      * @param terms       of the run
      * @param constraints hanging nodes and what the static stage holds
      * @param springs     whether the absorbing boundary stands on its springs
      */
     Relaxation(const Discretization                    &discretization,
-               InternalForce                           &internal_force,
+               const InternalForce                     &internal_force,
                const LumpedMass                        &mass,
                const NodalTerms                        &terms,
                const dealii::AffineConstraints<double> &constraints,
@@ -36,14 +37,17 @@ namespace Voussoir
      * Moves the displacement to the equilibrium with a force. Throws UserError
      * if there is none within 50 000 steps.
      *
+     * @param memory    of the materials, which goes on with the motion; empty:
+     *   they are elastic
      * @param tolerance largest motion in a period over the largest displacement
      * @return the number of steps
      */
     unsigned int
-    find_equilibrium(Vector       &displacement,
-                     const Vector &force,
-                     const double  tolerance,
-                     Log          &log);
+    find_equilibrium(Vector         &displacement,
+                     MaterialMemory &memory,
+                     const Vector   &force,
+                     const double    tolerance,
+                     Log            &log);
 
   private:
     CentralDifference
@@ -60,7 +64,7 @@ namespace Voussoir
                       const double                 mass_coefficient) const;
 
     const Discretization &discretization;
-    InternalForce        &internal_force;
+    const InternalForce  &internal_force;
     LumpedMass            mass;
     NodalTerms            terms;
     Contact              *contact; // or null

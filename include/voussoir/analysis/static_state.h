@@ -3,9 +3,10 @@
 
 #include <voussoir/base/log.h>
 #include <voussoir/constraints/contact.h>
-#include <voussoir/fem/initial_state.h>
+#include <voussoir/fem/internal_force.h>
 #include <voussoir/loads/boundary_parameters.h>
 #include <voussoir/loads/load.h>
+#include <voussoir/materials/material.h>
 
 #include <nlohmann/json.hpp>
 
@@ -40,8 +41,8 @@ namespace Voussoir
   struct StaticModel
   {
     const Discretization                           &discretization;
-    InternalForce                                  &internal_force;
-    const std::vector<Material *>                  &materials;
+    const InternalForce                            &internal_force;
+    const std::vector<const Material *>            &materials;
     std::function<unsigned int(const Grid::Cell &)> material_of_cell;
     const BoundaryParameters                       &boundaries;
     const LumpedMass                               &mass;
@@ -51,8 +52,8 @@ namespace Voussoir
 
   /**
    * The state under the loads that are there before the earthquake: stages one
-   * after the other, each with the loads it names. Leaves the materials at the
-   * `stiffness_scale` they had; the force that it returns holds the state in
+   * after the other, each with the loads it names. The force that it returns
+   * holds the state in
    * the dynamic model, reactions of supports that are held here only included,
    * so that without an earthquake nothing moves. Forces of contact are no part
    * of it, as the run finds them by itself.

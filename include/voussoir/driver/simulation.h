@@ -56,7 +56,7 @@ namespace Voussoir
     const Grid                          grid;
     const Discretization                discretization;
     const LumpedMass                    mass;
-    InternalForce                       internal_force;
+    const InternalForce                 internal_force;
     NodalTerms                          terms;
     AbsorbingBoundary                   boundary;
     std::unique_ptr<Reservoir>          reservoir;    // compressible, or null
@@ -140,6 +140,10 @@ namespace Voussoir
     void
     observe();
 
+    /** Keeps what a picture of the last good state needs. */
+    void
+    keep_last_good();
+
     /** What the clock asks for: progress, checkpoint, stop on request. */
     void
     attend();
@@ -179,7 +183,7 @@ namespace Voussoir
     [[noreturn]] void
     abort_run(const std::string &reason);
 
-    State              last_good;
+    State              last_good; // without memory
     dealii::Timer      clock, since_report, since_checkpoint;
     unsigned long long first_step   = 0;
     double             loop_seconds = 0.;

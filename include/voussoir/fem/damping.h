@@ -1,6 +1,8 @@
 #ifndef voussoir_fem_damping_h
 #define voussoir_fem_damping_h
 
+#include <voussoir/fem/stiffness_factors.h>
+
 #include <deal.II/base/parameter_handler.h>
 
 #include <ostream>
@@ -82,6 +84,10 @@ namespace Voussoir
      *  factor s. */
     double
     filter_stiffness(const double factor) const;
+
+    /** What the model makes of the moduli of a material of factor s. */
+    StiffnessFactors
+    stiffness_factors(const double factor) const;
 
     /** Prints the achieved damping ratio over the frequency. */
     void

@@ -1,7 +1,7 @@
 #ifndef voussoir_fem_initial_state_h
 #define voussoir_fem_initial_state_h
 
-#include <voussoir/fem/discretization.h>
+#include <voussoir/fem/point_history.h>
 
 namespace Voussoir
 {
@@ -26,6 +26,10 @@ namespace Voussoir
     /** Forces of contact in the static state, which are no part of `force` as
      *  the run finds them by itself [N]; empty without interfaces. */
     Vector contact_force;
+
+    /** What the points of the materials remember of it, with which every run
+     *  begins; empty: they are elastic. */
+    MaterialMemory material_memory;
   };
 } // namespace Voussoir
 

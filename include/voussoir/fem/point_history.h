@@ -4,17 +4,14 @@
 #include <voussoir/base/keyed_values.h>
 #include <voussoir/fem/discretization.h>
 
-#include <deal.II/base/symmetric_tensor.h>
+#include <memory>
 
 namespace Voussoir
 {
-  /** Strain or stress of one integration point in each SIMD lane. */
-  template <typename Number>
-  using SymmetricTensor3 = dealii::SymmetricTensor<2, 3, Number>;
-
   /**
    * What the integration points of the cells of one material remember: the
-   * numbers of its law, which begin at zero, in SIMD lanes.
+   * numbers of its law, which begin at zero, in SIMD lanes. Copies share what
+   * no step changes: the places of the points and their static strains.
    */
   class PointHistory
   {
@@ -32,19 +29,36 @@ namespace Voussoir
 
     /** Whether there is nothing to remember. */
     bool
-    empty() const;
+    empty() const
+    {
+      return n_numbers == 0;
+    }
+
+    /** Numbers of a point. */
+    unsigned int
+    width() const
+    {
+      return n_numbers;
+    }
+
+    /** Points of a cell. */
+    unsigned int
+    n_points() const
+    {
+      return points->per_cell;
+    }
 
     /** The `width` numbers of point @p q of the cells of a batch. */
     Lanes *
     values(const unsigned int batch, const unsigned int q)
     {
-      return numbers.data() + width * index(batch, q);
+      return numbers.data() + n_numbers * index(batch, q);
     }
 
     const Lanes *
     values(const unsigned int batch, const unsigned int q) const
     {
-      return numbers.data() + width * index(batch, q);
+      return numbers.data() + n_numbers * index(batch, q);
     }
 
     /** Whether point @p q of any cell of the batch has left the elastic range.
@@ -63,47 +77,54 @@ namespace Voussoir
 
     /** Width of the band in which a crack lives: the edge of a cube of the
      *  cell's volume over the degree of the elements [m]. */
+    static double
+    element_length_of(const Grid::Cell &cell, const unsigned int degree);
+
+    /** That of the cells of a batch [m]. */
     const Lanes &
     element_length(const unsigned int batch) const
     {
-      return lengths[slot_of_batch[batch]];
+      return points->lengths[points->slot_of_batch[batch]];
     }
 
-    /**
-     * Strain that the law sees beside that of the displacement, of the static
-     * state and of temperature; see CellKernel::add_response.
-     */
+    /** Strain offset e_0, which the law sees beside the strain of the
+     *  displacement; see DampedResponse. */
     const SymmetricTensor3<Lanes> &
     strain_offset(const unsigned int batch, const unsigned int q) const
     {
-      return offsets[index(batch, q)];
+      return static_strains->offsets[index(batch, q)];
     }
 
     SymmetricTensor3<Lanes> &
     strain_offset(const unsigned int batch, const unsigned int q)
     {
-      return offsets[index(batch, q)];
+      return static_strains->offsets[index(batch, q)];
     }
 
-    /** Elastic strain of the static state, before which damping does not
+    /** Elastic strain e_s of the static state, before which damping does not
      *  reach back. */
     const SymmetricTensor3<Lanes> &
     static_strain(const unsigned int batch, const unsigned int q) const
     {
-      return static_strains[index(batch, q)];
+      return static_strains->elastic[index(batch, q)];
     }
 
     SymmetricTensor3<Lanes> &
     static_strain(const unsigned int batch, const unsigned int q)
     {
-      return static_strains[index(batch, q)];
+      return static_strains->elastic[index(batch, q)];
     }
 
-    bool has_offset = false;
+    /** Whether there has been a static state; without, both are zero. */
+    bool
+    has_static_strains() const
+    {
+      return static_strains != nullptr;
+    }
 
-    /** Gives every point a strain offset and a static strain of zero. */
+    /** Sets both to zero, of this history alone and not of its copies. */
     void
-    make_offsets();
+    make_static_strains();
 
     /** Share of the stress of damping that damage has left. */
     Lanes &
@@ -117,14 +138,6 @@ namespace Voussoir
     {
       return damping_shares[index(batch, q)];
     }
-
-    /** Keeps the numbers of now as those of the static state. */
-    void
-    mark_start();
-
-    /** Those of the static state; null: zeros. */
-    const Lanes *
-    values_at_start(const unsigned int batch, const unsigned int q) const;
 
     /** Cells of this material on this rank, with their places. */
     const std::vector<std::pair<Discretization::Cell, Place>> &
@@ -146,29 +159,80 @@ namespace Voussoir
     void
     load();
 
-    unsigned int width, n_points = 0;
-
     /** Energy lost to cracks and plastic flow since the start, this rank's [J].
      */
     double dissipated = 0.;
 
   private:
+    /** Where the points are. */
+    struct Points
+    {
+      unsigned int                                        per_cell = 0;
+      std::vector<unsigned int>                           slot_of_batch;
+      std::vector<std::pair<Discretization::Cell, Place>> cells;
+      std::vector<unsigned int>                           item_of_cell;
+      dealii::AlignedVector<Lanes>                        lengths; // by slot
+    };
+
+    /** What the static state leaves at the points. */
+    struct StaticStrains
+    {
+      dealii::AlignedVector<SymmetricTensor3<Lanes>> offsets, elastic;
+    };
+
     std::size_t
     index(const unsigned int batch, const unsigned int q) const
     {
-      return std::size_t(slot_of_batch[batch]) * n_points + q;
+      return std::size_t(points->slot_of_batch[batch]) * points->per_cell + q;
     }
 
     void
     exchange(const bool load);
 
-    std::vector<unsigned int>                           slot_of_batch;
-    std::vector<std::pair<Discretization::Cell, Place>> places;
-    std::vector<unsigned int>                           item_of_cell;
-    dealii::AlignedVector<Lanes> numbers, at_start, lengths, damping_shares;
-    dealii::AlignedVector<SymmetricTensor3<Lanes>> offsets, static_strains;
-    std::vector<char>                              active;
-    std::vector<double>                            packed;
+    unsigned int                   n_numbers;
+    std::shared_ptr<const Points>  points;
+    std::shared_ptr<StaticStrains> static_strains;
+    dealii::AlignedVector<Lanes>   numbers, damping_shares;
+    std::vector<char>              active;
+    std::vector<double>            packed;
+  };
+
+
+  /**
+   * The memory of all materials of a case. A default one holds nothing, and the
+   * materials are then taken as elastic.
+   */
+  class MaterialMemory
+  {
+  public:
+    MaterialMemory() = default;
+
+    /** @param widths numbers of a point of each material; points begin at zero
+     */
+    MaterialMemory(const Discretization            &discretization,
+                   const std::vector<unsigned int> &widths);
+
+    /** Memory of a material; null if it has none. */
+    PointHistory *
+    of(const unsigned int material);
+
+    const PointHistory *
+    of(const unsigned int material) const;
+
+    /** Whether no material has a memory. */
+    bool
+    empty() const;
+
+    /** Energy lost to cracks and plastic flow so far, this rank's [J]. */
+    double
+    dissipated() const;
+
+    /** Counts the energy lost on from here. */
+    void
+    set_dissipated(const double energy);
+
+  private:
+    std::vector<PointHistory> histories; // of each material
   };
 } // namespace Voussoir
 

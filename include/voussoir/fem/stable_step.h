@@ -40,9 +40,9 @@ namespace Voussoir
   class ElementSteps
   {
   public:
-    ElementSteps(const Discretization                  &discretization,
-                 const std::vector<const CellKernel *> &kernels,
-                 const std::vector<double>             &density);
+    ElementSteps(const Discretization      &discretization,
+                 const InternalForce       &force,
+                 const std::vector<double> &density);
 
     /** Prints the histogram and the cell that governs, on the first rank. */
     void

@@ -1,7 +1,7 @@
 #ifndef voussoir_fem_state_h
 #define voussoir_fem_state_h
 
-#include <voussoir/fem/discretization.h>
+#include <voussoir/fem/point_history.h>
 
 namespace Voussoir
 {
@@ -16,6 +16,9 @@ namespace Voussoir
 
     /** Damping memory w_i, one vector per Maxwell branch [m]. */
     std::vector<Vector> memory;
+
+    /** What the points of the materials remember; empty: they are elastic. */
+    MaterialMemory material_memory;
 
     double             time = 0.; // [s]
     unsigned long long step = 0;

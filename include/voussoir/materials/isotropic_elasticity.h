@@ -1,28 +1,19 @@
 #ifndef voussoir_materials_isotropic_elasticity_h
 #define voussoir_materials_isotropic_elasticity_h
 
-#include <voussoir/fem/point_history.h>
-
-#include <deal.II/base/parameter_handler.h>
+#include <voussoir/materials/law.h>
 
 namespace Voussoir
 {
   /** Hooke's law, sigma = lambda tr(epsilon) I + 2 G epsilon: what isotropic
    *  laws begin with. */
-  struct IsotropicElasticity
+  struct IsotropicElasticity : LawDefaults
   {
-    static constexpr unsigned int n_history = 0;
-    static constexpr bool         isotropic = true;
-
     double young_modulus = 24e9; // E [Pa]
     double poisson_ratio = 0.2;  // nu
 
     void
     declare_parameters(dealii::ParameterHandler &prm);
-
-    void
-    check(const std::string &) const
-    {}
 
     double
     shear_modulus() const // G [Pa]

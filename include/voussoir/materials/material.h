@@ -2,11 +2,8 @@
 #define voussoir_materials_material_h
 
 #include <voussoir/base/registry.h>
-#include <voussoir/fem/internal_force.h>
-
-#include <deal.II/base/parameter_handler.h>
-
-#include <cstdint>
+#include <voussoir/fem/cell_kernel.h>
+#include <voussoir/materials/law.h>
 
 namespace Voussoir
 {
@@ -40,82 +37,12 @@ namespace Voussoir
     }
   };
 
-  /** SIMD lanes of a number type, and access to one of them: where a law must
-   *  go point by point. */
-  template <typename Number>
-  constexpr unsigned int
-  n_lanes()
-  {
-    if constexpr (std::is_same_v<Number, double>)
-      return 1;
-    else
-      return Number::size();
-  }
-
-  inline double &
-  lane_of(double &number, const unsigned int)
-  {
-    return number;
-  }
-
-  inline const double &
-  lane_of(const double &number, const unsigned int)
-  {
-    return number;
-  }
-
-  inline double &
-  lane_of(Lanes &numbers, const unsigned int lane)
-  {
-    return numbers[lane];
-  }
-
-  inline const double &
-  lane_of(const Lanes &numbers, const unsigned int lane)
-  {
-    return numbers[lane];
-  }
-
-  /** Whether any lane is above a limit. */
-  template <typename Number>
-  bool
-  any_above(const Number &numbers, const double limit)
-  {
-    // as wide as the numbers, so that one instruction compares all lanes
-    std::uint64_t any = 0;
-    for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
-      any |= std::uint64_t(lane_of(numbers, lane) > limit);
-    return any != 0;
-  }
-
-  /** What a law with memory knows of a point besides its strain. */
-  template <typename Number>
-  struct PointSituation
-  {
-    Number element_length; // width of the band in which a crack lives [m]
-    double time_step;      // [s]
-  };
-
-  /** What a law with memory answers. */
-  template <typename Number>
-  struct PointResponse
-  {
-    SymmetricTensor3<Number> stress;         // [Pa]
-    SymmetricTensor3<Number> elastic_strain; // stored: stress times half of it
-    Number                   dissipation;    // lost in this step [J/m3]
-
-    /** Share that damage leaves of the stress of damping. */
-    Number damping_share = Number(1.);
-
-    /** Plastic flow of this step. */
-    SymmetricTensor3<Number> plastic_increment = SymmetricTensor3<Number>();
-  };
-
   /**
    * A material of a case: a named section of the parameter file, the cell sets
-   * it fills, and the kernel that turns displacement into internal force. New
-   * classes are made from a stress law by MaterialOf. A material knows no
-   * mesh, no clock and no MPI.
+   * it fills, a stress law, and the cell kernel that this law makes. The kernel
+   * works on whatever cells, factors on the moduli and memory it is given; the
+   * law knows points only. MaterialOf makes classes of materials from laws, see
+   * law.h.
    */
   class Material : public CellKernel
   {
@@ -186,20 +113,19 @@ namespace Voussoir
     double      damping        = 1.;
     double      static_factor  = 1.;
     double      expansion      = 1e-5; // [1/K]
-
-    /** Factor on the stress: the static factor in the static stage; under
-     *  dynamic load what lets the moduli hold at the reference frequency of
-     *  the damping model. */
-    double stiffness_scale = 1.;
-
-    /** Stiffness of the springs of the damping filters together, over the
-     *  material's own; 0 without. */
-    double filter_stiffness = 0.;
-
-    /** Factor on the strain that the law sees: the static factor in the static
-     *  stage. */
-    double strain_factor = 1.;
   };
+
+  /** By a function of each material: what is known of all of them by index. */
+  template <typename Function>
+  auto
+  for_each_material(const std::vector<const Material *> &materials,
+                    const Function                      &function)
+  {
+    std::vector<decltype(function(*materials[0]))> values;
+    for (const Material *material : materials)
+      values.push_back(function(*material));
+    return values;
+  }
 } // namespace Voussoir
 
 #endif

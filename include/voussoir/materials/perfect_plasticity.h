@@ -1,8 +1,8 @@
 #ifndef voussoir_materials_perfect_plasticity_h
 #define voussoir_materials_perfect_plasticity_h
 
+#include <voussoir/materials/cohesion_and_friction.h>
 #include <voussoir/materials/isotropic_elasticity.h>
-#include <voussoir/materials/material.h>
 
 namespace Voussoir
 {
@@ -11,12 +11,10 @@ namespace Voussoir
    * or softening, have in common. They remember the plastic strain and the
    * equivalent plastic strain, the sum of sqrt(2/3 de : de).
    */
-  struct PerfectPlasticity : IsotropicElasticity
+  struct PerfectPlasticity : IsotropicElasticity, CohesionAndFriction
   {
     static constexpr unsigned int n_history = 7;
 
-    double cohesion       = 1.5e6; // c [Pa]
-    double friction_angle = 45.;   // phi [degrees]
     double dilation_angle = 10.;   // psi [degrees]
     double cut_off        = 0.5e6; // [Pa]
 
@@ -27,16 +25,6 @@ namespace Voussoir
 
     void
     check(const std::string &place) const;
-
-    template <typename Number>
-    static SymmetricTensor3<Number>
-    plastic_strain(const Number *history)
-    {
-      SymmetricTensor3<Number> plastic;
-      for (unsigned int i = 0; i < 6; ++i)
-        plastic.access_raw_entry(i) = history[i];
-      return plastic;
-    }
 
     /** Flow that takes @p excess off the elastic @p trial stress of a strain.
      */
@@ -52,9 +40,9 @@ namespace Voussoir
         history[i] += increment.access_raw_entry(i);
       history[6] += std::sqrt(Number(2. / 3. * (increment * increment)));
 
-      PointResponse<Number> response;
-      response.stress            = trial - excess;
-      response.elastic_strain    = strain - plastic_strain(history);
+      PointResponse<Number> response(strain);
+      response.stress = trial - excess;
+      response.elastic_strain -= tensor_of(history);
       response.dissipation       = response.stress * increment;
       response.plastic_increment = increment;
       return response;
@@ -65,9 +53,6 @@ namespace Voussoir
 
     std::vector<double>
     outputs(const double *history, const double element_length) const;
-
-    std::string
-    remark(const double element_length) const;
   };
 } // namespace Voussoir
 

@@ -1,7 +1,7 @@
 #ifndef voussoir_materials_principal_stress_h
 #define voussoir_materials_principal_stress_h
 
-#include <voussoir/fem/point_history.h>
+#include <voussoir/fem/simd.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,8 @@
 #ifndef voussoir_materials_softening_curve_h
 #define voussoir_materials_softening_curve_h
 
+#include <voussoir/fem/simd.h>
+
 #include <deal.II/base/parameter_handler.h>
 
 #include <string>
@@ -8,6 +10,24 @@
 
 namespace Voussoir
 {
+  /** What a step does to a point whose damage follows a curve. */
+  template <typename Number>
+  struct DamageProgress
+  {
+    Number effective =
+      1.; // factor on the effective stress: irreversible strain
+    Number intact      = 1.; // 1 - damage
+    Number dissipation = 0.; // over the elastic energy of the effective stress
+
+    void
+    set_lane(const unsigned int lane, const DamageProgress<double> &progress)
+    {
+      lane_of(effective, lane)   = progress.effective;
+      lane_of(intact, lane)      = progress.intact;
+      lane_of(dissipation, lane) = progress.dissipation;
+    }
+  };
+
   /**
    * Stress over strain in a uniaxial test beyond the elastic limit, in straight
    * pieces. The inelastic strain of a node is a part of the material itself and
@@ -59,14 +79,6 @@ namespace Voussoir
     Point
     at(const double strain, const double band) const;
 
-    /** What a step does to a point. */
-    struct Progress
-    {
-      double effective;   // factor on the effective stress: irreversible strain
-      double intact;      // 1 - damage
-      double dissipation; // over the elastic energy of the effective stress
-    };
-
     /**
      * Lets the damage of a point go one step on.
      *
@@ -76,7 +88,7 @@ namespace Voussoir
      * @param band width of the band [m]
      * @param followed share of the growth that this step takes in
      */
-    Progress
+    DamageProgress<double>
     go_on(const double equivalent_stress,
           double      &largest,
           const double band,

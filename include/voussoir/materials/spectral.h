@@ -1,7 +1,7 @@
 #ifndef voussoir_materials_spectral_h
 #define voussoir_materials_spectral_h
 
-#include <voussoir/fem/point_history.h>
+#include <voussoir/fem/simd.h>
 
 #include <array>
 #include <cmath>
@@ -134,6 +134,24 @@ namespace Voussoir
     for (unsigned int d = 0; d < 3; ++d)
       deviator[d][d] -= (1. / 3.) * first;
     return {first, 0.5 * (deviator * deviator)};
+  }
+
+
+  /** Bounds of the principal values, which lie within I1/3 -+ 2 sqrt(J2/3). */
+  template <typename Number>
+  struct PrincipalBounds
+  {
+    Number smallest, largest;
+  };
+
+  template <typename Number>
+  PrincipalBounds<Number>
+  principal_bounds(const SymmetricTensor3<Number> &stress)
+  {
+    const auto [first, second] = invariants(stress);
+    const Number mean          = (1. / 3.) * first,
+                 radius        = std::sqrt(Number((4. / 3.) * second));
+    return {mean - radius, mean + radius};
   }
 } // namespace Voussoir
 

@@ -6,6 +6,15 @@
 
 namespace Voussoir
 {
+  /** What laws that tell the same call it. */
+  namespace OutputName
+  {
+    inline const std::string tension_damage     = "tension damage",
+                             compression_damage = "compression damage",
+                             crack_opening      = "crack opening [mm]";
+  }
+
+
   /**
    * Across an open crack the stress no longer contracts the material sideways:
    * a uniaxial test with the effective stress s has the strain
@@ -26,6 +35,13 @@ namespace Voussoir
   {
     Spectrum<Number>      principal;
     std::array<Number, 3> tension, compression;
+
+    /** The stresses of the two parts. */
+    std::array<SymmetricTensor3<Number>, 2>
+    parts() const
+    {
+      return {{principal.compose(tension), principal.compose(compression)}};
+    }
   };
 
   /**

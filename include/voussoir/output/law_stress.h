@@ -26,7 +26,7 @@ namespace Voussoir
 
   private:
     const Material     *material;
-    const PointHistory *history;
+    const PointHistory *history; // or null
     PointHistory::Place place{0, 0};
     unsigned int        q = 0;
   };

@@ -4,7 +4,6 @@
 #include <voussoir/base/keyed_values.h>
 #include <voussoir/base/registry.h>
 #include <voussoir/fem/initial_state.h>
-#include <voussoir/fem/internal_force.h>
 #include <voussoir/fem/state.h>
 #include <voussoir/materials/material.h>
 #include <voussoir/output/names.h>
@@ -22,7 +21,7 @@ namespace Voussoir
     const Discretization                           &discretization;
     const std::vector<const Material *>            &materials;
     std::function<unsigned int(const Grid::Cell &)> material_of_cell;
-    const InternalForce                            &internal_force;
+    const MaterialMemory                           &material_memory;
     const InitialState                             &initial;
     const Reservoir                                *reservoir; // or null
     const Contact                                  *contact;   // or null

@@ -32,7 +32,7 @@ namespace Voussoir
      * @param base_acceleration acceleration of a rigid base [m/s2], or empty
      */
     CentralDifference(const Discretization                     &discretization,
-                      InternalForce                            &internal_force,
+                      const InternalForce                      &internal_force,
                       const LumpedMass                         &mass,
                       const Damping                            &damping,
                       NodalTerms                               &terms,
@@ -76,7 +76,7 @@ namespace Voussoir
     project(State &state, const dealii::Tensor<1, 3> &base);
 
     const Discretization                             &discretization;
-    InternalForce                                    &internal_force;
+    const InternalForce                              &internal_force;
     const LumpedMass                                 &mass;
     NodalTerms                                       &terms;
     const InitialState                               &initial;

@@ -1,0 +1,137 @@
+#ifndef voussoir_fem_cell_kernel_h
+#define voussoir_fem_cell_kernel_h
+
+#include <voussoir/fem/point_history.h>
+#include <voussoir/fem/stiffness_factors.h>
+
+namespace Voussoir
+{
+  /** A run of cell batches, [begin, end), that are all of one material. */
+  struct CellRange
+  {
+    const Discretization::MatrixFree &matrix_free;
+    unsigned int                      begin, end;
+  };
+
+  /**
+   * What a material does with a run of cell batches: the only virtual call of
+   * the cell loop. All vectors that are read must have their ghost values.
+   */
+  class CellKernel
+  {
+  public:
+    virtual ~CellKernel() = default;
+
+    /**
+     * Adds the elastic force to @p force [N],
+     *   f = sum B^T k D : B (u + s w) ,
+     * with the displacement u [m], the damping memory w [m] (null: none) and
+     * the damping factor s of this material.
+     */
+    virtual void
+    add_force(const CellRange        &cells,
+              const StiffnessFactors &factors,
+              Vector                 &force,
+              const Vector           &displacement,
+              const Vector           *damping_memory) const = 0;
+
+    /** Numbers that each integration point remembers; 0 for a linear law. */
+    virtual unsigned int
+    n_history() const = 0;
+
+    /**
+     * Like add_force, but by the law with its memory, which goes one step on;
+     * see DampedResponse. While the law is elastic, this is add_force.
+     *
+     * @param undamped  u_0 [m], by whose strain the law goes; it is @p
+     *   displacement itself, or differs from it by damping memory that it
+     * contains
+     * @param time_step [s]
+     */
+    virtual void
+    add_response(const CellRange        &cells,
+                 const StiffnessFactors &factors,
+                 Vector                 &force,
+                 const Vector           &displacement,
+                 const Vector           *damping_memory,
+                 const Vector           &undamped,
+                 PointHistory           &history,
+                 const double            time_step) const = 0;
+
+    /**
+     * Lets the history know the static displacement u_s [m] and the temperature
+     * T [K] of each node: the strain offset e_0, with which the law sees a (B
+     * u_s - alpha T I) for the static factor a of the material, and the elastic
+     * strain e_s, see DampedResponse.
+     */
+    virtual void
+    set_static_state(const CellRange        &cells,
+                     const StiffnessFactors &factors,
+                     PointHistory           &history,
+                     const Vector           &displacement,
+                     const Vector           &temperature) const = 0;
+
+    /**
+     * Energy stored at the points that have left the elastic range [J], less
+     * what the forces of the static state do.
+     *
+     * @param u_static         displacement of the static state, or empty
+     * @param history_at_start memory of that state; null if there is none
+     */
+    virtual double
+    inelastic_energy(const CellRange        &cells,
+                     const StiffnessFactors &factors,
+                     const PointHistory     &history,
+                     const Vector           &displacement,
+                     const PointHistory     *history_at_start,
+                     const Vector           &u_static) const = 0;
+
+    /**
+     * Adds the force that a free expansion needs to be held back [N],
+     *   f = sum B^T k D : alpha T I ,
+     * with the temperature T [K] of each node in all three components.
+     */
+    virtual void
+    add_thermal_force(const CellRange        &cells,
+                      const StiffnessFactors &factors,
+                      Vector                 &force,
+                      const Vector           &temperature) const = 0;
+
+    /** How points that have left the elastic range count in an integral. */
+    enum class Inelastic
+    {
+      not_at_all,
+      by_damping_share
+    };
+
+    /**
+     * Integral of k D epsilon(u) : epsilon(v) [J].
+     *
+     * @param history memory of the material; null: all of it is elastic
+     */
+    virtual double
+    work(const CellRange        &cells,
+         const StiffnessFactors &factors,
+         const Vector           &u,
+         const Vector           &v,
+         const PointHistory     *history,
+         const Inelastic         inelastic) const = 0;
+
+    /**
+     * Largest eigenvalue of M^-1 K of each cell of a batch by itself [1/s2].
+     * @param masses lumped mass of the cell's nodes [kg], in the order of the
+     *   dof values of one component
+     */
+    virtual Lanes
+    element_eigenvalues(const Discretization::MatrixFree   &matrix_free,
+                        const unsigned int                  batch,
+                        const StiffnessFactors             &factors,
+                        const dealii::AlignedVector<Lanes> &masses) const = 0;
+
+    /** Factor s on the damping memory, relative to the damping model. */
+    virtual double
+    damping_factor() const = 0;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,406 @@
+#ifndef voussoir_materials_cell_kernels_h
+#define voussoir_materials_cell_kernels_h
+
+#include <voussoir/fem/cell_kernel.h>
+#include <voussoir/fem/one_point_cell.h>
+#include <voussoir/materials/damped_response.h>
+
+namespace Voussoir
+{
+  /**
+   * The loops over the cells of a material with a given stress law: what
+   * CellKernel asks for, with the same symbols.
+   */
+  namespace CellKernels
+  {
+    // degree and number of points are known at run time only: as fast as with
+    // template arguments, and one instantiation serves all degrees
+    using Evaluation = dealii::FEEvaluation<3, -1, 0, 3, double>;
+
+    template <typename Cell>
+    constexpr bool is_one_point =
+      std::is_same_v<std::decay_t<Cell>, OnePointCell>;
+
+    /** Load level from which a law with memory itself is asked: below one, as
+     *  damping adds to the stress or takes from it. */
+    constexpr double watched = 0.8;
+
+    /** Calls work(cell) with the kind of cells of the discretization. */
+    template <typename Work>
+    void
+    with_cells(const Discretization::MatrixFree &matrix_free, const Work &work)
+    {
+      if (OnePointCell::serves(matrix_free))
+        work(OnePointCell(matrix_free));
+      else
+        work(Evaluation(matrix_free));
+    }
+
+    /** Full integration needs no more than the stress at its points. */
+    template <typename Cell, typename Law>
+    void
+    stabilise(Cell &cell, const Law &law, const double stress_factor)
+    {
+      if constexpr (is_one_point<Cell>)
+        cell.submit_stabilisation(stress_factor * law.young_modulus,
+                                  law.poisson_ratio);
+      else
+        (void)cell, (void)law, (void)stress_factor;
+    }
+
+    /** Lanes beyond the last cell of a material hold copies. */
+    inline double
+    sum_of_cells(const Discretization::MatrixFree &matrix_free,
+                 const unsigned int                batch,
+                 const Lanes                      &values)
+    {
+      double sum = 0.;
+      for (unsigned int lane = 0;
+           lane < matrix_free.n_active_entries_per_cell_batch(batch);
+           ++lane)
+        sum += values[lane];
+      return sum;
+    }
+
+    /** Reads u + s w (null: u) of the cell. */
+    template <typename Cell>
+    void
+    read_filtered(Cell         &cell,
+                  const Vector &displacement,
+                  const Vector *damping_memory,
+                  const double  damping_factor)
+    {
+      cell.read_dof_values(displacement);
+      if (damping_memory == nullptr)
+        return;
+      std::array<Lanes, 3 * 125> values; // up to degree 4
+      const unsigned int         n = cell.dofs_per_cell;
+      for (unsigned int i = 0; i < n; ++i)
+        values[i] = cell.begin_dof_values()[i];
+      cell.read_dof_values(*damping_memory);
+      for (unsigned int i = 0; i < n; ++i)
+        cell.begin_dof_values()[i] =
+          values[i] + damping_factor * cell.begin_dof_values()[i];
+    }
+
+
+    /** CellKernel::add_force. */
+    template <typename Law>
+    void
+    add_force(const Law       &law,
+              const CellRange &cells,
+              const double     stress_factor,
+              Vector          &force,
+              const Vector    &displacement,
+              const Vector    *damping_memory,
+              const double     damping_factor)
+    {
+      with_cells(cells.matrix_free, [&](auto &&cell) {
+        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+          {
+            cell.reinit(batch);
+            read_filtered(cell, displacement, damping_memory, damping_factor);
+            cell.evaluate(dealii::EvaluationFlags::gradients);
+            for (const unsigned int q : cell.quadrature_point_indices())
+              cell.submit_symmetric_gradient(
+                stress_factor * law.stress(cell.get_symmetric_gradient(q)), q);
+            stabilise(cell, law, stress_factor);
+            cell.integrate(dealii::EvaluationFlags::gradients);
+            cell.distribute_local_to_global(force);
+          }
+      });
+    }
+
+
+    /** CellKernel::add_response. */
+    template <typename Law>
+    void
+    add_response(const Law              &law,
+                 const CellRange        &cells,
+                 const StiffnessFactors &factors,
+                 Vector                 &force,
+                 const Vector           &displacement,
+                 const Vector           *damping_memory,
+                 const double            damping_factor,
+                 const Vector           &undamped,
+                 PointHistory           &history,
+                 const double            time_step)
+    {
+      const DampedResponse<Law> response(law, factors);
+      const double              stress_factor = factors.stress;
+      const auto               &matrix_free   = cells.matrix_free;
+      const bool                damped =
+        damping_memory != nullptr || &undamped != &displacement;
+      with_cells(matrix_free, [&](auto &&cell) {
+        // the law goes by the strain without damping
+        std::decay_t<decltype(cell)> undamped_cell(matrix_free);
+        auto                        &own = damped ? undamped_cell : cell;
+        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+          {
+            const Lanes length = history.element_length(batch);
+            cell.reinit(batch);
+            read_filtered(cell, displacement, damping_memory, damping_factor);
+            cell.evaluate(dealii::EvaluationFlags::gradients);
+            bool knows_own = !damped;
+            for (const unsigned int q : cell.quadrature_point_indices())
+              {
+                SymmetricTensor3<Lanes> stress =
+                  stress_factor * law.stress(cell.get_symmetric_gradient(q));
+                SymmetricTensor3<Lanes> trial = stress;
+                if (history.has_static_strains())
+                  trial += law.stress(history.strain_offset(batch, q));
+                if (history.is_active(batch, q) ||
+                    any_above(law.load_level(trial, length), watched))
+                  {
+                    if (!knows_own)
+                      {
+                        own.reinit(batch);
+                        own.gather_evaluate(undamped,
+                                            dealii::EvaluationFlags::gradients);
+                        knows_own = true;
+                      }
+                    stress = response.advance(
+                      cell.get_symmetric_gradient(q),
+                      own.get_symmetric_gradient(q),
+                      batch,
+                      q,
+                      matrix_free.n_active_entries_per_cell_batch(batch),
+                      cell.JxW(q),
+                      time_step,
+                      history);
+                  }
+                cell.submit_symmetric_gradient(stress, q);
+              }
+            stabilise(cell, law, stress_factor);
+            cell.integrate(dealii::EvaluationFlags::gradients);
+            cell.distribute_local_to_global(force);
+          }
+      });
+    }
+
+
+    /** CellKernel::set_static_state. */
+    template <typename Law>
+    void
+    set_static_state(const Law              &law,
+                     const CellRange        &cells,
+                     const StiffnessFactors &factors,
+                     const double            static_factor,
+                     const double            expansion,
+                     PointHistory           &history,
+                     const Vector           &displacement,
+                     const Vector           &temperature)
+    {
+      const DampedResponse<Law> response(law, factors);
+      with_cells(cells.matrix_free, [&](auto &&cell) {
+        std::decay_t<decltype(cell)> warmth(cells.matrix_free);
+        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+          {
+            cell.reinit(batch);
+            cell.gather_evaluate(displacement,
+                                 dealii::EvaluationFlags::gradients);
+            warmth.reinit(batch);
+            warmth.gather_evaluate(temperature,
+                                   dealii::EvaluationFlags::values);
+            for (const unsigned int q : cell.quadrature_point_indices())
+              response.set_static_state(cell.get_symmetric_gradient(q),
+                                        warmth.get_value(q),
+                                        static_factor,
+                                        expansion,
+                                        batch,
+                                        q,
+                                        history);
+          }
+      });
+    }
+
+
+    /** CellKernel::inelastic_energy. */
+    template <typename Law>
+    double
+    inelastic_energy(const Law              &law,
+                     const CellRange        &cells,
+                     const StiffnessFactors &factors,
+                     const PointHistory     &history,
+                     const Vector           &displacement,
+                     const PointHistory     *history_at_start,
+                     const Vector           &u_static)
+    {
+      const DampedResponse<Law> response(law, factors);
+      const bool                from_static_state = u_static.size() > 0;
+      double                    total             = 0.;
+      with_cells(cells.matrix_free, [&](auto &&cell) {
+        std::decay_t<decltype(cell)> cell_static(cells.matrix_free);
+        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+          {
+            const auto points = cell.quadrature_point_indices();
+            if (std::none_of(points.begin(),
+                             points.end(),
+                             [&](const unsigned int q) {
+                               return history.is_active(batch, q);
+                             }))
+              continue;
+            cell.reinit(batch);
+            cell.gather_evaluate(displacement,
+                                 dealii::EvaluationFlags::gradients);
+            if (from_static_state)
+              {
+                cell_static.reinit(batch);
+                cell_static.gather_evaluate(u_static,
+                                            dealii::EvaluationFlags::gradients);
+              }
+            Lanes sum = 0.;
+            for (const unsigned int q : points)
+              if (history.is_active(batch, q))
+                {
+                  SymmetricTensor3<Lanes> static_strain;
+                  if (from_static_state)
+                    static_strain = cell_static.get_symmetric_gradient(q);
+                  sum +=
+                    response.stored_energy(cell.get_symmetric_gradient(q),
+                                           from_static_state ? &static_strain :
+                                                               nullptr,
+                                           batch,
+                                           q,
+                                           history,
+                                           history_at_start) *
+                    cell.JxW(q);
+                }
+            total += sum_of_cells(cells.matrix_free, batch, sum);
+          }
+      });
+      return total;
+    }
+
+
+    /** CellKernel::add_thermal_force. */
+    template <typename Law>
+    void
+    add_thermal_force(const Law       &law,
+                      const CellRange &cells,
+                      const double     stress_factor,
+                      const double     expansion,
+                      Vector          &force,
+                      const Vector    &temperature)
+    {
+      with_cells(cells.matrix_free, [&](auto &&cell) {
+        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+          {
+            cell.reinit(batch);
+            cell.gather_evaluate(temperature, dealii::EvaluationFlags::values);
+            for (const unsigned int q : cell.quadrature_point_indices())
+              {
+                SymmetricTensor3<Lanes> strain;
+                for (unsigned int d = 0; d < 3; ++d)
+                  strain[d][d] = expansion * cell.get_value(q)[d];
+                cell.submit_symmetric_gradient(stress_factor *
+                                                 law.stress(strain),
+                                               q);
+              }
+            if constexpr (is_one_point<decltype(cell)>)
+              cell.expand(expansion);
+            stabilise(cell, law, stress_factor);
+            cell.integrate_scatter(dealii::EvaluationFlags::gradients, force);
+          }
+      });
+    }
+
+
+    /** CellKernel::work. */
+    template <typename Law>
+    double
+    work(const Law                  &law,
+         const CellRange            &cells,
+         const double                stress_factor,
+         const Vector               &u,
+         const Vector               &v,
+         const PointHistory         *history,
+         const CellKernel::Inelastic inelastic)
+    {
+      const auto &matrix_free = cells.matrix_free;
+      double      total       = 0.;
+      with_cells(matrix_free, [&](auto &&cell_u) {
+        std::decay_t<decltype(cell_u)> cell_v(matrix_free);
+        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+          {
+            cell_u.reinit(batch);
+            cell_u.read_dof_values(u);
+            cell_u.evaluate(dealii::EvaluationFlags::gradients);
+            auto *other = &cell_u;
+            if (&u != &v)
+              {
+                cell_v.reinit(batch);
+                cell_v.read_dof_values(v);
+                cell_v.evaluate(dealii::EvaluationFlags::gradients);
+                other = &cell_v;
+              }
+            Lanes sum = 0.;
+            for (const unsigned int q : cell_u.quadrature_point_indices())
+              {
+                Lanes part = stress_factor *
+                             law.stress(cell_u.get_symmetric_gradient(q)) *
+                             other->get_symmetric_gradient(q) * cell_u.JxW(q);
+                if (Law::n_history > 0 && history != nullptr &&
+                    history->is_active(batch, q))
+                  part *= inelastic == CellKernel::Inelastic::not_at_all ?
+                            Lanes(0.) :
+                            history->damping_share(batch, q);
+                sum += part;
+              }
+            if constexpr (is_one_point<decltype(cell_u)>)
+              {
+                stabilise(cell_u, law, stress_factor);
+                sum += cell_u.stabilisation_work(*other);
+              }
+            total += sum_of_cells(matrix_free, batch, sum);
+          }
+      });
+      return total;
+    }
+
+
+    /** CellKernel::element_eigenvalues, by power iteration, which 30 products
+     *  bring within one or two per cent. */
+    template <typename Law>
+    Lanes
+    element_eigenvalues(const Law                          &law,
+                        const Discretization::MatrixFree   &matrix_free,
+                        const unsigned int                  batch,
+                        const double                        stress_factor,
+                        const dealii::AlignedVector<Lanes> &masses)
+    {
+      Lanes eigenvalue = 0.;
+      with_cells(matrix_free, [&](auto &&cell) {
+        cell.reinit(batch);
+        const unsigned int           n = masses.size();
+        dealii::AlignedVector<Lanes> mode(3 * n);
+        for (unsigned int i = 0; i < 3 * n; ++i)
+          mode[i] = std::cos(2.3 * i * i + 0.7 * i);
+        for (unsigned int iteration = 0; iteration < 30; ++iteration)
+          {
+            Lanes norm = 0.;
+            for (unsigned int i = 0; i < 3 * n; ++i)
+              norm += mode[i] * mode[i] * masses[i % n];
+            norm = 1. / std::sqrt(norm);
+            for (unsigned int i = 0; i < 3 * n; ++i)
+              cell.begin_dof_values()[i] = mode[i] *= norm;
+            cell.evaluate(dealii::EvaluationFlags::gradients);
+            for (const unsigned int q : cell.quadrature_point_indices())
+              cell.submit_symmetric_gradient(
+                stress_factor * law.stress(cell.get_symmetric_gradient(q)), q);
+            stabilise(cell, law, stress_factor);
+            cell.integrate(dealii::EvaluationFlags::gradients);
+            eigenvalue = 0.;
+            for (unsigned int i = 0; i < 3 * n; ++i)
+              {
+                eigenvalue += mode[i] * cell.begin_dof_values()[i];
+                mode[i] = cell.begin_dof_values()[i] / masses[i % n];
+              }
+          }
+      });
+      return eigenvalue;
+    }
+  } // namespace CellKernels
+} // namespace Voussoir
+
+#endif

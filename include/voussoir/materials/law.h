@@ -1,0 +1,142 @@
+#ifndef voussoir_materials_law_h
+#define voussoir_materials_law_h
+
+#include <voussoir/fem/simd.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <string>
+#include <vector>
+
+namespace Voussoir
+{
+  /**
+   * The contract of a stress law: all that somebody who adds one must know. A
+   * law is a struct without mesh, clock and ranks, in one file of its own with
+   * the line
+   *
+   *   const Registry<Material>::Add<MaterialOf<Law>>
+   *     registered("name", "One sentence.");
+   *
+   * and doc/new_material.md makes one step by step. Its functions are templates
+   * in the type of numbers: `double` for one point by itself, `Lanes` for a
+   * point of as many cells at once. Tension is positive; tensors have their
+   * true components (no doubled shear strains).
+   *
+   * Every law has, most of them from IsotropicElasticity,
+   *
+   *     double young_modulus;  // E [Pa]
+   *     double poisson_ratio;  // nu [1]
+   *     void declare_parameters(ParameterHandler &prm);  // add_parameter()
+   *     template <typename Number>
+   *     SymmetricTensor3<Number>
+   *     stress(const SymmetricTensor3<Number> &strain) const; // elastic [Pa]
+   *
+   * where E and nu are those that waves, boundaries and one-point cells go by.
+   *
+   * A law with memory has n_history > 0 numbers at each point, which begin at
+   * zero and stay there while it is elastic, and
+   *
+   *     template <typename Number>
+   *     PointResponse<Number>
+   *     respond(const SymmetricTensor3<Number> &strain,
+   *             Number                         *history,
+   *             const PointSituation<Number>   &situation) const;
+   *
+   * which answers the strain e [1] that the point has come to and lets its
+   * history go one step on. Where the answer is elastic, it must be `stress`.
+   * What LawDefaults has, a law need not have itself.
+   */
+  struct LawDefaults
+  {
+    /** Numbers that a point remembers. */
+    static constexpr unsigned int n_history = 0;
+
+    /** Whether the law has no directions of its own. */
+    static constexpr bool isotropic = true;
+
+    /** Refuses entries that do not fit together by a UserError that begins with
+     *  @p place, and derives what the law needs of them. */
+    void
+    check(const std::string & /*place*/) const
+    {}
+
+    /**
+     * A bound that costs little: one at the elastic limit or before. A point
+     * that has been elastic so far stays it without a call of `respond` while
+     * this is below 0.8. By default every point is asked.
+     *
+     * @param elastic_stress [Pa]
+     * @param element_length as in PointSituation [m]
+     */
+    template <typename Number>
+    Number
+    load_level(const SymmetricTensor3<Number> & /*elastic_stress*/,
+               const Number & /*element_length*/) const
+    {
+      return 1.;
+    }
+
+    /** What the history tells the user, with units; words that several laws
+     *  share make one picture. */
+    static std::vector<std::string>
+    output_names()
+    {
+      return {};
+    }
+
+    /** The values of `output_names` at a point that has left the elastic
+     *  range. */
+    std::vector<double>
+    outputs(const double * /*history*/, const double /*element_length*/) const
+    {
+      return {};
+    }
+
+    /** A sentence for the log if cells as long as this [m] do not suit the
+     *  law; else empty. */
+    std::string
+    remark(const double /*element_length*/) const
+    {
+      return {};
+    }
+  };
+
+  /** What a law with memory knows of a point besides its strain. */
+  template <typename Number>
+  struct PointSituation
+  {
+    Number element_length; // width of the band in which a crack lives [m]
+    double time_step;      // since the last call [s]
+  };
+
+  /** What a law with memory answers; to begin with, that of a point without
+   *  stress in which nothing is lost. */
+  template <typename Number>
+  struct PointResponse
+  {
+    explicit PointResponse(const SymmetricTensor3<Number> &strain)
+      : elastic_strain(strain)
+    {}
+
+    /** sigma [Pa]. */
+    SymmetricTensor3<Number> stress;
+
+    /** e_e [1], of which sigma : e_e / 2 is the stored energy; all of the
+     *  strain unless there is plastic strain. */
+    SymmetricTensor3<Number> elastic_strain;
+
+    /** Energy lost in this step to cracks and plastic flow [J/m3]; what damping
+     *  loses is no part of it. */
+    Number dissipation = Number(0.);
+
+    /** b [1]: share that damage leaves of the stress of damping, for a single
+     *  damage d that is 1 - d. */
+    Number damping_share = Number(1.);
+
+    /** Plastic strain of this step [1]. */
+    SymmetricTensor3<Number> plastic_increment = SymmetricTensor3<Number>();
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,7 +1,7 @@
 # deal_ii_pickup_tests() with four cures: tests called long_* run only with
 # VOUSSOIR_ALL_TESTS; labels that ctest knows (deal.II 9.4 sets LABEL, which
-# ctest ignores); and an edited parameter file runs its test again, as does a
-# new voussoir the tests of what it refuses.
+# ctest ignores); and an edited parameter file, or page of doc/, runs its test
+# again, as does a new voussoir the tests of what it refuses.
 macro(voussoir_pickup_tests)
   deal_ii_pickup_tests()
   get_filename_component(_subject ${CMAKE_CURRENT_SOURCE_DIR} NAME)
@@ -21,10 +21,11 @@ macro(voussoir_pickup_tests)
     elseif(IS_DIRECTORY ${_folder}/serial) # made by the harness of deal.II 9.6
       string(APPEND _folder "/serial")
     endif()
-    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm)
-      add_custom_command(OUTPUT ${_folder}/output APPEND
-        DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm)
-    endif()
+    foreach(_input ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm ${CMAKE_SOURCE_DIR}/doc/${_name}.md)
+      if(EXISTS ${_input})
+        add_custom_command(OUTPUT ${_folder}/output APPEND DEPENDS ${_input})
+      endif()
+    endforeach()
     if(TEST_TARGET STREQUAL "voussoir_refusal")
       add_custom_command(OUTPUT ${_folder}/output APPEND DEPENDS voussoir)
     endif()

@@ -4,7 +4,9 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
 
+#include <cstdlib>
 #include <functional>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <string>
@@ -32,15 +34,38 @@ namespace Voussoir
       std::function<std::unique_ptr<Base>()> create;
     };
 
+    /**
+     * The line above. Nothing can catch an error before `main` begins, so a
+     * second class of the same name ends the program at its start.
+     */
     template <typename Class>
     struct Add
     {
       Add(const std::string &name, const std::string &description)
       {
-        entries()[name] = {description,
-                           [] { return std::make_unique<Class>(); }};
+        try
+          {
+            add(name, {description, [] { return std::make_unique<Class>(); }});
+          }
+        catch (const UserError &error)
+          {
+            std::cerr << "Error: " << error.what() << std::endl;
+            std::exit(1);
+          }
       }
     };
+
+    /** Throws a UserError if there is a class of this name. */
+    static void
+    add(const std::string &name, const Entry &entry)
+    {
+      const auto [place, is_new] = entries().insert({name, entry});
+      if (!is_new)
+        throw UserError("Two classes register as \"" + name +
+                        "\", described \"" + place->second.description +
+                        "\" and \"" + entry.description +
+                        "\"; give one another name.");
+    }
 
     /** All classes by name, in alphabetical order. */
     static std::map<std::string, Entry> &

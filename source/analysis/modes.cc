@@ -4,6 +4,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/text.h>
+#include <voussoir/fem/lumped_mass.h>
 #include <voussoir/fem/nodal_values.h>
 
 #include <deal.II/base/timer.h>

@@ -14,6 +14,15 @@ namespace Voussoir
 
     // how often rest is looked for, in steps
     constexpr unsigned int look_interval = 20;
+
+
+    Damping
+    undamped()
+    {
+      DampingParameters none;
+      none.model = "none";
+      return Damping(none);
+    }
   } // namespace
 
 
@@ -28,13 +37,13 @@ namespace Voussoir
     , internal_force(internal_force)
     , mass(mass_of_run)
     , terms(terms_of_run)
+    , damping(undamped())
     , contact(contact)
   {
     for (unsigned int i = 0; i < mass.mass.locally_owned_size(); ++i)
       if (constraints.is_constrained(
             discretization.owned_dofs.nth_index_in_set(i)))
         mass.mass.local_element(i) = mass.inverse.local_element(i) = 0.;
-    std::fill(terms.forces.begin(), terms.forces.end(), Tensor<1, 3>());
     std::fill(terms.dashpots.begin(),
               terms.dashpots.end(),
               NodalTerms::Matrix());
@@ -53,26 +62,15 @@ namespace Voussoir
   }
 
 
-  CentralDifference
+  std::unique_ptr<CentralDifference>
   Relaxation::make_scheme(const double mass_coefficient)
   {
-    DampingParameters none;
-    none.model = "none";
-    Damping damping(none);
     damping.mass_coefficient = mass_coefficient;
-    return {discretization,
-            internal_force,
-            mass,
-            damping,
-            terms,
-            loaded,
-            contact != nullptr ? std::vector<Projection *>{contact} :
-                                 std::vector<Projection *>{},
-            [](const double) {},
-            {},
-            {},
-            false,
-            time_step};
+    EquationOfMotion equation{
+      discretization, internal_force, mass, terms, damping, loaded};
+    if (contact != nullptr)
+      equation.projections.push_back(contact);
+    return std::make_unique<CentralDifference>(equation, LeapFrog{time_step});
   }
 
 
@@ -110,8 +108,8 @@ namespace Voussoir
 
     // from rest, undamped until the first look
     double frequency = 0., mass_coefficient = 0.;
-    auto   scheme = std::make_unique<CentralDifference>(make_scheme(0.));
-    State  state  = scheme->state_at_rest();
+    auto   scheme         = make_scheme(0.);
+    State  state          = scheme->state_at_rest();
     state.material_memory = std::move(memory);
     if (contact != nullptr)
       contact->start(state);
@@ -160,7 +158,7 @@ namespace Voussoir
         if (std::abs(wanted - mass_coefficient) > 0.2 * mass_coefficient)
           {
             mass_coefficient = wanted;
-            scheme = std::make_unique<CentralDifference>(make_scheme(wanted));
+            scheme           = make_scheme(wanted);
           }
       }
     throw UserError("The static state has not come to rest within 50000 steps: "

@@ -11,94 +11,6 @@ namespace Voussoir
 {
   using namespace dealii;
 
-  void
-  StaticParameters::declare(ParameterHandler &prm)
-  {
-    prm.add_parameter(
-      "Stages",
-      stages,
-      "Loads that are there before the earthquake: stages separated by "
-      "semicolons, in their order, with the names of loads separated by "
-      "commas, as in \"weight; water, silt; temperature\". They stay as they "
-      "are at t = 0. Empty: no static stage.");
-    prm.add_parameter(
-      "Supports",
-      supports,
-      "How the absorbing faces stand in the static stage: fixed, held at right "
-      "angles to themselves (roller), or on the springs of the boundary. Their "
-      "reactions stay when the faces begin to absorb.",
-      Patterns::Selection("fixed|roller|springs"));
-    prm.add_parameter("Relative tolerance",
-                      tolerance,
-                      "Residual of the static equations over the load.",
-                      Patterns::Double(1e-14, 1e-2));
-    prm.add_parameter("Rest tolerance",
-                      rest,
-                      "With interfaces: motion in a natural period over the "
-                      "largest displacement at which the state is at rest.",
-                      Patterns::Double(1e-12, 1e-2));
-  }
-
-
-  std::vector<std::vector<std::string>>
-  StaticParameters::stage_names() const
-  {
-    std::vector<std::vector<std::string>> names;
-    for (const std::string &stage : split_list(stages, ';'))
-      names.push_back(split_list(stage));
-    return names;
-  }
-
-
-  void
-  StaticParameters::check(const NamedLoads           &loads,
-                          const InterfacesParameters &interfaces) const
-  {
-    std::vector<std::string> known;
-    for (const auto &load : loads)
-      known.push_back(load.first);
-    std::set<std::string> staged;
-    for (const auto &stage : stage_names())
-      for (const std::string &name : stage)
-        {
-          if (std::find(known.begin(), known.end(), name) == known.end())
-            throw UserError("\"Stages\" in section \"Static state\" names \"" +
-                            name +
-                            "\", which is not among the \"Names\" of "
-                            "section \"Loads\"" +
-                            known_names(name, known) + ".");
-          if (!staged.insert(name).second)
-            throw UserError("\"Stages\" in section \"Static state\" names \"" +
-                            name + "\" twice; keep one of them.");
-        }
-    for (const auto &[name, load] : loads)
-      if (load->steady() && staged.count(name) == 0)
-        throw UserError("The load \"" + name +
-                        "\" is there before the earthquake, but \"Stages\" in "
-                        "section \"Static state\" does not name it; add it "
-                        "there.");
-    for (const InterfaceParameters &interface : interfaces.list)
-      {
-        const std::string &after = interface.grouted_after;
-        const std::string  place = "section \"Interfaces/" + interface.name;
-        if (after.empty())
-          continue;
-        if (staged.count(after) == 0)
-          throw UserError(
-            "\"Grouted after\" in " + place + "\" names \"" + after +
-            "\", which is not in the \"Stages\" of section \"Static state\"" +
-            known_names(after, {staged.begin(), staged.end()}) + ".");
-        const auto last = stage_names().back();
-        if (interface.uplift.given() &&
-            std::find(last.begin(), last.end(), after) != last.end())
-          throw UserError("The interface of " + place +
-                          "\" is grouted after the last of the static stages, "
-                          "so that its \"Uplift\" would come with the "
-                          "earthquake; let a stage follow.");
-      }
-  }
-
-
   namespace
   {
     std::string
@@ -120,17 +32,16 @@ namespace Voussoir
 
     // What a load does before the earthquake, on held nodes too.
     Vector
-    force_of(const Load           &load,
+    force_of(Load                 &load,
              const Discretization &discretization,
-             NodalTerms           &terms)
+             const NodalTerms     &terms)
     {
-      Vector force = discretization.create_vector();
-      std::fill(terms.forces.begin(), terms.forces.end(), Tensor<1, 3>());
-      load.add_forces(0., terms);
-      for (unsigned int slot = 0; slot < terms.nodes.size(); ++slot)
+      Vector      force = discretization.create_vector();
+      NodalForces forces(terms.nodes.size());
+      load.add_forces(0., forces);
+      for (unsigned int slot = 0; slot < forces.size(); ++slot)
         for (unsigned int d = 0; d < 3; ++d)
-          force.local_element(3 * terms.nodes[slot] + d) =
-            terms.forces[slot][d];
+          force.local_element(3 * terms.nodes[slot] + d) = forces[slot][d];
       load.add_steady_force(force);
       return force;
     }
@@ -176,8 +87,226 @@ namespace Voussoir
     }
 
 
-    /** The state after the last stage; its force is not yet that of the dynamic
-     *  model. */
+    /** The stages of the static state: each adds its loads to those before and
+     *  finds the equilibrium with all of them. */
+    class StaticStages
+    {
+    public:
+      StaticStages(const StaticModel      &model,
+                   const StaticParameters &parameters,
+                   Log                    &log);
+
+      /** Applies a stage, whose loads are those of these names; returns what
+       *  the summary says of it. */
+      nlohmann::json
+      apply(const std::vector<std::string>      &stage,
+            const std::map<std::string, Load *> &load_of);
+
+      /** After the stages so far; its force is that of the supports. */
+      InitialState state;
+
+    private:
+      void
+      add_load(const std::string &name, Load &load, nlohmann::json &report);
+
+      /** Equilibrium of materials that are elastic, or the state as it is once
+       *  they have cracked or yielded; returns the iterations or steps. */
+      unsigned int
+      find_elastic_equilibrium(const Vector &force);
+
+      /** Brings the memory of the materials to this state, and where they crack
+       *  or yield the state to equilibrium again. */
+      void
+      crack_and_yield(const Vector &force, unsigned int &iterations);
+
+      /** Whether materials have cracked or yielded on any rank. */
+      bool
+      dissipated() const;
+
+      void
+      report_equilibrium(const std::vector<std::string> &stage,
+                         const unsigned int              iterations,
+                         const double                    seconds,
+                         nlohmann::json                 &report) const;
+
+      const StaticModel              &model;
+      const StaticParameters         &parameters;
+      Log                            &log;
+      const InternalForce             internal_force; // with static moduli
+      const bool                      on_springs;
+      const AffineConstraints<double> constraints;
+      std::unique_ptr<ElasticSolver>  solver;     // without contact
+      std::unique_ptr<Relaxation>     relaxation; // with contact or memory
+      Vector                          loads;      // so far [N]
+    };
+
+
+    StaticStages::StaticStages(const StaticModel      &model,
+                               const StaticParameters &parameters,
+                               Log                    &log)
+      : model(model)
+      , parameters(parameters)
+      , log(log)
+      , internal_force(model.internal_force.with(
+          for_each_material(model.materials,
+                            [](const Material &material) {
+                              return StiffnessFactors{material.static_factor,
+                                                      material.static_factor,
+                                                      0.};
+                            })))
+      , on_springs(parameters.supports == "springs")
+      , constraints(model.discretization.make_constraints(
+          on_springs ? model.boundaries.supports.list() :
+                       model.boundaries.supports_with_absorbing(
+                         parameters.supports == "roller")))
+      , loads(model.discretization.create_vector())
+    {
+      const Timer clock;
+      if (model.contact == nullptr)
+        solver =
+          std::make_unique<ElasticSolver>(model.discretization,
+                                          internal_force,
+                                          model.materials,
+                                          model.material_of_cell,
+                                          constraints,
+                                          on_springs ? &model.terms : nullptr);
+      if (model.contact != nullptr || internal_force.has_memory())
+        relaxation = std::make_unique<Relaxation>(model.discretization,
+                                                  internal_force,
+                                                  model.mass,
+                                                  model.terms,
+                                                  constraints,
+                                                  on_springs,
+                                                  model.contact);
+      log.line("Static state by ",
+               solver ? "multigrid" : "damped motion with contact",
+               ", set up in ",
+               duration_text(clock.wall_time()));
+
+      state.displacement = state.temperature = state.force = loads;
+      state.material_memory = internal_force.new_memory();
+    }
+
+
+    nlohmann::json
+    StaticStages::apply(const std::vector<std::string>      &stage,
+                        const std::map<std::string, Load *> &load_of)
+    {
+      const Timer    clock;
+      nlohmann::json report;
+      for (const std::string &name : stage)
+        add_load(name, *load_of.at(name), report);
+      Vector force = loads;
+      internal_force.add_thermal_force(force, state.temperature);
+
+      unsigned int iterations = find_elastic_equilibrium(force);
+      if (internal_force.has_memory())
+        crack_and_yield(force, iterations);
+
+      // f(u) minus loads and contact is what the supports bring
+      internal_force.respond(state.force,
+                             state.displacement,
+                             state.material_memory);
+      state.force -= force;
+      if (model.contact != nullptr)
+        model.contact->add_forces(-1., state.force);
+      report_equilibrium(stage, iterations, clock.wall_time(), report);
+      if (model.contact != nullptr)
+        model.contact->grout(stage, state.displacement);
+      return report;
+    }
+
+
+    void
+    StaticStages::add_load(const std::string &name,
+                           Load              &load,
+                           nlohmann::json    &report)
+    {
+      const Vector force = force_of(load, model.discretization, model.terms);
+      load.add_temperature(state.temperature);
+      const Tensor<1, 3> sum = resultant(force);
+      log.line("  load ", name, ": resultant ", meganewtons(sum));
+      report["loads"][name]["resultant [N]"] = to_json(sum);
+      loads += force;
+    }
+
+
+    unsigned int
+    StaticStages::find_elastic_equilibrium(const Vector &force)
+    {
+      MaterialMemory none;
+      if (!solver)
+        return relaxation->find_equilibrium(
+          state.displacement, none, force, parameters.rest, log);
+      if (dissipated()) // a state with cracks goes on from where it is
+        return 0;
+      return solver->solve(state.displacement, force, parameters.tolerance);
+    }
+
+
+    void
+    StaticStages::crack_and_yield(const Vector &force, unsigned int &iterations)
+    {
+      internal_force.set_static_state(state.displacement,
+                                      state.temperature,
+                                      state.material_memory);
+      internal_force.respond(state.force,
+                             state.displacement,
+                             state.material_memory);
+      if (!dissipated())
+        return;
+      log.line("  cracks or yields");
+      if (solver &&
+          correct_by_initial_stresses(*solver,
+                                      internal_force,
+                                      state.material_memory,
+                                      on_springs ? &model.terms : nullptr,
+                                      state.displacement,
+                                      force,
+                                      std::max(parameters.tolerance, 1e-8),
+                                      iterations))
+        return;
+      log.line("  by damped motion at rest again after ",
+               relaxation->find_equilibrium(state.displacement,
+                                            state.material_memory,
+                                            force,
+                                            parameters.rest,
+                                            log),
+               " steps");
+    }
+
+
+    bool
+    StaticStages::dissipated() const
+    {
+      return Utilities::MPI::max(state.material_memory.dissipated(),
+                                 model.discretization.grid.communicator()) > 0.;
+    }
+
+
+    void
+    StaticStages::report_equilibrium(const std::vector<std::string> &stage,
+                                     const unsigned int              iterations,
+                                     const double                    seconds,
+                                     nlohmann::json &report) const
+    {
+      const Tensor<1, 3> reactions = resultant(state.force);
+      const double       largest   = largest_amount(state.displacement);
+      std::ostringstream text;
+      text << std::setprecision(4) << "  stage \"" << join(stage, ", ")
+           << "\": " << iterations << (solver ? " iterations, " : " steps, ")
+           << duration_text(seconds) << "; reactions " << meganewtons(reactions)
+           << ", largest displacement " << 1e3 * largest << " mm";
+      log.line(text.str());
+      report["iterations"]               = iterations;
+      report["sum of loads so far [N]"]  = to_json(resultant(loads));
+      report["sum of reactions [N]"]     = to_json(reactions);
+      report["largest displacement [m]"] = largest;
+      report["names"]                    = stage;
+    }
+
+
+    /** The state after the last stage, in the static model. */
     InitialState
     apply_stages(const StaticModel      &model,
                  const StaticParameters &parameters,
@@ -185,140 +314,13 @@ namespace Voussoir
                  Log                    &log,
                  nlohmann::json         &summary)
     {
-      const Discretization               &discretization = model.discretization;
+      const Timer                         clock;
       const std::map<std::string, Load *> load_of(loads.begin(), loads.end());
-      const InternalForce internal_force = model.internal_force.with(
-        for_each_material(model.materials, [](const Material &material) {
-          return StiffnessFactors{material.static_factor,
-                                  material.static_factor,
-                                  0.};
-        }));
-      const Timer                     clock;
-      const bool springs = parameters.supports == "springs";
-      const AffineConstraints<double> constraints =
-        discretization.make_constraints(
-          springs ? model.boundaries.supports.list() :
-                    model.boundaries.supports_with_absorbing(
-                      parameters.supports == "roller"));
-      std::unique_ptr<ElasticSolver> solver;
-      std::unique_ptr<Relaxation>    relaxation;
-      const bool                     has_memory = internal_force.has_memory();
-      if (model.contact == nullptr)
-        solver =
-          std::make_unique<ElasticSolver>(discretization,
-                                          internal_force,
-                                          model.materials,
-                                          model.material_of_cell,
-                                          constraints,
-                                          springs ? &model.terms : nullptr);
-      if (model.contact != nullptr || has_memory)
-        relaxation = std::make_unique<Relaxation>(discretization,
-                                                  internal_force,
-                                                  model.mass,
-                                                  model.terms,
-                                                  constraints,
-                                                  springs,
-                                                  model.contact);
-      log.line("Static state by ",
-               solver ? "multigrid" : "damped motion with contact",
-               ", set up in ",
-               duration_text(clock.wall_time()));
-
-      InitialState state;
-      state.displacement    = discretization.create_vector();
-      state.temperature     = state.displacement;
-      state.force           = state.displacement;
-      Vector applied        = state.displacement; // loads so far
-      state.material_memory = internal_force.new_memory();
+      StaticStages                        stages(model, parameters, log);
       for (const auto &stage : parameters.stage_names())
-        {
-          const Timer    stage_clock;
-          nlohmann::json report;
-          for (const std::string &name : stage)
-            {
-              const Vector force =
-                force_of(*load_of.at(name), discretization, model.terms);
-              load_of.at(name)->add_temperature(state.temperature);
-              const Tensor<1, 3> sum = resultant(force);
-              log.line("  load ", name, ": resultant ", meganewtons(sum));
-              report["loads"][name]["resultant [N]"] = to_json(sum);
-              applied += force;
-            }
-          Vector right_side = applied;
-          internal_force.add_thermal_force(right_side, state.temperature);
-          // a state with cracks goes on from where it is
-          unsigned int   iterations = 0;
-          MaterialMemory elastic; // none
-          const bool     elastic_so_far =
-            Utilities::MPI::max(state.material_memory.dissipated(),
-                                discretization.grid.communicator()) == 0.;
-          if (!solver)
-            iterations = relaxation->find_equilibrium(
-              state.displacement, elastic, right_side, parameters.rest, log);
-          else if (elastic_so_far)
-            iterations = solver->solve(state.displacement,
-                                       right_side,
-                                       parameters.tolerance);
-          if (has_memory)
-            {
-              internal_force.set_static_state(state.displacement,
-                                              state.temperature,
-                                              state.material_memory);
-              internal_force.respond(state.force,
-                                     state.displacement,
-                                     state.material_memory);
-              if (Utilities::MPI::max(state.material_memory.dissipated(),
-                                      discretization.grid.communicator()) > 0.)
-                {
-                  log.line("  cracks or yields");
-                  if (!solver || !correct_by_initial_stresses(
-                                   *solver,
-                                   internal_force,
-                                   state.material_memory,
-                                   springs ? &model.terms : nullptr,
-                                   state.displacement,
-                                   right_side,
-                                   std::max(parameters.tolerance, 1e-8),
-                                   iterations))
-                    log.line("  by damped motion at rest again after ",
-                             relaxation->find_equilibrium(state.displacement,
-                                                          state.material_memory,
-                                                          right_side,
-                                                          parameters.rest,
-                                                          log),
-                             " steps");
-                }
-            }
-
-          // f(u) minus loads and contact is what the supports bring
-          internal_force.respond(state.force,
-                                 state.displacement,
-                                 state.material_memory);
-          state.force -= right_side;
-          if (model.contact != nullptr)
-            model.contact->add_forces(-1., state.force);
-          const Tensor<1, 3> sum       = resultant(applied);
-          const Tensor<1, 3> reactions = resultant(state.force);
-          const double       largest   = largest_amount(state.displacement);
-          std::ostringstream text;
-          text << std::setprecision(4) << "  stage \"" << join(stage, ", ")
-               << "\": " << iterations
-               << (solver ? " iterations, " : " steps, ")
-               << duration_text(stage_clock.wall_time()) << "; reactions "
-               << meganewtons(reactions) << ", largest displacement "
-               << 1e3 * largest << " mm";
-          log.line(text.str());
-          report["iterations"]               = iterations;
-          report["sum of loads so far [N]"]  = to_json(sum);
-          report["sum of reactions [N]"]     = to_json(reactions);
-          report["largest displacement [m]"] = largest;
-          report["names"]                    = stage;
-          summary["stages"].push_back(report);
-          if (model.contact != nullptr)
-            model.contact->grout(stage, state.displacement);
-        }
+        summary["stages"].push_back(stages.apply(stage, load_of));
       summary["seconds"] = clock.wall_time();
-      return state;
+      return std::move(stages.state);
     }
   } // namespace
 

@@ -46,7 +46,7 @@ namespace Voussoir
           surfaces.push_back(surface);
           interface_of_surface.push_back(i);
         }
-    solver = std::make_unique<ContactSolver>(surfaces);
+    solver.emplace(surfaces);
 
     auto clusters = find_contact_clusters(discretization, names);
     std::stable_partition(clusters.begin(),
@@ -78,7 +78,7 @@ namespace Voussoir
       }
     find_uplift(discretization);
 
-    exchange = std::make_unique<ContactExchange>(discretization, nodes);
+    exchange.emplace(discretization, nodes);
     displacement.resize(nodes.size());
     for (unsigned int i = 0; i < interfaces.list.size(); ++i)
       if (interfaces.list[i].grouted_after.empty())

@@ -43,6 +43,7 @@ namespace Voussoir
         {"materials", list<Material>},
         {"loads", list<Load>},
         {"constraints", list<Projection>},
+        {"interface laws", list<InterfaceLaw>},
         {"observers", list<Observer>},
         {"meshes", list<MeshGenerator>}};
       return all;
@@ -78,13 +79,15 @@ namespace Voussoir
       options.no_output = true;
       options.validate  = true;
       Simulation simulation(parameters, options, communicator);
-      for (const auto &observer : parameters.observers)
-        observer.second->check(simulation.model);
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        std::cout << "Valid: " << simulation.discretization.dof_handler.n_dofs()
-                  << " unknowns, time step " << simulation.time_step << " s, "
-                  << simulation.n_steps() << " steps." << std::endl;
+        std::cout << "Valid: "
+                  << simulation.model.discretization.dof_handler.n_dofs()
+                  << " unknowns, time step " << simulation.run.time_step.length
+                  << " s, " << simulation.run.n_steps() << " steps."
+                  << std::endl;
     }
+
+
     // The stress-strain table of one material.
     void
     test_material(const Case        &parameters,
@@ -152,47 +155,113 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    /** What the arguments say. */
+    struct Arguments
+    {
+      std::string              case_file, defaults, what, test_file;
+      std::vector<std::string> changes;
+      bool                     only_validate = false;
+      RunOptions               options;
+    };
+
+
+    void
+    declare(CLI::App &app, Arguments &arguments)
+    {
+      app.set_version_flag("--version", version());
+      app.add_option("case", arguments.case_file, "Parameter file of the case");
+      app
+        .add_option("--set",
+                    arguments.changes,
+                    "Change an entry: \"Section/Entry=value\"; may be given "
+                    "several times")
+        ->allow_extra_args(false);
+      app.add_flag("--validate",
+                   arguments.only_validate,
+                   "Check everything about the case without running it");
+      app.add_option("--defaults",
+                     arguments.defaults,
+                     "Print all entries of the case (or of an empty one) with "
+                     "their values and descriptions, as " +
+                       join(keys(default_formats()), ", "));
+      app.add_option("--list",
+                     arguments.what,
+                     "Print the classes of one kind: " +
+                       join(keys(lists()), ", "));
+      app.add_option("--material-test",
+                     arguments.test_file,
+                     "Lead one point of a material along the path of section "
+                     "\"Material test\" and write strains and stresses to this "
+                     "CSV file");
+      app.add_flag(
+        "--restart",
+        arguments.options.restart,
+        "Go on from the last checkpoint of the newest output folder");
+      app.add_flag("--overwrite",
+                   arguments.options.overwrite,
+                   "Replace an earlier output folder instead of numbering");
+    }
+
+
+    void
+    do_as_told(const Arguments &arguments, const MPI_Comm communicator)
+    {
+      const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
+      if (!arguments.what.empty())
+        {
+          const auto print = choice(lists(), "--list", arguments.what);
+          if (first)
+            print(std::cout);
+          return;
+        }
+      const auto style =
+        arguments.defaults.empty() ?
+          ParameterHandler::Text :
+          choice(default_formats(), "--defaults", arguments.defaults);
+      if (arguments.case_file.empty() && arguments.defaults.empty())
+        throw UserError("No parameter file is given; write \"voussoir "
+                        "case.prm\", or see \"voussoir --help\".");
+      if (arguments.case_file.empty())
+        {
+          const Case empty;
+          if (first)
+            empty.prm.print_parameters(std::cout, style);
+          return;
+        }
+      Case parameters(ParameterFile(arguments.case_file, arguments.changes));
+      if (!arguments.defaults.empty())
+        {
+          if (first)
+            parameters.prm.print_parameters(std::cout, style);
+        }
+      else if (!arguments.test_file.empty())
+        {
+          if (first)
+            test_material(parameters,
+                          arguments.test_file,
+                          arguments.options.overwrite);
+        }
+      else if (arguments.only_validate)
+        validate(parameters, communicator);
+      else
+        {
+          Simulation simulation(parameters, arguments.options, communicator);
+          simulation.run.march();
+        }
+    }
+  } // namespace
+
+
   int
   run_command_line(const int argc, char **argv, const MPI_Comm communicator)
   {
-    CLI::App    app{"Voussoir: seismic response of arch dams, from a parameter "
-                    "file. Run it under mpirun for several ranks.",
+    CLI::App  app{"Voussoir: seismic response of arch dams, from a parameter "
+                  "file. Run it under mpirun for several ranks.",
                  "voussoir"};
-    std::string case_file, defaults, what, test_file;
-    std::vector<std::string> changes;
-    bool                     only_validate = false;
-    RunOptions               options;
-    app.set_version_flag("--version", version());
-    app.add_option("case", case_file, "Parameter file of the case");
-    app
-      .add_option("--set",
-                  changes,
-                  "Change an entry: \"Section/Entry=value\"; may be given "
-                  "several times")
-      ->allow_extra_args(false);
-    app.add_flag("--validate",
-                 only_validate,
-                 "Check everything about the case without running it");
-    app.add_option("--defaults",
-                   defaults,
-                   "Print all entries of the case (or of an empty one) with "
-                   "their values and descriptions, as " +
-                     join(keys(default_formats()), ", "));
-    app.add_option("--list",
-                   what,
-                   "Print the classes of one kind: " +
-                     join(keys(lists()), ", "));
-    app.add_option("--material-test",
-                   test_file,
-                   "Lead one point of a material along the path of section "
-                   "\"Material test\" and write strains and stresses to this "
-                   "CSV file");
-    app.add_flag("--restart",
-                 options.restart,
-                 "Go on from the last checkpoint of the newest output folder");
-    app.add_flag("--overwrite",
-                 options.overwrite,
-                 "Replace an earlier output folder instead of numbering");
+    Arguments arguments;
+    declare(app, arguments);
 
     const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
     try
@@ -211,48 +280,6 @@ namespace Voussoir
                     << std::endl;
         return code == 0 ? 0 : 1;
       }
-
-    return guarded(
-      [&] {
-        if (!what.empty())
-          {
-            const auto print = choice(lists(), "--list", what);
-            if (first)
-              print(std::cout);
-            return;
-          }
-        const auto style = defaults.empty() ?
-                             ParameterHandler::Text :
-                             choice(default_formats(), "--defaults", defaults);
-        if (case_file.empty() && defaults.empty())
-          throw UserError("No parameter file is given; write \"voussoir "
-                          "case.prm\", or see \"voussoir --help\".");
-        if (case_file.empty())
-          {
-            const Case empty;
-            if (first)
-              empty.prm.print_parameters(std::cout, style);
-            return;
-          }
-        Case parameters(ParameterFile(case_file, changes));
-        if (!defaults.empty())
-          {
-            if (first)
-              parameters.prm.print_parameters(std::cout, style);
-          }
-        else if (!test_file.empty())
-          {
-            if (first)
-              test_material(parameters, test_file, options.overwrite);
-          }
-        else if (only_validate)
-          validate(parameters, communicator);
-        else
-          {
-            Simulation simulation(parameters, options, communicator);
-            simulation.run();
-          }
-      },
-      communicator);
+    return guarded([&] { do_as_told(arguments, communicator); }, communicator);
   }
 } // namespace Voussoir

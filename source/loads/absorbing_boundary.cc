@@ -342,13 +342,6 @@ namespace Voussoir
   }
 
 
-  void
-  AbsorbingBoundary::set_free_field(std::unique_ptr<FreeField> &&free_field)
-  {
-    field = std::move(free_field);
-  }
-
-
   const BoundaryGeometry &
   AbsorbingBoundary::geometry() const
   {
@@ -378,22 +371,11 @@ namespace Voussoir
 
 
   void
-  AbsorbingBoundary::add_forces(const double time, NodalTerms &terms)
+  AbsorbingBoundary::add_forces(const FreeField &field,
+                                NodalForces     &forces) const
   {
-    if (!field)
-      return;
-    field->advance(time);
     for (unsigned int i = 0; i < slots.size(); ++i)
-      terms.forces[slots[i]] += springs[i] * field->displacement[i] +
-                                dashpots[i] * field->velocity[i] +
-                                field->force[i];
-  }
-
-
-  void
-  AbsorbingBoundary::replay(const double time)
-  {
-    if (field)
-      field->replay(time);
+      forces[slots[i]] += springs[i] * field.displacement[i] +
+                          dashpots[i] * field.velocity[i] + field.force[i];
   }
 } // namespace Voussoir

@@ -140,15 +140,13 @@ namespace Voussoir
             }
       }
 
-      static constexpr UpdateFlags flags =
-        update_values | update_quadrature_points | update_normal_vectors |
-        update_JxW_values;
-
       const Discretization   &discretization;
       const FiniteElement<3> &scalar;
       const Traction         &traction;
       const double            kink;
-      FEFaceValues<3>         whole_face, corners;
+      const UpdateFlags       flags = update_values | update_quadrature_points |
+                                update_normal_vectors | update_JxW_values;
+      FEFaceValues<3> whole_face, corners;
 
       std::vector<std::pair<types::global_dof_index, Tensor<1, 3>>> forces;
     };

@@ -143,8 +143,7 @@ namespace Voussoir
                   const WaveParameters                &wave,
                   const std::string                   &given_at,
                   GroundMotionSignals                &&motion,
-                  const bool                           paper_scheme,
-                  const double                         time_step,
+                  const LeapFrog                      &leap_frog,
                   const double                         duration)
   {
     const bool vertical = wave.type == "vertical";
@@ -183,16 +182,15 @@ namespace Voussoir
                                       constants,
                                       factors,
                                       discretization.degree,
-                                      time_step,
+                                      leap_frog.time_step,
                                       damping),
                       discretization.degree,
                       quadrature,
                       damping,
-                      paper_scheme,
-                      time_step);
+                      leap_frog);
     if (given_at == "free surface")
       motion = incident_for_surface(
-        column, motion, time_step, duration, wave.maximum_frequency);
+        column, motion, leap_frog.time_step, duration, wave.maximum_frequency);
     return std::make_unique<ColumnField>(std::move(column),
                                          std::move(motion),
                                          boundary.geometry());

@@ -33,11 +33,11 @@ namespace Voussoir
       }
 
       void
-      add_forces(const double time, NodalTerms &terms) const override
+      add_forces(const double time, NodalForces &forces) override
       {
         const double now = factor(time);
         for (const auto &[slot, weight] : shares)
-          terms.forces[slot] += now * weight * force;
+          forces[slot] += now * weight * force;
       }
 
     private:

@@ -93,16 +93,11 @@ namespace Voussoir
                        const Discretization      &solid,
                        NodalTerms                &terms)
     : space(water, grid_parameters, solid.degree, solid.grid.communicator())
-    , pressure(space.create_vector())
-    , impulse(pressure)
     , density(parameters.density)
     , compressibility(1. / (parameters.density *
                             Utilities::fixed_power<2>(parameters.sound_speed)))
-    , inverse_storage(pressure)
-    , dashpots(pressure)
-    , keep(pressure)
-    , push(pressure)
-    , stiffness(pressure)
+    , inverse_storage(space.create_vector())
+    , dashpots(space.create_vector())
   {
     const Grid &grid   = space.grid;
     const auto surface = checked_sets(grid, parameters.surface, "Free surface");
@@ -125,7 +120,7 @@ namespace Voussoir
                !in_any(grid, dam, cell, face);
       });
     const double admittance = 1. / (density * parameters.sound_speed);
-    for (unsigned int i = 0; i < pressure.locally_owned_size(); ++i)
+    for (unsigned int i = 0; i < dashpots.locally_owned_size(); ++i)
       {
         if (surface_area.local_element(i) > 0.)
           continue;
@@ -138,24 +133,27 @@ namespace Voussoir
         if (dashpots.local_element(i) > 0.)
           lossy_nodes.push_back(i);
       }
-    last_lossy_pressure.resize(lossy_nodes.size());
     couple(solid, terms);
+    largest_step = find_stable_step();
+  }
 
+
+  double
+  Reservoir::find_stable_step() const
+  {
     // a start vector that is the same on any number of ranks
-    Vector start(pressure);
+    Vector start(dashpots);
     for (unsigned int i = 0; i < start.locally_owned_size(); ++i)
       {
         const Point<3> &p      = space.node_positions[i];
         start.local_element(i) = std::sin(1e3 * p[0] + 2e3 * p[1] + 3e3 * p[2]);
       }
-    largest_step =
-      2. / std::sqrt(largest_eigenvalue(start,
-                                        inverse_storage,
-                                        [&](Vector &dst, const Vector &src) {
-                                          dst = 0.;
-                                          space.sweep(dst, src, {}, {});
-                                          dst /= density;
-                                        }));
+    return 2. / std::sqrt(largest_eigenvalue(
+                  start, inverse_storage, [&](Vector &dst, const Vector &src) {
+                    dst = 0.;
+                    space.sweep(dst, src, {}, {});
+                    dst /= density;
+                  }));
   }
 
 
@@ -206,31 +204,29 @@ namespace Voussoir
         area_of_pair[{node, record.water}] += record.area;
         unknowns.add_index(record.water);
       }
-    flux.reinit(space.owned_dofs, unknowns, space.grid.communicator());
-    wall_pressure.reinit(flux);
+    wall.reinit(space.owned_dofs, unknowns, space.grid.communicator());
     for (const auto &[pair, area] : area_of_pair)
       pairs.push_back({terms.add_node(pair.first),
                        pair.first,
-                       flux.get_partitioner()->global_to_local(pair.second),
+                       wall.get_partitioner()->global_to_local(pair.second),
                        area});
 
     // the areas at the unknowns of this rank, whoever has their partners
     std::array<Vector, 4> sums; // the last one says where there are any
     for (unsigned int d = 0; d < 4; ++d)
       {
-        sums[d].reinit(flux);
+        sums[d].reinit(wall);
         for (const Pair &pair : pairs)
           sums[d].local_element(pair.water) +=
             d < 3 ? pair.area[d] : pair.area.norm();
         sums[d].compress(VectorOperation::add);
       }
-    for (unsigned int i = 0; i < pressure.locally_owned_size(); ++i)
+    for (unsigned int i = 0; i < dashpots.locally_owned_size(); ++i)
       if (sums[3].local_element(i) > 0.)
         wall_nodes.push_back({i,
                               Tensor<1, 3>({sums[0].local_element(i),
                                             sums[1].local_element(i),
                                             sums[2].local_element(i)})});
-    last_wall_pressure.resize(wall_nodes.size());
   }
 
 
@@ -246,148 +242,43 @@ namespace Voussoir
                           const Vector &displacement,
                           const double  step) const
   {
-    Vector wall(flux);
-    wall = 0.;
-    gather_flux(wall, displacement);
-    for (unsigned int i = 0; i < pressure.locally_owned_size(); ++i)
-      wall.local_element(i) *= inverse_storage.local_element(i);
-    wall.update_ghost_values();
+    Vector flux = create_wall_vector();
+    gather_flux(flux, displacement);
+    for (unsigned int i = 0; i < dashpots.locally_owned_size(); ++i)
+      flux.local_element(i) *= inverse_storage.local_element(i);
+    flux.update_ghost_values();
     const double ratio = std::min(step / largest_step, largest_relative_step);
     for (const Pair &pair : pairs)
       for (unsigned int d = 0; d < 3; ++d)
         force.local_element(3 * pair.node + d) +=
-          pair.area[d] * wall.local_element(pair.water) / (1. - ratio * ratio);
+          pair.area[d] * flux.local_element(pair.water) / (1. - ratio * ratio);
   }
 
 
-  void
-  Reservoir::prepare(const double step)
+  Vector
+  Reservoir::create_wall_vector() const
   {
-    time_step = step;
-    for (unsigned int i = 0; i < pressure.locally_owned_size(); ++i)
-      {
-        const double gain     = time_step * inverse_storage.local_element(i);
-        const double damping  = 0.5 * gain * dashpots.local_element(i);
-        push.local_element(i) = gain / (1. + damping);
-        keep.local_element(i) = (1. - damping) / (1. + damping);
-      }
+    Vector result;
+    result.reinit(wall);
+    return result;
   }
 
 
   void
-  Reservoir::gather_flux(Vector &wall, const Vector &velocity) const
+  Reservoir::gather_flux(Vector &flux, const Vector &velocity) const
   {
     for (const Pair &pair : pairs)
       for (unsigned int d = 0; d < 3; ++d)
-        wall.local_element(pair.water) +=
+        flux.local_element(pair.water) +=
           pair.area[d] * velocity.local_element(3 * pair.node + d);
-    wall.compress(VectorOperation::add);
+    flux.compress(VectorOperation::add);
   }
 
 
   void
-  Reservoir::add_forces(NodalTerms &terms)
-  {
-    for (const WallNode &node : wall_nodes)
-      wall_pressure.local_element(node.water) =
-        pressure.local_element(node.water);
-    wall_pressure.update_ghost_values();
-    for (const Pair &pair : pairs)
-      terms.forces[pair.slot] +=
-        wall_pressure.local_element(pair.water) * pair.area;
-  }
-
-
-  void
-  Reservoir::advance(const Vector &velocity, const Tensor<1, 3> &base_velocity)
-  {
-    for (unsigned int i = 0; i < wall_nodes.size(); ++i)
-      {
-        flux.local_element(wall_nodes[i].water) = 0.;
-        last_wall_pressure[i] = pressure.local_element(wall_nodes[i].water);
-      }
-    for (unsigned int i = 0; i < lossy_nodes.size(); ++i)
-      last_lossy_pressure[i] = pressure.local_element(lossy_nodes[i]);
-    gather_flux(flux, velocity);
-
-    // the work needs the flux without that of the base
-    std::vector<double> solid_flux(wall_nodes.size());
-    for (unsigned int i = 0; i < wall_nodes.size(); ++i)
-      {
-        solid_flux[i] = flux.local_element(wall_nodes[i].water);
-        flux.local_element(wall_nodes[i].water) +=
-          wall_nodes[i].area * base_velocity;
-      }
-
-    double       *p = pressure.begin(), *I = impulse.begin();
-    double       *f = stiffness.begin();
-    const double *q = flux.begin(), *a = keep.begin(), *b = push.begin();
-    space.sweep(
-      stiffness,
-      impulse,
-      [&](const unsigned int begin, const unsigned int end) {
-#pragma GCC ivdep
-        for (unsigned int i = begin; i < end; ++i)
-          {
-            I[i] += time_step * p[i];
-            f[i] = 0.;
-          }
-      },
-      [&](const unsigned int begin, const unsigned int end) {
-        const double mobility = 1. / density;
-#pragma GCC ivdep
-        for (unsigned int i = begin; i < end; ++i)
-          p[i] = a[i] * p[i] - b[i] * (mobility * f[i] + q[i]);
-      });
-
-    for (unsigned int i = 0; i < wall_nodes.size(); ++i)
-      {
-        const double mean =
-          0.5 * (last_wall_pressure[i] + p[wall_nodes[i].water]);
-        work_on_solid += time_step * mean * solid_flux[i];
-        work_on_base += time_step * mean * (wall_nodes[i].area * base_velocity);
-      }
-    for (unsigned int i = 0; i < lossy_nodes.size(); ++i)
-      {
-        const double mean = 0.5 * (last_lossy_pressure[i] + p[lossy_nodes[i]]);
-        loss +=
-          time_step * dashpots.local_element(lossy_nodes[i]) * mean * mean;
-      }
-  }
-
-
-  double
-  Reservoir::stored_energy() const
-  {
-    // p M p / (2 rho c^2) + I- K I+ / (2 rho)
-    Vector next(impulse), force(impulse);
-    next.add(time_step, pressure);
-    force = 0.;
-    space.sweep(force, next, {}, {});
-    Vector squares(pressure);
-    squares.scale(pressure);
-    return 0.5 * compressibility * (squares * space.volumes) +
-           0.5 / density * (impulse * force);
-  }
-
-
-  double
-  Reservoir::work_ahead(const Vector &velocity) const
-  {
-    Vector wall(flux);
-    wall = 0.;
-    gather_flux(wall, velocity);
-    double sum = 0.;
-    for (const WallNode &node : wall_nodes)
-      sum +=
-        pressure.local_element(node.water) * wall.local_element(node.water);
-    return 0.5 * time_step *
-           Utilities::MPI::sum(sum, space.grid.communicator());
-  }
-
-
-  void
-  Reservoir::write(const std::string &file, const double time) const
+  Reservoir::write(const Vector      &pressure,
+                   const std::string &file,
+                   const double       time) const
   {
     Vector full = space.create_ghosted_vector();
     full.copy_locally_owned_data_from(pressure);

@@ -41,11 +41,11 @@ namespace Voussoir
       }
 
       void
-      add_forces(const double time, NodalTerms &terms) const override
+      add_forces(const double time, NodalForces &forces) override
       {
         const double now = factor(time);
         for (const auto &[slot, force] : shares)
-          terms.forces[slot] += now * force;
+          forces[slot] += now * force;
       }
 
     private:

@@ -25,11 +25,10 @@ namespace Voussoir
                          const unsigned int        degree,
                          const std::string        &quadrature,
                          const Damping            &damping,
-                         const bool                paper_scheme,
-                         const double              time_step)
+                         const LeapFrog           &leap_frog)
     : degree(degree)
-    , time_step(time_step)
-    , central(!paper_scheme)
+    , leap_frog(leap_frog)
+    , maxwell(damping, leap_frog.time_step)
     , mass_coefficient(damping.mass_coefficient)
     , stiffness_coefficient(damping.stiffness_coefficient)
   {
@@ -67,15 +66,9 @@ namespace Voussoir
     const double            S    = rock.density * rock.s_wave_speed();
     impedance = Tensor<1, 3>({S, S, rock.density * rock.p_wave_speed()});
 
-    for (unsigned int i = 0; i < damping.n_branches(); ++i)
-      {
-        const double tau = damping.relaxation_times[i];
-        decay.push_back(std::exp(-time_step / tau));
-        gain.push_back(damping.coefficients[i] * (1. - decay[i]) * tau);
-      }
     u.resize(mass.size());
     middle_velocity = next_u = v = effective = u;
-    memory.assign(decay.size(), u);
+    memory.assign(maxwell.decay.size(), u);
   }
 
 
@@ -89,7 +82,8 @@ namespace Voussoir
         effective[i] = stiffness_coefficient * v[i];
         for (unsigned int k = 0; k < memory.size(); ++k)
           {
-            memory[k][i] = decay[k] * memory[k][i] + gain[k] * v[i];
+            memory[k][i] =
+              maxwell.decay[k] * memory[k][i] + maxwell.gain[k] * v[i];
             effective[i] += memory[k][i];
           }
       }
@@ -122,19 +116,11 @@ namespace Voussoir
             (i == 0 ? 2. * impedance[d] * incident_velocity[d] : 0.) -
             force[i][d];
           const double before = v[i][d];
-          if (central)
-            {
-              v[i][d] = ((mass[i] - 0.5 * time_step * dashpot) * before +
-                         time_step * push) /
-                        (mass[i] + 0.5 * time_step * dashpot);
-              middle_velocity[i][d] = 0.5 * (before + v[i][d]);
-            }
-          else
-            {
-              v[i][d] += time_step / mass[i] * (push - dashpot * before);
-              middle_velocity[i][d] = before;
-            }
-          next_u[i][d] = u[i][d] + time_step * v[i][d];
+          v[i][d] = ((mass[i] - leap_frog.explicit_share() * dashpot) * before +
+                     leap_frog.time_step * push) /
+                    (mass[i] + leap_frog.implicit_share() * dashpot);
+          middle_velocity[i][d] = leap_frog.damped(before, v[i][d]);
+          next_u[i][d]          = u[i][d] + leap_frog.time_step * v[i][d];
         }
     for (unsigned int d = 0; d < 3; ++d)
       base[d] =

@@ -5,24 +5,15 @@ namespace Voussoir
 {
   using namespace dealii;
 
-  EnergyBalance::EnergyBalance(const Discretization    &discretization,
-                               const InternalForce     &internal_force,
-                               const LumpedMass        &mass,
-                               const Damping           &damping,
-                               const NodalTerms        &terms,
-                               const InitialState      &initial_state,
-                               const CentralDifference &scheme)
-    : discretization(discretization)
-    , internal_force(internal_force)
-    , mass(mass)
-    , damping(damping)
-    , terms(terms)
-    , initial_state(initial_state)
-    , scheme(scheme)
-    , moved(discretization.create_vector())
+  EnergyBalance::EnergyBalance(const EquationOfMotion &equation,
+                               const double            time_step)
+    : equation(equation)
+    , time_step(time_step)
+    , moved(equation.discretization.create_vector())
     , moved_before(moved)
   {
     // what round-off makes of the static energy is no motion
+    const InitialState &initial_state = equation.initial;
     if (initial_state.force.size() > 0)
       round_off =
         1e-12 * std::abs(initial_state.displacement * initial_state.force);
@@ -34,7 +25,7 @@ namespace Voussoir
                       const double       start_time,
                       const bool         restarted)
   {
-    table.open(discretization.grid.communicator(),
+    table.open(equation.discretization.grid.communicator(),
                folder + "/energy.csv",
                {"kinetic [J]",
                 "strain [J]",
@@ -45,18 +36,17 @@ namespace Voussoir
                 "input [J]",
                 "constraints [J]",
                 "unaccounted [J]"},
-               scheme.time_step,
+               time_step,
                start_time,
                restarted);
   }
 
 
-  const EnergyTerms &
-  EnergyBalance::evaluate(const State &state)
+  EnergyTerms
+  EnergyBalance::terms_at(const State &state)
   {
-    const double dt = scheme.time_step;
-
-    moved = state.displacement;
+    const InitialState &initial_state = equation.initial;
+    moved                             = state.displacement;
     if (initial_state.displacement.size() > 0)
       moved -= initial_state.displacement;
 
@@ -65,67 +55,83 @@ namespace Voussoir
     for (unsigned int i = 0; i < state.velocity.locally_owned_size(); ++i)
       {
         const double v = state.velocity.local_element(i);
-        kinetic += 0.5 * mass.mass.local_element(i) * v * v;
-        moved_before.local_element(i) = moved.local_element(i) - dt * v;
+        kinetic += 0.5 * equation.mass.mass.local_element(i) * v * v;
+        moved_before.local_element(i) = moved.local_element(i) - time_step * v;
       }
-    kinetic += terms.kinetic_energy(state.velocity);
-    std::vector<double> sums{kinetic,
-                             terms.spring_energy(moved, state.velocity),
-                             terms.loss_in_dashpots,
-                             terms.work_of_forces + scheme.work_of_base,
-                             scheme.work_of_projections,
-                             scheme.loss_by_mass,
-                             state.material_memory.dissipated()};
-    sums = sum_over_ranks(sums, discretization.grid.communicator());
+    kinetic += equation.terms.kinetic_energy(state.velocity);
+    const EnergyAccounts     &accounts = state.accounts;
+    const std::vector<double> sums     = sum_over_ranks(
+      std::vector<double>{kinetic,
+                              equation.terms.spring_energy(moved, moved_before),
+                              accounts.loss_in_dashpots,
+                              accounts.work_of_forces + accounts.work_of_base,
+                              accounts.work_of_projections,
+                              accounts.loss_by_mass,
+                              state.material_memory.dissipated()},
+      equation.discretization.grid.communicator());
 
-    terms_now.kinetic = sums[0];
-    terms_now.strain  = internal_force.stored_energy(state.displacement,
-                                                    state.material_memory,
-                                                    initial_state,
-                                                    moved,
-                                                    moved_before) +
-                       sums[1];
-    terms_now.boundary    = sums[2];
-    terms_now.input       = sums[3];
-    terms_now.constraints = sums[4];
-    terms_now.material    = sums[6];
+    EnergyTerms terms;
+    terms.kinetic = sums[0];
+    terms.strain  = equation.internal_force.stored_energy(state.displacement,
+                                                         state.material_memory,
+                                                         initial_state,
+                                                         moved,
+                                                         moved_before) +
+                   sums[1];
+    terms.boundary    = sums[2];
+    terms.input       = sums[3];
+    terms.constraints = sums[4];
+    terms.damping     = sums[5];
+    terms.material    = sums[6];
     // of the work of contact, what its static forces do on the way
     if (initial_state.contact_force.size() > 0)
-      terms_now.constraints -=
-        0.5 * (initial_state.contact_force * moved +
-               initial_state.contact_force * moved_before);
+      terms.constraints -= 0.5 * (initial_state.contact_force * moved +
+                                  initial_state.contact_force * moved_before);
+    return terms;
+  }
 
+
+  double
+  EnergyBalance::damping_of_cells(const State &state, EnergyTerms &terms) const
+  {
     // branch i is a spring D_i s K with a dashpot: stored w^T K w / (2 D_i /
     // s), lost w^T K w / (D_i tau_i) per time
-    double loss_rate = 0.;
-    terms_now.memory = 0.;
+    const Damping &damping   = equation.damping;
+    double         loss_rate = 0.;
     for (unsigned int i = 0; i < state.memory.size(); ++i)
       if (damping.coefficients[i] > 0.)
         {
           const double work =
-            internal_force.damping_work(state.memory[i],
-                                        state.memory[i],
-                                        state.material_memory);
-          terms_now.memory += 0.5 * work / damping.coefficients[i];
+            equation.internal_force.damping_work(state.memory[i],
+                                                 state.memory[i],
+                                                 state.material_memory);
+          terms.memory += 0.5 * work / damping.coefficients[i];
           loss_rate +=
             work / (damping.coefficients[i] * damping.relaxation_times[i]);
         }
     if (damping.stiffness_coefficient > 0.)
       loss_rate += damping.stiffness_coefficient *
-                   internal_force.damping_work(state.velocity,
-                                               state.velocity,
-                                               state.material_memory);
-    const double mass_loss_before = mass_loss;
-    mass_loss                     = sums[5];
+                   equation.internal_force.damping_work(state.velocity,
+                                                        state.velocity,
+                                                        state.material_memory);
+    return loss_rate;
+  }
+
+
+  const EnergyTerms &
+  EnergyBalance::evaluate(const State &state)
+  {
+    terms_now              = terms_at(state);
+    const double loss_rate = damping_of_cells(state, terms_now);
     if (first)
       {
         initial = terms_now.stored();
         first   = false;
       }
     else
-      terms_now.damping +=
-        0.5 * (loss_rate + last_loss_rate) * (state.time - last_time) +
-        mass_loss - mass_loss_before;
+      loss_of_cells +=
+        0.5 * (loss_rate + last_loss_rate) * (state.time - last_time);
+    terms_now.damping += loss_of_cells;
     last_loss_rate = loss_rate;
     last_time      = state.time;
 
@@ -202,26 +208,24 @@ namespace Voussoir
   nlohmann::json
   EnergyBalance::save() const
   {
-    return {{"damping", terms_now.damping},
+    return {{"loss of cells", loss_of_cells},
             {"initial", initial},
             {"largest_turnover", largest_turnover},
             {"largest_error", largest_error},
             {"last_time", last_time},
-            {"last_loss_rate", last_loss_rate},
-            {"mass_loss", mass_loss}};
+            {"last_loss_rate", last_loss_rate}};
   }
 
 
   void
   EnergyBalance::load(const nlohmann::json &saved)
   {
-    terms_now.damping = saved.at("damping");
-    initial           = saved.at("initial");
-    largest_turnover  = saved.at("largest_turnover");
-    largest_error     = saved.at("largest_error");
-    last_time         = saved.at("last_time");
-    last_loss_rate    = saved.at("last_loss_rate");
-    mass_loss         = saved.at("mass_loss");
-    first             = false;
+    loss_of_cells    = saved.at("loss of cells");
+    initial          = saved.at("initial");
+    largest_turnover = saved.at("largest_turnover");
+    largest_error    = saved.at("largest_error");
+    last_time        = saved.at("last_time");
+    last_loss_rate   = saved.at("last_loss_rate");
+    first            = false;
   }
 } // namespace Voussoir

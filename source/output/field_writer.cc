@@ -144,7 +144,7 @@ namespace Voussoir
     {
       std::vector<VtuText> result{{"material_names", model.names.materials},
                                   {"cell_set_names", model.names.cell_sets}};
-      if (model.relative_to_base)
+      if (model.base.moves())
         result.push_back({"motion", {"relative to the rigid base"}});
       return result;
     }

@@ -123,7 +123,10 @@ namespace Voussoir
     for (const double time : record.times)
       {
         lines.push_back({time, std::vector<PointMotion>(record.points.size())});
-        const auto base = record.model->base_motion(time);
+        const RigidBase                  &ground = record.model->base;
+        const std::array<Tensor<1, 3>, 3> base{{ground.displacement(time),
+                                                ground.velocity(time),
+                                                ground.acceleration(time)}};
         for (PointMotion &motion : lines.back().points)
           for (unsigned int d = 0; d < 3; ++d)
             for (unsigned int k = 0; k < 3; ++k)

@@ -1,5 +1,5 @@
 #include <voussoir/base/error.h>
-#include <voussoir/loads/reservoir.h>
+#include <voussoir/loads/water_motion.h>
 #include <voussoir/output/picture_series.h>
 
 namespace Voussoir
@@ -21,7 +21,7 @@ namespace Voussoir
       void
       check(const ObservedModel &observed) const override
       {
-        if (observed.reservoir == nullptr)
+        if (observed.water == nullptr)
           throw UserError("\"Observers\" in section \"Output\" names \"water "
                           "pressure\", but there is no water to look into; set "
                           "\"Model = compressible\" in section \"Reservoir\".");
@@ -33,8 +33,8 @@ namespace Voussoir
               const double         start_time,
               const bool           restarted) override
       {
-        folder    = observed.folder;
-        reservoir = observed.reservoir;
+        folder = observed.folder;
+        water  = observed.water;
         pictures.prepare(observed, start_time, restarted);
       }
 
@@ -44,7 +44,9 @@ namespace Voussoir
         if (!pictures.due(state))
           return;
         const std::string file = pictures.next_name(state) + ".vtu";
-        reservoir->write(folder + "/" + file, state.time);
+        water->reservoir.write(water->pressure,
+                               folder + "/" + file,
+                               state.time);
         pictures.add(state.time, file);
       }
 
@@ -55,8 +57,8 @@ namespace Voussoir
     private:
       PictureSeries pictures{"water_pressure", "Output/water pressure"};
 
-      std::string      folder;
-      const Reservoir *reservoir = nullptr;
+      std::string        folder;
+      const WaterMotion *water = nullptr;
     };
 
     const Registry<Observer>::Add<WaterPressure>

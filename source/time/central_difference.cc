@@ -7,52 +7,34 @@ namespace Voussoir
 {
   using namespace dealii;
 
-  CentralDifference::CentralDifference(
-    const Discretization                            &discretization,
-    const InternalForce                             &internal_force,
-    const LumpedMass                                &mass,
-    const Damping                                   &damping,
-    NodalTerms                                      &terms,
-    const InitialState                              &initial,
-    const std::vector<Projection *>                 &projections,
-    const std::function<void(const double)>         &evaluate_loads,
-    const std::function<void(const State &)>        &after_step,
-    const std::function<Tensor<1, 3>(const double)> &base_acceleration,
-    const bool                                       paper_scheme,
-    const double                                     time_step)
-    : time_step(time_step)
-    , discretization(discretization)
-    , internal_force(internal_force)
-    , mass(mass)
-    , terms(terms)
-    , initial(initial)
-    , projections(projections)
-    , evaluate_loads(evaluate_loads)
-    , after_step(after_step)
-    , base_acceleration(base_acceleration)
-    , n_branches(damping.n_branches())
-    , mass_coefficient(damping.mass_coefficient)
-    , stiffness_coefficient(damping.stiffness_coefficient)
-    , central(!paper_scheme)
-    , damped(n_branches > 0 || stiffness_coefficient != 0.)
-    , uniform(internal_force.uniform_damping() || !damped)
-    , uniform_factor(internal_force.damping_factor())
-    , force(discretization.create_vector())
+  CentralDifference::CentralDifference(const EquationOfMotion &equation,
+                                       const LeapFrog         &leap_frog)
+    : time_step(leap_frog.time_step)
+    , equation(equation)
+    , leap_frog(leap_frog)
+    , maxwell(equation.damping, time_step)
+    , nodal_update(equation.terms,
+                   equation.mass,
+                   equation.damping.mass_coefficient,
+                   leap_frog)
+    , mass_coefficient(equation.damping.mass_coefficient)
+    , stiffness_coefficient(equation.damping.stiffness_coefficient)
+    , damped(equation.damping.n_branches() > 0 || stiffness_coefficient != 0.)
+    , uniform(equation.internal_force.uniform_damping() || !damped)
+    , forces(equation.terms.nodes.size())
+    , force(equation.discretization.create_vector())
     , effective(force)
+    , memory(uniform ? Vector() : force)
   {
-    if (!uniform)
-      memory = force;
-    // exact update of a branch over a step of constant velocity
-    for (unsigned int i = 0; i < n_branches; ++i)
-      {
-        const double tau = damping.relaxation_times[i];
-        decay.push_back(std::exp(-time_step / tau));
-        gain.push_back(damping.coefficients[i] * (1. - decay[i]) * tau);
-      }
-    terms.prepare(mass, mass_coefficient, time_step, central);
+    tell_projections();
+  }
 
+
+  void
+  CentralDifference::tell_projections()
+  {
     std::set<unsigned int> projected, prescribed;
-    for (const Projection *projection : projections)
+    for (const Projection *projection : equation.projections)
       {
         const auto &nodes = projection->nodes();
         projected.insert(nodes.begin(), nodes.end());
@@ -61,21 +43,24 @@ namespace Voussoir
       }
     projected_nodes.assign(projected.begin(), projected.end());
     for (const unsigned int node : projected_nodes)
-      projected_slots.push_back(terms.slot_at(node));
-    predicted_velocity.resize(projected_nodes.size());
+      projected_slots.push_back(equation.terms.slot_at(node));
     last_velocity.resize(projected_nodes.size());
+    predicted_velocity.resize(projected_nodes.size());
+
+    const double mass_factor =
+      1. + leap_frog.implicit_share() * mass_coefficient;
     const auto inverse_mass = [&](const unsigned int node) {
       Tensor<2, 3> result;
       if (prescribed.count(node) > 0)
         return result;
-      if (const auto with_terms = terms.inverse_at(node))
+      if (const auto with_terms = nodal_update.inverse_at(node))
         return *with_terms;
       for (unsigned int d = 0; d < 3; ++d)
-        result[d][d] = mass.inverse.local_element(3 * node + d) /
-                       (central ? 1. + 0.5 * time_step * mass_coefficient : 1.);
+        result[d][d] =
+          equation.mass.inverse.local_element(3 * node + d) / mass_factor;
       return result;
     };
-    for (Projection *projection : projections)
+    for (Projection *projection : equation.projections)
       projection->prepare_step(inverse_mass, time_step);
   }
 
@@ -84,11 +69,12 @@ namespace Voussoir
   CentralDifference::state_at_rest() const
   {
     State state;
-    state.velocity = discretization.create_vector();
-    state.memory.assign(n_branches, state.velocity);
-    state.displacement =
-      initial.displacement.size() > 0 ? initial.displacement : state.velocity;
-    state.material_memory = initial.material_memory;
+    state.material_memory = equation.initial.material_memory;
+    state.velocity        = equation.discretization.create_vector();
+    state.memory.assign(maxwell.decay.size(), state.velocity);
+    state.displacement = equation.initial.displacement.size() > 0 ?
+                           equation.initial.displacement :
+                           state.velocity;
     return state;
   }
 
@@ -96,15 +82,21 @@ namespace Voussoir
   void
   CentralDifference::step(State &state)
   {
-    const Tensor<1, 3> base =
-      base_acceleration ? base_acceleration(state.time) : Tensor<1, 3>();
-    evaluate_loads(state.time);
-    terms.before_step(state.displacement, state.velocity, base);
+    const Tensor<1, 3> base = equation.base != nullptr ?
+                                equation.base->acceleration(state.time) :
+                                Tensor<1, 3>();
+    // F_n
+    std::fill(forces.begin(), forces.end(), Tensor<1, 3>());
+    for (NodalLoad *load : equation.loads)
+      load->add_forces(state.time, forces);
+
+    nodal_update.before_step(state, base);
     for (unsigned int i = 0; i < projected_nodes.size(); ++i)
       last_velocity[i] = node_value(state.velocity, projected_nodes[i]);
 
-    // f(u_n) with the damping memory, and the motion it alone would cause
-    internal_force.sweep(
+    // one sweep: w_n of damping, f(u_n + s w_n) - F_0, and
+    // v+ = v- - dt M^-1 (f - F_0), u_(n+1) = u_n + dt v+
+    equation.internal_force.sweep(
       force,
       effective,
       uniform ? nullptr : &memory,
@@ -118,11 +110,15 @@ namespace Voussoir
         update_motion(state, base, begin, end);
       });
 
-    terms.correct(state.displacement, state.velocity);
+    // (M + M_a + dt/2 C) v+ = ... + dt (F_n - K_b u_n) where nodes have such
+    nodal_update.correct(state, forces);
     state.time = ++state.step * time_step;
+
+    // contact: u_(n+1) += dt^2 M^-1 R^T p
     project(state, base);
-    if (after_step)
-      after_step(state);
+
+    for (NodalLoad *load : equation.loads)
+      load->end_step(state);
   }
 
 
@@ -131,32 +127,43 @@ namespace Voussoir
   {
     for (unsigned int i = 0; i < projected_nodes.size(); ++i)
       predicted_velocity[i] = node_value(state.velocity, projected_nodes[i]);
-    for (Projection *projection : projections)
-      work_of_projections += projection->project(state, time_step).work;
-
+    for (Projection *projection : equation.projections)
+      state.accounts.work_of_projections +=
+        projection->project(state, time_step).work;
     // loads and damping did their work on the predicted motion
     for (unsigned int i = 0; i < projected_nodes.size(); ++i)
+      account_for_projection(i, base, state);
+  }
+
+
+  void
+  CentralDifference::account_for_projection(const unsigned int  i,
+                                            const Tensor<1, 3> &base,
+                                            State              &state) const
+  {
+    const unsigned int node     = projected_nodes[i];
+    const Tensor<1, 3> velocity = node_value(state.velocity, node);
+    const Tensor<1, 3> change   = velocity - predicted_velocity[i];
+    if (change.norm_square() == 0.)
+      return;
+    if (projected_slots[i])
+      nodal_update.account_for(*projected_slots[i],
+                               velocity,
+                               change,
+                               state.accounts);
+    const LumpedMass &mass = equation.mass;
+    for (unsigned int d = 0; d < 3; ++d)
       {
-        const unsigned int node     = projected_nodes[i];
-        const Tensor<1, 3> velocity = node_value(state.velocity, node);
-        const Tensor<1, 3> change   = velocity - predicted_velocity[i];
-        if (change.norm_square() == 0.)
-          continue;
-        if (projected_slots[i])
-          terms.account_for(*projected_slots[i], velocity, change);
-        for (unsigned int d = 0; d < 3; ++d)
-          {
-            const double last = last_velocity[i][d],
-                         mean = 0.5 * (velocity[d] + last),
-                         was  = mean - 0.5 * change[d];
-            work_of_base -= time_step *
-                            mass.driven.local_element(3 * node + d) * base[d] *
-                            (mean - was);
-            loss_by_mass +=
-              time_step * mass_coefficient *
-              mass.mass.local_element(3 * node + d) *
-              (mean * (central ? mean : last) - was * (central ? was : last));
-          }
+        const unsigned int entry = 3 * node + d;
+        const double       last  = last_velocity[i][d],
+                     mean        = 0.5 * (velocity[d] + last),
+                     was         = mean - 0.5 * change[d];
+        state.accounts.work_of_base -=
+          time_step * mass.driven.local_element(entry) * base[d] * (mean - was);
+        state.accounts.loss_by_mass +=
+          time_step * mass_coefficient * mass.mass.local_element(entry) *
+          (mean * leap_frog.damped(last, velocity[d]) -
+           was * leap_frog.damped(last, velocity[d] - change[d]));
       }
   }
 
@@ -173,8 +180,10 @@ namespace Voussoir
     double       *w = uniform ? e : memory.begin();
 
     // sum of the branches, or beta v
-    const double factor = uniform ? uniform_factor : 1.;
-    switch (n_branches)
+    const double factor =
+      uniform ? equation.internal_force.damping_factor() : 1.;
+    const auto &[decay, gain] = maxwell;
+    switch (decay.size())
       {
         case 0:
 #pragma GCC ivdep
@@ -200,7 +209,7 @@ namespace Voussoir
           }
         default:
           std::fill(w + begin, w + end, 0.);
-          for (unsigned int k = 0; k < n_branches; ++k)
+          for (unsigned int k = 0; k < decay.size(); ++k)
             {
               double      *wk = state.memory[k].begin();
               const double ak = decay[k], bk = gain[k];
@@ -218,9 +227,9 @@ namespace Voussoir
       e[i] = uniform ? e[i] + u[i] : u[i];
 
     // the internal force is added to minus the steady one
-    if (initial.force.size() > 0)
+    if (equation.initial.force.size() > 0)
       {
-        const double *steady = initial.force.begin();
+        const double *steady = equation.initial.force.begin();
 #pragma GCC ivdep
         for (unsigned int i = begin; i < end; ++i)
           f[i] = -steady[i];
@@ -239,17 +248,9 @@ namespace Voussoir
     double       *v       = state.velocity.begin();
     double       *u       = state.displacement.begin();
     const double *f       = force.begin();
-    const double *inverse = mass.inverse.begin();
+    const double *inverse = equation.mass.inverse.begin();
 
-    // alpha M v centrally, or with v-
-    const double keep = central ? (1. - 0.5 * time_step * mass_coefficient) /
-                                    (1. + 0.5 * time_step * mass_coefficient) :
-                                  1. - time_step * mass_coefficient;
-    const double push =
-      central ? time_step / (1. + 0.5 * time_step * mass_coefficient) :
-                time_step;
-
-    if (!base_acceleration && mass_coefficient == 0.)
+    if (equation.base == nullptr && mass_coefficient == 0.)
       {
 #pragma GCC ivdep
         for (unsigned int i = begin; i < end; ++i)
@@ -257,23 +258,28 @@ namespace Voussoir
             v[i] -= time_step * inverse[i] * f[i];
             u[i] += time_step * v[i];
           }
+        return;
       }
-    else
-      {
-        const double *diagonal = mass.mass.begin();
-        const double *driven   = mass.driven.begin();
-        for (unsigned int i = begin; i < end; ++i)
-          {
-            const double inertia = driven[i] * base[i % 3];
-            const double before  = v[i];
-            v[i] = keep * v[i] - push * inverse[i] * (f[i] + inertia);
-            u[i] += time_step * v[i];
 
-            const double mean = 0.5 * (before + v[i]);
-            work_of_base -= time_step * inertia * mean;
-            loss_by_mass += time_step * mass_coefficient * diagonal[i] * mean *
-                            (central ? mean : before);
-          }
+    // M (v+ - v-)/dt + alpha M v = -(f - F_0) - M_driven a_base
+    const double divisor = 1. + leap_frog.implicit_share() * mass_coefficient,
+                 keep = (1. - leap_frog.explicit_share() * mass_coefficient) /
+                        divisor,
+                 push        = time_step / divisor;
+    const double   *diagonal = equation.mass.mass.begin();
+    const double   *driven   = equation.mass.driven.begin();
+    EnergyAccounts &accounts = state.accounts;
+    for (unsigned int i = begin; i < end; ++i)
+      {
+        const double inertia = driven[i] * base[i % 3];
+        const double before  = v[i];
+        v[i] = keep * v[i] - push * inverse[i] * (f[i] + inertia);
+        u[i] += time_step * v[i];
+
+        const double mean = 0.5 * (before + v[i]);
+        accounts.work_of_base -= time_step * inertia * mean;
+        accounts.loss_by_mass += time_step * mass_coefficient * diagonal[i] *
+                                 mean * leap_frog.damped(before, v[i]);
       }
   }
 } // namespace Voussoir

@@ -33,7 +33,7 @@ namespace Voussoir
       {
         const auto parameters   = make_case(file);
         const auto simulation   = make_simulation(*parameters, communicator);
-        const NodalTerms &terms = simulation->terms;
+        const NodalTerms &terms = simulation->model.terms;
 
         const double       expected = 7. / 12. * 1000. * depth * depth * width;
         NodalTerms::Matrix sum;
@@ -50,24 +50,24 @@ namespace Voussoir
                        1e-12);
 
         // from rest under a constant force, as a rigid body
-        while (simulation->state.time < parameters->time.end_time)
-          simulation->scheme.step(simulation->state);
+        while (simulation->run.state.time < parameters->time.end_time)
+          simulation->run.scheme.step(simulation->run.state);
         double momentum = 0.;
         for (unsigned int i = 1;
-             i < simulation->state.velocity.locally_owned_size();
+             i < simulation->run.state.velocity.locally_owned_size();
              i += 3)
-          momentum += simulation->state.velocity.local_element(i) *
-                      simulation->mass.mass.local_element(i);
+          momentum += simulation->run.state.velocity.local_element(i) *
+                      simulation->model.mass.mass.local_element(i);
         momentum = Utilities::MPI::sum(momentum, communicator);
         const double time =
-          simulation->state.time - 0.5 * simulation->time_step;
+          simulation->run.state.time - 0.5 * simulation->run.time_step.length;
         verdicts.near("mean velocity [m/s]",
                       momentum / mass,
                       force * time / (mass + sum[1][1]),
                       0.02);
         verdicts.below("energy unaccounted for",
-                       (simulation->energy.evaluate(simulation->state),
-                        simulation->energy.relative_error()),
+                       (simulation->run.energy.evaluate(simulation->run.state),
+                        simulation->run.energy.relative_error()),
                        1e-9);
       }
 

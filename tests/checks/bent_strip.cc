@@ -47,7 +47,7 @@ namespace Voussoir
                 const auto simulation =
                   make_simulation(*parameters, communicator);
                 const ElasticConstants c =
-                  simulation->materials[0]->elastic_constants();
+                  simulation->model.materials[0]->elastic_constants();
                 const double nu      = c.poisson_ratio,
                              modulus = c.young_modulus / (1. - nu * nu),
                              G       = c.shear_modulus(),
@@ -63,11 +63,11 @@ namespace Voussoir
                            (stiffness * modulus * thickness * thickness) +
                          length / G);
                 const auto moved =
-                  PointWeights(simulation->discretization,
+                  PointWeights(simulation->model.discretization,
                                {{"left", Point<3>()},
                                 {"right", Point<3>(length, 0., 0.)}},
                                "")
-                    .share(simulation->initial.displacement);
+                    .share(simulation->rest.initial.displacement);
                 const double deflection =
                   Utilities::MPI::sum(moved[1][2] - moved[0][2], communicator);
                 verdicts.near(quadrature + ", nu = " + poisson + ", " +

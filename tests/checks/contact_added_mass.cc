@@ -93,7 +93,7 @@ namespace Voussoir
             for (Simulation *simulation : {joined.get(), free.get()})
               {
                 throw_down(*simulation);
-                simulation->scheme.step(simulation->state);
+                simulation->run.scheme.step(simulation->run.state);
               }
             compare(name, friction, *joined, *free, verdicts);
           }
@@ -104,7 +104,7 @@ namespace Voussoir
       static void
       throw_down(Simulation &simulation)
       {
-        const auto        &discretization = simulation.discretization;
+        const auto        &discretization = simulation.model.discretization;
         const Tensor<1, 3> v({0.2, -0.1, -1.});
         for (const auto &cell :
              discretization.dof_handler.active_cell_iterators())
@@ -113,9 +113,10 @@ namespace Voussoir
               {
                 const unsigned int node = discretization.owned_node(global);
                 for (unsigned int d = 0; d < 3; ++d)
-                  simulation.state.velocity.local_element(3 * node + d) = v[d];
+                  simulation.run.state.velocity.local_element(3 * node + d) =
+                    v[d];
               }
-        simulation.contact->start(simulation.state);
+        simulation.run.contact->start(simulation.run.state);
       }
 
       static Tensor<2, 3>
@@ -123,10 +124,10 @@ namespace Voussoir
       {
         Tensor<2, 3> mass;
         for (unsigned int d = 0; d < 3; ++d)
-          mass[d][d] = simulation.mass.mass.local_element(3 * node + d);
-        const auto slot = simulation.terms.slot_at(node);
+          mass[d][d] = simulation.model.mass.mass.local_element(3 * node + d);
+        const auto slot = simulation.model.terms.slot_at(node);
         if (slot)
-          mass += Tensor<2, 3>(simulation.terms.added_mass[*slot]);
+          mass += Tensor<2, 3>(simulation.model.terms.added_mass[*slot]);
         return invert(mass);
       }
 
@@ -159,14 +160,15 @@ namespace Voussoir
               const Simulation  &free,
               Verdicts          &verdicts)
       {
-        const double dt              = joined.time_step;
-        const auto  &contact         = *joined.contact;
-        const auto  &discretization  = joined.discretization;
+        const double dt              = joined.run.time_step.length;
+        const auto  &contact         = *joined.run.contact;
+        const auto  &discretization  = joined.model.discretization;
         const auto   displacement_at = [](const Simulation  &simulation,
                                         const unsigned int node) {
           Tensor<1, 3> u;
           for (unsigned int d = 0; d < 3; ++d)
-            u[d] = simulation.state.displacement.local_element(3 * node + d);
+            u[d] =
+              simulation.run.state.displacement.local_element(3 * node + d);
           return u;
         };
         double force_error = 0., largest_force = 0., motion_error = 0.,

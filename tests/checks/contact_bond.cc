@@ -68,24 +68,24 @@ namespace Voussoir
       const auto simulation = make_simulation(*parameters, communicator);
       Run        run;
       double     area = 0.;
-      while (simulation->state.time < parameters->time.end_time)
+      while (simulation->run.state.time < parameters->time.end_time)
         {
-          simulation->scheme.step(simulation->state);
+          simulation->run.scheme.step(simulation->run.state);
           const ContactSums sums = contact_sums(*simulation, 0);
           area                   = sums.area;
           const double shear =
             Tensor<1, 3>({sums.force[0], sums.force[1], 0.}).norm();
-          run.samples.push_back({simulation->state.time,
+          run.samples.push_back({simulation->run.state.time,
                                  sums.pressure / area,
                                  shear / area,
                                  -sums.given / area,
                                  sums.opening,
                                  sums.slip});
           if (look)
-            for (const ContactPoint &point : simulation->contact->points())
+            for (const ContactPoint &point : simulation->run.contact->points())
               look(point);
         }
-      const ContactEnergy &lost = simulation->contact->surfaces()[0].energy;
+      const ContactEnergy &lost = simulation->run.contact->surfaces()[0].energy;
       const auto           sum =
         sum_over_ranks(std::vector<double>{lost.bond, lost.friction, lost.bars},
                        communicator);

@@ -67,10 +67,10 @@ namespace Voussoir
         const auto      simulation = make_simulation(*parameters, communicator);
         const Histories result =
           run_and_record(*simulation, parse_points(points, "Points"));
-        if (simulation->contact)
+        if (simulation->run.contact)
           penetration = std::max(penetration,
-                                 simulation->contact->effort().penetration /
-                                   simulation->contact->cell_size);
+                                 simulation->run.contact->effort().penetration /
+                                   simulation->run.contact->cell_size);
         return result;
       }
 

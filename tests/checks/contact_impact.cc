@@ -31,8 +31,8 @@ namespace Voussoir
       {
         const auto  parameters     = make_case(file);
         const auto  simulation     = make_simulation(*parameters, communicator);
-        const auto &discretization = simulation->discretization;
-        State      &state          = simulation->state;
+        const auto &discretization = simulation->model.discretization;
+        State      &state          = simulation->run.state;
         const auto  upper          = [&](const unsigned int node) {
           // the nodes at the contact belong to the bar they are in
           return is_upper[node];
@@ -47,21 +47,22 @@ namespace Voussoir
         for (unsigned int node = 0; node < is_upper.size(); ++node)
           if (upper(node))
             state.velocity.local_element(3 * node + 2) = -1.;
-        simulation->contact->start(state);
+        simulation->run.contact->start(state);
 
         // E = 30 GPa, nu = 0, rho = 2400 kg/m3
         const double density = 2400., speed = std::sqrt(30e9 / density);
-        const double stress   = density * speed * (wall ? 1. : 0.5);
-        const double duration = 2. * length / speed, dt = simulation->time_step;
+        const double stress       = density * speed * (wall ? 1. : 0.5);
+        const double duration     = 2. * length / speed,
+                     dt           = simulation->run.time_step.length;
         const double section      = 0.01,
                      start_energy = 0.5 * density * length * section;
         double       error = 0., impulse = 0., separation = 0., work = 0.;
         unsigned int samples = 0;
         while (state.time < parameters->time.end_time)
           {
-            simulation->scheme.step(state);
+            simulation->run.scheme.step(state);
             std::vector<double> sums(2);
-            for (const ContactPoint &point : simulation->contact->points())
+            for (const ContactPoint &point : simulation->run.contact->points())
               {
                 sums[0] += point.force[0];
                 sums[1] += point.area;
@@ -76,14 +77,15 @@ namespace Voussoir
                 ++samples;
               }
           }
-        work = Utilities::MPI::sum(simulation->scheme.work_of_projections,
-                                   communicator);
+        work = Utilities::MPI::sum(
+          simulation->run.state.accounts.work_of_projections, communicator);
 
         // mean velocities of the bars
         std::vector<double> momentum(4);
         for (unsigned int node = 0; node < is_upper.size(); ++node)
           {
-            const double m = simulation->mass.mass.local_element(3 * node + 2);
+            const double m =
+              simulation->model.mass.mass.local_element(3 * node + 2);
             momentum[upper(node) ? 0 : 2] +=
               m * state.velocity.local_element(3 * node + 2);
             momentum[upper(node) ? 1 : 3] += m;
@@ -107,7 +109,7 @@ namespace Voussoir
         // the nodal masses that meet are half a cell each, and stop each other
         verdicts.near("energy lost [%]",
                       100. * energy_loss,
-                      100. * simulation->contact->cell_size / length *
+                      100. * simulation->run.contact->cell_size / length *
                         (wall ? 0.5 : 0.25),
                       0.02);
         if (wall)
@@ -123,8 +125,8 @@ namespace Voussoir
                           0.01);
           }
         verdicts.below("penetration over cell size",
-                       simulation->contact->effort().penetration /
-                         simulation->contact->cell_size,
+                       simulation->run.contact->effort().penetration /
+                         simulation->run.contact->cell_size,
                        1e-10);
       }
 

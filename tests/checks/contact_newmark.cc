@@ -47,7 +47,7 @@ namespace Voussoir
           }
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        State     &state      = simulation->state;
+        State     &state      = simulation->run.state;
 
         double first_millimetre = 0., largest = 0.;
         Mass   mass;
@@ -55,7 +55,7 @@ namespace Voussoir
           {
             while (state.time < rest + cycle)
               {
-                simulation->scheme.step(state);
+                simulation->run.scheme.step(state);
                 const double now = slip(*simulation);
                 largest          = std::max(largest, std::abs(now));
                 if (first_millimetre == 0. && std::abs(now) > 1e-3)
@@ -78,8 +78,8 @@ namespace Voussoir
                           0.005);
           }
         verdicts.below("penetration over cell size",
-                       simulation->contact->effort().penetration /
-                         simulation->contact->cell_size,
+                       simulation->run.contact->effort().penetration /
+                         simulation->run.contact->cell_size,
                        1e-10);
       }
 
@@ -92,12 +92,12 @@ namespace Voussoir
       slip(const Simulation &simulation)
       {
         std::vector<double> sums(2);
-        for (const ContactPoint &point : simulation.contact->points())
+        for (const ContactPoint &point : simulation.run.contact->points())
           {
             sums[0] += point.area * (point.gap * point.frame)[0];
             sums[1] += point.area;
           }
-        sums = sum_over_ranks(sums, simulation.grid.communicator());
+        sums = sum_over_ranks(sums, simulation.model.grid.communicator());
         return sums[0] / sums[1];
       }
 
@@ -108,9 +108,9 @@ namespace Voussoir
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
         double     largest    = 0.;
-        while (simulation->state.time < rest + 1.)
+        while (simulation->run.state.time < rest + 1.)
           {
-            simulation->scheme.step(simulation->state);
+            simulation->run.scheme.step(simulation->run.state);
             largest = std::max(largest, std::abs(slip(*simulation)));
           }
         return largest;

@@ -58,7 +58,7 @@ namespace Voussoir
       {
         const auto    parameters = make_case(file);
         const auto    simulation = make_simulation(*parameters, communicator);
-        ObservedModel model      = simulation->model;
+        ObservedModel model      = simulation->run.observed;
         model.folder             = "observed";
         if (Utilities::MPI::this_mpi_process(communicator) == 0)
           std::filesystem::create_directories(model.folder);
@@ -69,9 +69,9 @@ namespace Voussoir
         ParameterHandler prm;
         observer->declare_parameters(prm);
         observer->prepare(model, 0., false);
-        observer->observe(simulation->state);
+        observer->observe(simulation->run.state);
         nlohmann::json summary;
-        observer->finish(simulation->state, summary);
+        observer->finish(simulation->run.state, summary);
         return summary.at("interfaces")
           .at("surfaces")
           .at("plane")

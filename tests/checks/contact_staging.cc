@@ -128,14 +128,14 @@ namespace Voussoir
           const auto simulation = make_simulation(*parameters, communicator);
           double     largest = 0., smallest = 1e300, opening = 0., slip = 0.;
           for (unsigned int s = 0;
-               s < simulation->contact->surface_names().size();
+               s < simulation->run.contact->surface_names().size();
                ++s)
             {
               const ContactSums sums = contact_sums(*simulation, s);
               largest                = std::max(largest, sums.pressure);
               smallest               = std::min(smallest, sums.pressure);
             }
-          for (const ContactPoint &point : simulation->contact->points())
+          for (const ContactPoint &point : simulation->run.contact->points())
             {
               opening = std::max(opening, std::abs(point.gap[0]));
               if (point.surface < 2) // between blocks
@@ -166,10 +166,11 @@ namespace Voussoir
           // the gap begins where the blocks were when they met; away from
           // the base it is the growth of one of them, nu sigma L / E
           double overlap = 0.;
-          for (unsigned int k = 0; k < simulation->contact->points().size();
+          for (unsigned int k = 0; k < simulation->run.contact->points().size();
                ++k)
-            if (const ContactPoint &point = simulation->contact->points()[k];
-                std::abs(simulation->contact->positions()[k][2] - 0.5 * H) <
+            if (const ContactPoint &point =
+                  simulation->run.contact->points()[k];
+                std::abs(simulation->run.contact->positions()[k][2] - 0.5 * H) <
                 1e-6)
               overlap = std::max(overlap, point.initial_gap[0]);
           return Utilities::MPI::max(overlap, communicator);

@@ -65,12 +65,12 @@ namespace Voussoir
           {weight(0., gravity * std::cos(angle)),
              vector_entry("Loads/push/Traction", Tensor<1, 3>({push, 0., 0.}))}));
         const auto   simulation = make_simulation(*parameters, communicator);
-        while (simulation->state.time < parameters->time.end_time)
+        while (simulation->run.state.time < parameters->time.end_time)
           {
-            simulation->scheme.step(simulation->state);
-            simulation->energy.evaluate(simulation->state);
+            simulation->run.scheme.step(simulation->run.state);
+            simulation->run.energy.evaluate(simulation->run.state);
           }
-        const double time = simulation->state.time;
+        const double time = simulation->run.state.time;
         const double acceleration =
           gravity * (std::sin(angle) - friction * std::cos(angle));
         verdicts.near("tan(theta) = 2 f: acceleration [m/s2]",
@@ -83,11 +83,11 @@ namespace Voussoir
                         acceleration * time * time,
                       0.005);
         verdicts.below("unaccounted energy over input [%]",
-                       100. * simulation->energy.relative_error(),
+                       100. * simulation->run.energy.relative_error(),
                        0.5);
         verdicts.below("penetration over cell size",
-                       simulation->contact->effort().penetration /
-                         simulation->contact->cell_size,
+                       simulation->run.contact->effort().penetration /
+                         simulation->run.contact->cell_size,
                        1e-10);
       }
 

@@ -23,7 +23,7 @@ namespace Voussoir
   inline ContactSums
   contact_sums(const Simulation &simulation, const unsigned int surface)
   {
-    const Contact      &contact = *simulation.contact;
+    const Contact      &contact = *simulation.run.contact;
     std::vector<double> sums(10);
     for (const ContactPoint &point : contact.points())
       if (point.surface == surface)
@@ -39,7 +39,7 @@ namespace Voussoir
         }
     sums[8] = contact.surfaces()[surface].energy.bond;
     sums[9] = contact.surfaces()[surface].energy.friction;
-    sums    = sum_over_ranks(sums, simulation.grid.communicator());
+    sums    = sum_over_ranks(sums, simulation.model.grid.communicator());
     return {dealii::Tensor<1, 3>({sums[0], sums[1], sums[2]}),
             sums[3],
             sums[4],
@@ -56,21 +56,21 @@ namespace Voussoir
   {
     std::vector<double> sums(4);
     for (unsigned int node = 0;
-         node < simulation.discretization.n_owned_nodes();
+         node < simulation.model.discretization.n_owned_nodes();
          ++node)
       for (unsigned int d = 0; d < 3; ++d)
         {
           const unsigned int i = 3 * node + d;
-          if (simulation.mass.inverse.local_element(i) == 0.)
+          if (simulation.model.mass.inverse.local_element(i) == 0.)
             continue;
-          const double m      = simulation.mass.mass.local_element(i);
-          double       motion = simulation.state.displacement.local_element(i);
-          if (simulation.initial.displacement.size() > 0)
-            motion -= simulation.initial.displacement.local_element(i);
+          const double m = simulation.model.mass.mass.local_element(i);
+          double motion  = simulation.run.state.displacement.local_element(i);
+          if (simulation.rest.initial.displacement.size() > 0)
+            motion -= simulation.rest.initial.displacement.local_element(i);
           sums[d] += m * motion;
           sums[3] += m / 3.;
         }
-    sums = sum_over_ranks(sums, simulation.grid.communicator());
+    sums = sum_over_ranks(sums, simulation.model.grid.communicator());
     return dealii::Tensor<1, 3>(
       {sums[0] / sums[3], sums[1] / sums[3], sums[2] / sums[3]});
   }

@@ -95,9 +95,10 @@ namespace Voussoir
                       1e-3 * uplift,
                       1e-8);
         double moment = 0.;
-        for (unsigned int k = 0; k < simulation->contact->points().size(); ++k)
-          moment += simulation->contact->points()[k].given_force *
-                    simulation->contact->positions()[k][0];
+        for (unsigned int k = 0; k < simulation->run.contact->points().size();
+             ++k)
+          moment += simulation->run.contact->points()[k].given_force *
+                    simulation->run.contact->positions()[k][0];
         verdicts.near(name + "its place, from the heel [m]",
                       Utilities::MPI::sum(moment, communicator) / sums.given,
                       centre,

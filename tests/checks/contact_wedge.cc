@@ -187,10 +187,10 @@ namespace Voussoir
         unsigned int        samples = 0;
         std::vector<double> times, motion;
         double              at_start = 0., before = 0.;
-        while (simulation->state.time < parameters->time.end_time)
+        while (simulation->run.state.time < parameters->time.end_time)
           {
-            simulation->scheme.step(simulation->state);
-            const double time = simulation->state.time;
+            simulation->run.scheme.step(simulation->run.state);
+            const double time = simulation->run.state.time;
             const double load =
               resistance / (mass * along + push * std::min(time / ramp, 1.));
             if (load > 1.05)
@@ -239,9 +239,9 @@ namespace Voussoir
                       0.01);
         verdicts.below(
           "penetration over cell size",
-          Utilities::MPI::max(simulation->contact->effort().penetration,
+          Utilities::MPI::max(simulation->run.contact->effort().penetration,
                               communicator) /
-            simulation->contact->cell_size,
+            simulation->run.contact->cell_size,
           1e-12);
       }
 
@@ -250,10 +250,10 @@ namespace Voussoir
       static double
       block_safety(const Simulation &simulation)
       {
-        const Contact      &contact = *simulation.contact;
+        const Contact      &contact = *simulation.run.contact;
         const auto          blocks  = find_sliding_blocks("wedge: left, right",
                                                 "\"Blocks\"",
-                                                simulation.discretization,
+                                                simulation.model.discretization,
                                                 contact);
         std::vector<double> sums(2 * InterfaceSum::n_quantities), areas(2);
         for (const ContactPoint &point : contact.points())
@@ -262,7 +262,7 @@ namespace Voussoir
                         &sums[InterfaceSum::n_quantities * point.surface]);
             areas[point.surface] += point.area;
           }
-        const MPI_Comm communicator = simulation.grid.communicator();
+        const MPI_Comm communicator = simulation.model.grid.communicator();
         sums                        = sum_over_ranks(sums, communicator);
         areas                       = sum_over_ranks(areas, communicator);
         return safety_from_sums(blocks[0], sums.data(), areas);

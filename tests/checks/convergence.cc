@@ -83,35 +83,35 @@ namespace Voussoir
                             "Mesh/box/Cells=1, 1, " + std::to_string(cells),
                             "Mesh/box/Upper corner=" + width + "," + width + ",1"}));
         const auto   simulation = make_simulation(*parameters, communicator);
-        State       &state      = simulation->state;
-        const double dt         = simulation->time_step;
+        State       &state      = simulation->run.state;
+        const double dt         = simulation->run.time_step.length;
         const double omega =
           StandingWave::wave_number *
-          simulation->materials[0]->elastic_constants().p_wave_speed();
+          simulation->model.materials[0]->elastic_constants().p_wave_speed();
         const double discrete = 2. / dt * std::asin(0.5 * omega * dt);
 
         StandingWave exact;
         for (unsigned int node = 0;
-             node < simulation->discretization.n_owned_nodes();
+             node < simulation->model.discretization.n_owned_nodes();
              ++node)
-          if (simulation->mass.inverse.local_element(3 * node + 2) > 0.)
+          if (simulation->model.mass.inverse.local_element(3 * node + 2) > 0.)
             {
-              const double u =
-                exact.value(simulation->discretization.node_positions[node], 2);
+              const double u = exact.value(
+                simulation->model.discretization.node_positions[node], 2);
               state.displacement.local_element(3 * node + 2) = u;
               state.velocity.local_element(3 * node + 2) =
                 (1. - std::cos(discrete * dt)) / dt * u;
             }
         // a bit more than one period
         while (state.time < 7. / omega)
-          simulation->scheme.step(state);
+          simulation->run.scheme.step(state);
         exact.factor = std::cos(discrete * state.time);
         state.displacement.update_ghost_values();
         dealii::Vector<double> differences(
-          simulation->grid.triangulation().n_active_cells());
+          simulation->model.grid.triangulation().n_active_cells());
         VectorTools::integrate_difference(
-          simulation->discretization.mapping,
-          simulation->discretization.dof_handler,
+          simulation->model.discretization.mapping,
+          simulation->model.discretization.dof_handler,
           state.displacement,
           exact,
           differences,
@@ -119,7 +119,7 @@ namespace Voussoir
           VectorTools::L2_norm);
         // per root of the volume, as the column is one cell wide
         return cells * VectorTools::compute_global_error(
-                         simulation->grid.triangulation(),
+                         simulation->model.grid.triangulation(),
                          differences,
                          VectorTools::L2_norm);
       }

@@ -34,39 +34,41 @@ namespace Voussoir
               {"Mesh/box/Upper corner=" + std::to_string(height / 24.) + ", " +
                  std::to_string(height / 24.) + ", " + std::to_string(height)}));
             const auto simulation  = make_simulation(*parameters, communicator);
-            const Damping &damping = simulation->damping;
-            State         &state   = simulation->state;
+            const Damping &damping = simulation->run.damping;
+            State         &state   = simulation->run.state;
             const auto     amplitude = [&] {
               // mass-weighted projection on the mode
               double sum = 0.;
               for (unsigned int node = 0;
-                   node < simulation->discretization.n_owned_nodes();
+                   node < simulation->model.discretization.n_owned_nodes();
                    ++node)
                 sum +=
-                  simulation->mass.mass.local_element(3 * node + 2) *
+                  simulation->model.mass.mass.local_element(3 * node + 2) *
                   state.displacement.local_element(3 * node + 2) *
-                  mode(simulation->discretization.node_positions[node], height);
+                  mode(simulation->model.discretization.node_positions[node],
+                       height);
               return Utilities::MPI::sum(sum, communicator);
             };
             for (unsigned int node = 0;
-                 node < simulation->discretization.n_owned_nodes();
+                 node < simulation->model.discretization.n_owned_nodes();
                  ++node)
               state.velocity.local_element(3 * node + 2) =
-                mode(simulation->discretization.node_positions[node], height);
+                mode(simulation->model.discretization.node_positions[node],
+                     height);
 
             // positive peaks, with the parabola through three samples
             std::vector<double> peaks, times;
             double              a = 0., b = 0.;
             while (peaks.size() < 7)
               {
-                simulation->scheme.step(state);
+                simulation->run.scheme.step(state);
                 const double c = amplitude();
                 if (b > a && b >= c && b > 0.)
                   {
                     const double shift = 0.5 * (a - c) / (a - 2. * b + c);
                     peaks.push_back(b - 0.25 * (a - c) * shift);
                     times.push_back((double(state.step) - 1. + shift) *
-                                    simulation->time_step);
+                                    simulation->run.time_step.length);
                   }
                 a = b;
                 b = c;
@@ -86,7 +88,8 @@ namespace Voussoir
             std::ostringstream hertz;
             hertz << "frequency against the storage modulus at " << frequency
                   << " Hz";
-            const double factor = simulation->materials[0]->damping_factor();
+            const double factor =
+              simulation->model.materials[0]->damping_factor();
             verdicts.near(hertz.str(),
                           1. / period,
                           frequency *

@@ -17,25 +17,26 @@ namespace Voussoir
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        State     &state      = simulation->state;
+        State     &state      = simulation->run.state;
         const auto shape      = [](const Point<3> &p, const unsigned int d) {
           return std::sin(0.11 * p[0] + 0.07 * p[1] + 0.13 * p[2] + d);
         };
         for (unsigned int node = 0;
-             node < simulation->discretization.n_owned_nodes();
+             node < simulation->model.discretization.n_owned_nodes();
              ++node)
           for (unsigned int d = 0; d < 3; ++d)
-            if (simulation->mass.inverse.local_element(3 * node + d) > 0.)
+            if (simulation->model.mass.inverse.local_element(3 * node + d) > 0.)
               state.velocity.local_element(3 * node + d) =
-                shape(simulation->discretization.node_positions[node], d);
+                shape(simulation->model.discretization.node_positions[node], d);
 
         double first = 0., smallest = 1e300, largest = 0., swing = 0.;
         for (unsigned int step = 0; step < 400; ++step)
           {
-            simulation->scheme.step(state);
+            simulation->run.scheme.step(state);
             if (step % 10 == 0)
               {
-                const EnergyTerms &terms = simulation->energy.evaluate(state);
+                const EnergyTerms &terms =
+                  simulation->run.energy.evaluate(state);
                 if (step == 0)
                   first = terms.stored();
                 smallest = std::min(smallest, terms.stored());
@@ -49,7 +50,7 @@ namespace Voussoir
                        1e-10);
         if (parameters->grid.local_refinement.empty() == false)
           verdicts.is_true("the mesh has hanging nodes",
-                           Utilities::MPI::sum(simulation->discretization
+                           Utilities::MPI::sum(simulation->model.discretization
                                                  .hanging_nodes.n_constraints(),
                                                communicator) > 0);
       }

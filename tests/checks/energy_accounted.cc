@@ -19,19 +19,19 @@ namespace Voussoir
         const auto     parameters = make_case(file);
         const auto     simulation = make_simulation(*parameters, communicator);
         const Schedule schedule(parameters->output.energy_interval,
-                                simulation->time_step);
-        while (simulation->state.time < parameters->time.end_time)
+                                simulation->run.time_step.length);
+        while (simulation->run.state.time < parameters->time.end_time)
           {
-            simulation->scheme.step(simulation->state);
-            if (schedule.due(simulation->state.step))
-              simulation->energy.evaluate(simulation->state);
+            simulation->run.scheme.step(simulation->run.state);
+            if (schedule.due(simulation->run.state.step))
+              simulation->run.energy.evaluate(simulation->run.state);
           }
-        const auto   summary = simulation->energy.summary();
+        const auto   summary = simulation->run.energy.summary();
         const double input   = summary["input [J]"];
         verdicts.above("lost in damping over input [%]",
                        100. * double(summary["lost in damping [J]"]) / input,
                        0.1);
-        const bool cracks = simulation->internal_force.has_memory();
+        const bool cracks = simulation->model.internal_force.has_memory();
         if (cracks)
           verdicts.above(
             "lost to cracks over input [%]",

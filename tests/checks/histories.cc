@@ -43,23 +43,25 @@ namespace Voussoir
                  const std::vector<NamedPoint>      &points,
                  const std::function<void(State &)> &after_step)
   {
-    const PointWeights  weights(simulation.discretization, points, "the check");
+    const PointWeights  weights(simulation.model.discretization,
+                               points,
+                               "the check");
     Histories           histories;
     std::vector<double> shares;
-    while (simulation.state.time < simulation.parameters.time.end_time)
+    while (simulation.run.state.time < simulation.model.parameters.time.end_time)
       {
-        simulation.scheme.step(simulation.state);
+        simulation.run.scheme.step(simulation.run.state);
         if (after_step)
-          after_step(simulation.state);
-        histories.times.push_back(simulation.state.time);
+          after_step(simulation.run.state);
+        histories.times.push_back(simulation.run.state.time);
         for (const Tensor<1, 3> &u :
-             weights.share(simulation.state.displacement))
+             weights.share(simulation.run.state.displacement))
           for (unsigned int d = 0; d < 3; ++d)
             shares.push_back(u[d]);
       }
 
     const std::vector<double> sums =
-      sum_over_ranks(shares, simulation.grid.communicator());
+      sum_over_ranks(shares, simulation.model.grid.communicator());
     histories.displacement.resize(points.size());
     for (std::size_t i = 0; i < sums.size(); i += 3)
       histories.displacement[i / 3 % points.size()].push_back(

@@ -93,8 +93,8 @@ namespace Voussoir
         const auto   parameters = make_case(file);
         const auto   simulation = make_simulation(*parameters, communicator);
         const auto   histories  = run_and_record(*simulation, places);
-        const auto   rock       = simulation->materials[0]->elastic_constants();
-        const double cs         = rock.s_wave_speed();
+        const auto   rock = simulation->model.materials[0]->elastic_constants();
+        const double cs   = rock.s_wave_speed();
 
         std::vector<double> result;
         for (unsigned int p = 0; p < places.size(); ++p)

@@ -37,24 +37,23 @@ namespace Voussoir
         const auto simulation = make_simulation(*parameters, communicator);
         const auto motion =
           parameters->ground_motion.build(parameters->file.folder());
-        const auto &[lower, upper] = simulation->boundary.extent();
-        const ElasticConstants rock =
-                                 simulation->materials[0]->elastic_constants(),
-                               soil =
-                                 simulation->materials[1]->elastic_constants();
+        const auto &[lower, upper] = simulation->model.boundary.extent();
+        const ElasticConstants
+          rock = simulation->model.materials[0]->elastic_constants(),
+          soil = simulation->model.materials[1]->elastic_constants();
 
         // the column, marched beside the model
-        WaveColumn column(layers_of_sides(simulation->boundary.side_faces(),
-                                          {rock, soil},
-                                          {1., 1.},
-                                          simulation->discretization.degree,
-                                          simulation->time_step,
-                                          simulation->damping),
-                          simulation->discretization.degree,
-                          parameters->discretization.quadrature,
-                          simulation->damping,
-                          parameters->time.scheme == "paper",
-                          simulation->time_step);
+        WaveColumn column(
+          layers_of_sides(simulation->model.boundary.side_faces(),
+                          {rock, soil},
+                          {1., 1.},
+                          simulation->model.discretization.degree,
+                          simulation->run.time_step.length,
+                          simulation->run.damping),
+          simulation->model.discretization.degree,
+          parameters->discretization.quadrature,
+          simulation->run.damping,
+          simulation->run.time_step.leap_frog());
         const auto surface = column.interpolation(upper[2]);
 
         const Point<3>            middle(0.5 * (lower[0] + upper[0]),
@@ -66,7 +65,7 @@ namespace Voussoir
           {{"corner", upper}, {"middle", middle}},
           [&](const State &state) {
             // the column shows the displacement at the start of its step
-            const double t = state.time - simulation->time_step;
+            const double t = state.time - simulation->run.time_step.length;
             column.advance(Tensor<1, 3>(
               {motion[0]->velocity(t), 0., motion[2]->velocity(t)}));
             of_column.push_back(column.displacement(surface));

@@ -206,10 +206,10 @@ namespace Voussoir
                     const MPI_Comm     communicator) const
       {
         const auto simulation = make_simulation(parameters, communicator);
-        const InternalForce  &internal       = simulation->internal_force;
+        const InternalForce  &internal       = simulation->model.internal_force;
         MaterialMemory        memory         = internal.new_memory();
-        const Discretization &discretization = simulation->discretization;
-        const Material       &material       = *simulation->materials[0];
+        const Discretization &discretization = simulation->model.discretization;
+        const Material       &material       = *simulation->model.materials[0];
 
         // a rough field that grows: SIMD lanes against points by themselves
         Vector force = discretization.create_vector(), u = force, plain = force;
@@ -269,7 +269,7 @@ namespace Voussoir
                     const MPI_Comm     communicator) const
       {
         const auto simulation = make_simulation(parameters, communicator);
-        const Discretization &discretization = simulation->discretization;
+        const Discretization &discretization = simulation->model.discretization;
         std::mt19937          random(2);
         const Tensor2         strain = random_strain(random, size);
         Vector                u = discretization.create_vector(), force = u;
@@ -281,9 +281,8 @@ namespace Voussoir
             for (unsigned int d = 0; d < 3; ++d)
               u.local_element(3 * node + d) = value[d];
           }
-        simulation->internal_force.respond(force,
-                                           u,
-                                           simulation->state.material_memory);
+        simulation->model.internal_force.respond(
+          force, u, simulation->run.state.material_memory);
         double inside = 0.;
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
              ++node)
@@ -312,9 +311,9 @@ namespace Voussoir
                       std::map<std::pair<unsigned int, unsigned int>,
                                std::vector<double>> &histories) const
       {
-        const Discretization &discretization = simulation.discretization;
+        const Discretization &discretization = simulation.model.discretization;
         const auto           &fe             = discretization.fe;
-        const Material       &material       = *simulation.materials[0];
+        const Material       &material       = *simulation.model.materials[0];
         const auto &points    = discretization.matrix_free.get_quadrature();
         const bool  one_point = points.size() == 1;
         FEValues<3> values(discretization.mapping,
@@ -325,7 +324,7 @@ namespace Voussoir
         std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
         std::vector<Tensor2> strains(values.n_quadrature_points);
         if (one_point)
-          simulation.internal_force.apply(result, u);
+          simulation.model.internal_force.apply(result, u);
         else
           result = 0.;
         for (const auto &cell :

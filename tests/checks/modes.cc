@@ -11,12 +11,13 @@ namespace Voussoir
     orthogonality(const Simulation &simulation)
     {
       std::pair<double, double> error(0., 0.);
-      Vector force = simulation.discretization.create_vector(), momentum(force);
+      Vector force = simulation.model.discretization.create_vector(),
+             momentum(force);
       for (const Mode &a : simulation.modes.list)
         {
-          simulation.internal_force.apply(force, a.shape);
+          simulation.model.internal_force.apply(force, a.shape);
           momentum = a.shape;
-          momentum.scale(simulation.mass.mass);
+          momentum.scale(simulation.model.mass.mass);
           const double omega = 2. * numbers::PI * a.frequency;
           for (const Mode &b : simulation.modes.list)
             {
@@ -41,16 +42,16 @@ namespace Voussoir
                   const Case           &parameters,
                   const ModeParameters &mode_parameters)
     {
-      Log log(simulation.grid.communicator(), true);
-      return find_modes({simulation.discretization,
-                         simulation.internal_force,
+      Log log(simulation.model.grid.communicator(), true);
+      return find_modes({simulation.model.discretization,
+                         simulation.model.internal_force,
                          parameters.material_names(),
-                         simulation.materials,
+                         simulation.model.materials,
                          [&](const Grid::Cell &cell) {
-                           return simulation.material_of(cell);
+                           return simulation.model.material_of(cell);
                          },
                          parameters.boundaries,
-                         simulation.terms},
+                         simulation.model.terms},
                         mode_parameters,
                         log);
     }
@@ -126,11 +127,12 @@ namespace Voussoir
         const auto   simulation = make_simulation(*parameters, communicator);
         const Modes &modes      = simulation->modes;
         const double length     = 20.;
-        const auto   material   = simulation->materials[0]->elastic_constants();
-        const double base       = material.p_wave_speed() / length; // [rad/s]
+        const auto   material =
+          simulation->model.materials[0]->elastic_constants();
+        const double base = material.p_wave_speed() / length; // [rad/s]
 
         // of the whole rod, held end included, as in the closed form
-        const double mass = simulation->mass.total[0];
+        const double mass = simulation->model.mass.total[0];
         double       sum  = 0.;
         for (unsigned int j = 0; j < modes.list.size(); ++j)
           {
@@ -195,20 +197,21 @@ namespace Voussoir
                     const double mass)
       {
         // the nodes at the end carry the mass in the ratio of their own
-        const Discretization &discretization    = simulation.discretization;
-        double                sum               = 0.;
+        const Discretization &discretization = simulation.model.discretization;
+        double                sum            = 0.;
         const auto            for_each_end_node = [&](const auto &visit) {
           for (unsigned int node = 0; node < discretization.n_owned_nodes();
                ++node)
             if (discretization.node_positions[node][2] > 20. - 1e-9)
-              visit(node, simulation.mass.mass.local_element(3 * node + 2));
+              visit(node,
+                    simulation.model.mass.mass.local_element(3 * node + 2));
         };
         for_each_end_node(
           [&](const unsigned int, const double m) { sum += m; });
         sum = Utilities::MPI::sum(sum, discretization.grid.communicator());
         for_each_end_node([&](const unsigned int node, const double m) {
-          const unsigned int slot = simulation.terms.add_node(node);
-          simulation.terms.added_mass[slot][2][2] = mass * m / sum;
+          const unsigned int slot = simulation.model.terms.add_node(node);
+          simulation.model.terms.added_mass[slot][2][2] = mass * m / sum;
         });
         return compute_modes(simulation, parameters, parameters.modes);
       }
@@ -283,7 +286,7 @@ namespace Voussoir
         const auto simulation = make_simulation(*parameters, communicator);
         for (const unsigned int mode : {1, 2, 3})
           verdicts.near("ratio in mode " + std::to_string(mode),
-                        100. * simulation->damping.ratio(
+                        100. * simulation->run.damping.ratio(
                                  simulation->modes.list[mode - 1].frequency),
                         expected[mode - 1],
                         1e-6,

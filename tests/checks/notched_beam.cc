@@ -134,22 +134,24 @@ namespace Voussoir
       press(Simulation &simulation, const double thickness) const
       {
         std::vector<unsigned int> pressed;
-        for (const Projection *projection : simulation.projections)
+        for (const Projection *projection : simulation.run.equation.projections)
           pressed = projection->nodes();
         // the load as a mean over about a period of the beam
-        const unsigned int  last    = simulation.n_steps();
-        const unsigned int  window  = std::ceil(0.003 / simulation.time_step);
+        const unsigned int last = simulation.run.n_steps();
+        const unsigned int window =
+          std::ceil(0.003 / simulation.run.time_step.length);
         double              largest = 0., sum = 0.;
         std::vector<double> loads;
-        Vector              force = simulation.discretization.create_vector();
-        while (simulation.state.step < last)
+        Vector force = simulation.model.discretization.create_vector();
+        while (simulation.run.state.step < last)
           {
-            simulation.scheme.step(simulation.state);
-            if (simulation.state.step % 10 != 0)
+            simulation.run.scheme.step(simulation.run.state);
+            if (simulation.run.state.step % 10 != 0)
               continue;
-            simulation.internal_force.respond(force,
-                                              simulation.state.displacement,
-                                              simulation.state.material_memory);
+            simulation.model.internal_force.respond(
+              force,
+              simulation.run.state.displacement,
+              simulation.run.state.material_memory);
             double load = 0.;
             for (const unsigned int node : pressed)
               load -= node_value(force, node)[2];
@@ -160,7 +162,7 @@ namespace Voussoir
             largest = std::max(largest, sum / (window / 10));
           }
         return {largest,
-                simulation.state.material_memory.dissipated() / thickness};
+                simulation.run.state.material_memory.dissipated() / thickness};
       }
     };
 

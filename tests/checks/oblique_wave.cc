@@ -45,17 +45,18 @@ namespace Voussoir
           {"oblique SH", ObliqueWave::Type::SH}};
 
         // the front reaches the first lower corner of the box at t = 0
-        const auto &[lower, upper] = simulation->boundary.extent();
+        const auto &[lower, upper] = simulation->model.boundary.extent();
         const Point<3> origin(0.5 * (lower[0] + upper[0]),
                               0.5 * (lower[1] + upper[1]),
                               upper[2]);
         const auto     wave = [&](const double delay) {
-          return ObliqueWave(types.at(field.type),
-                             field.angle * numbers::PI / 180.,
-                             field.azimuth * numbers::PI / 180.,
-                             simulation->materials[0]->elastic_constants(),
-                             origin,
-                             delay);
+          return ObliqueWave(
+            types.at(field.type),
+            field.angle * numbers::PI / 180.,
+            field.azimuth * numbers::PI / 180.,
+            simulation->model.materials[0]->elastic_constants(),
+            origin,
+            delay);
         };
         double earliest = 0.;
         for (const double x : {lower[0], upper[0]})

@@ -25,19 +25,19 @@ namespace Voussoir
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        const Discretization &discretization = simulation->discretization;
+        const Discretization &discretization = simulation->model.discretization;
 
         Vector u = discretization.create_vector(), wide(u);
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
              ++node)
           for (unsigned int d = 0; d < 3; ++d)
-            if (simulation->mass.inverse.local_element(3 * node + d) > 0.)
+            if (simulation->model.mass.inverse.local_element(3 * node + d) > 0.)
               {
                 const Point<3> &p = discretization.node_positions[node];
                 u.local_element(3 * node + d) =
                   std::sin(3. * p[0] + d) * std::cos(2. * p[1]) + p[2] * p[2];
               }
-        simulation->internal_force.apply(wide, u);
+        simulation->model.internal_force.apply(wide, u);
         Vector       narrow = reference(*simulation, u);
         const double size   = narrow.linfty_norm();
         narrow -= wide;
@@ -54,9 +54,9 @@ namespace Voussoir
             u.local_element(3 * node + 2) = 0.7 * p[1] + 0.5 * p[2];
           }
         for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-          if (simulation->mass.inverse.local_element(i) == 0.)
+          if (simulation->model.mass.inverse.local_element(i) == 0.)
             u.local_element(i) = 0.; // hanging: the operator interpolates
-        simulation->internal_force.apply(wide, u);
+        simulation->model.internal_force.apply(wide, u);
         double inside = 0.;
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
              ++node)
@@ -80,7 +80,7 @@ namespace Voussoir
       Vector
       reference(const Simulation &simulation, const Vector &u) const
       {
-        const Discretization &discretization = simulation.discretization;
+        const Discretization &discretization = simulation.model.discretization;
         const auto           &fe             = discretization.fe;
         const Vector          source         = with_ghosts(discretization, u);
         Vector                result(discretization.owned_dofs,
@@ -99,10 +99,10 @@ namespace Voussoir
              discretization.dof_handler.active_cell_iterators())
           if (cell->is_locally_owned())
             {
-              const unsigned int number   = simulation.material_of(cell);
-              const Material    &material = *simulation.materials[number];
+              const unsigned int number   = simulation.model.material_of(cell);
+              const Material    &material = *simulation.model.materials[number];
               const double       factor =
-                simulation.internal_force.factors_of(number).stress;
+                simulation.model.internal_force.factors_of(number).stress;
               values.reinit(cell);
               values[displacement].get_function_symmetric_gradients(source,
                                                                     strains);

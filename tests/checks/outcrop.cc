@@ -76,20 +76,20 @@ namespace Voussoir
       {
         const auto parameters      = make_case(file);
         const auto simulation      = make_simulation(*parameters, communicator);
-        const auto &[lower, upper] = simulation->boundary.extent();
+        const auto &[lower, upper] = simulation->model.boundary.extent();
 
         // twice the S travel time through the levels of one side, whole steps
         std::map<double, double> levels;
-        for (const SideFace &face : simulation->boundary.side_faces())
-          levels[face.lower] =
-            (face.upper - face.lower) / simulation->materials[face.material]
-                                          ->elastic_constants()
-                                          .s_wave_speed();
+        for (const SideFace &face : simulation->model.boundary.side_faces())
+          levels[face.lower] = (face.upper - face.lower) /
+                               simulation->model.materials[face.material]
+                                 ->elastic_constants()
+                                 .s_wave_speed();
         double travel_time = 0.;
         for (const auto &level : levels)
           travel_time += level.second;
-        delay = std::ceil(2. * travel_time / simulation->time_step) *
-                simulation->time_step;
+        delay = std::ceil(2. * travel_time / simulation->run.time_step.length) *
+                simulation->run.time_step.length;
         return run_and_record(*simulation, {{"surface", upper}});
       }
     };

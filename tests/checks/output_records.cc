@@ -19,11 +19,12 @@ namespace Voussoir
     ObservedModel
     model_with_folder(const Simulation &simulation)
     {
-      ObservedModel model = simulation.model;
+      ObservedModel model = simulation.run.observed;
       model.folder        = "observed";
-      if (Utilities::MPI::this_mpi_process(simulation.grid.communicator()) == 0)
+      if (Utilities::MPI::this_mpi_process(
+            simulation.model.grid.communicator()) == 0)
         std::filesystem::create_directories(model.folder);
-      MPI_Barrier(simulation.grid.communicator());
+      MPI_Barrier(simulation.model.grid.communicator());
       return model;
     }
 
@@ -49,11 +50,11 @@ namespace Voussoir
         prm.set("Stress in", "soil");
         observer->prepare(model, 0., false);
 
-        const Discretization &discretization = simulation->discretization;
+        const Discretization &discretization = simulation->model.discretization;
         std::map<std::uint64_t, std::array<double, 2>> expected;
         for (unsigned int look = 0; look < 3; ++look)
           {
-            State state = simulation->state;
+            State state = simulation->run.state;
             state.step  = look;
             for (unsigned int i = 0; i < discretization.node_positions.size();
                  ++i)
@@ -88,7 +89,7 @@ namespace Voussoir
                          Utilities::MPI::max(size, communicator),
                        1e-9);
         nlohmann::json summary;
-        observer->finish(simulation->state, summary);
+        observer->finish(simulation->run.state, summary);
         verdicts.is_true("envelopes.vtu is written",
                          std::filesystem::file_size("observed/envelopes.vtu") >
                            1000);
@@ -100,7 +101,7 @@ namespace Voussoir
                 const Vector                                   &displacement,
                 std::map<std::uint64_t, std::array<double, 2>> &expected)
       {
-        const Discretization &discretization = simulation.discretization;
+        const Discretization &discretization = simulation.model.discretization;
         const Vector          full = with_ghosts(discretization, displacement);
         FEValues<3>           values(discretization.mapping,
                            discretization.fe,
@@ -110,14 +111,14 @@ namespace Voussoir
         for (const auto &cell :
              discretization.dof_handler.active_cell_iterators())
           if (cell->is_locally_owned() &&
-              simulation.grid.in_cell_set(cell, "soil"))
+              simulation.model.grid.in_cell_set(cell, "soil"))
             {
               values.reinit(cell);
               values[FEValuesExtractors::Vector(0)]
                 .get_function_symmetric_gradients(full, strain);
               const auto principal = eigenvalues(
-                simulation.materials[simulation.material_of(cell)]->stress(
-                  strain[0]));
+                simulation.model.materials[simulation.model.material_of(cell)]
+                  ->stress(strain[0]));
               auto &extremes =
                 expected.insert({Grid::global_key(cell), {{-1e300, 1e300}}})
                   .first->second;
@@ -163,8 +164,8 @@ namespace Voussoir
         const auto   u = [&](const double t, const double z) {
           return -(1. + 0.2 * z) * std::sin(omega * t) / (omega * omega);
         };
-        State       state     = simulation->state;
-        const auto &positions = simulation->discretization.node_positions;
+        State       state     = simulation->run.state;
+        const auto &positions = simulation->model.discretization.node_positions;
         for (state.step = 0; state.step <= 8001; ++state.step)
           {
             state.time = state.step * dt;

@@ -23,11 +23,12 @@ namespace Voussoir
       observer->declare_parameters(prm);
       for (const auto &[entry, value] : entries)
         prm.set(entry, value);
-      ObservedModel model = simulation.model;
+      ObservedModel model = simulation.run.observed;
       model.folder        = "observed";
-      if (Utilities::MPI::this_mpi_process(simulation.grid.communicator()) == 0)
+      if (Utilities::MPI::this_mpi_process(
+            simulation.model.grid.communicator()) == 0)
         std::filesystem::create_directories(model.folder);
-      MPI_Barrier(simulation.grid.communicator());
+      MPI_Barrier(simulation.model.grid.communicator());
       observer->check(model);
       observer->prepare(model, 0., false);
       for (const State &state : states)
@@ -62,9 +63,10 @@ namespace Voussoir
         const auto simulation = make_simulation(*parameters, communicator);
         verdict               = &verdicts;
         this->model           = simulation.get();
-        const auto elastic    = simulation->materials[0]->elastic_constants();
-        young                 = elastic.young_modulus;
-        nu                    = elastic.poisson_ratio;
+        const auto elastic =
+          simulation->model.materials[0]->elastic_constants();
+        young = elastic.young_modulus;
+        nu    = elastic.poisson_ratio;
 
         // 1.5 MPa along x, y or z
         for (unsigned int d = 0; d < 3; ++d)
@@ -81,9 +83,9 @@ namespace Voussoir
       State
       state_of(const Field &displacement) const
       {
-        State state           = model->state;
+        State state           = model->run.state;
         state.displacement    = 0.;
-        const auto &positions = model->discretization.node_positions;
+        const auto &positions = model->model.discretization.node_positions;
         for (unsigned int node = 0; node < positions.size(); ++node)
           {
             const auto u = displacement(positions[node]);
@@ -265,7 +267,7 @@ namespace Voussoir
         const auto faces      = observed("face stresses",
                                     {{"Face sets", "front, back"}},
                                     *simulation,
-                                    {simulation->state});
+                                    {simulation->run.state});
         for (const std::string which : {"largest", "smallest"})
           verdicts.near(which + " cantilever stress [MPa]",
                         faces.at(which + " cantilever stress [MPa]"),
@@ -276,7 +278,7 @@ namespace Voussoir
                                       {"Upstream", "back"},
                                       {"Downstream", "front"}},
                                      *simulation,
-                                     {simulation->state});
+                                     {simulation->run.state});
         verdicts.near("cantilever force over the thickness [MPa]",
                       forces.at("line")
                           .at("largest cantilever force [MN/m]")

@@ -84,14 +84,14 @@ namespace Voussoir
       {
         const auto   parameters = make_case(file);
         const auto   simulation = make_simulation(*parameters, communicator);
-        const double height     = -simulation->boundary.extent().first[2];
+        const double height     = -simulation->model.boundary.extent().first[2];
         const auto   histories  = run_and_record(
           *simulation,
           {{"middle", Point<3>(0., 0., -0.5 * height)}},
           [&](State &state) {
             if (wave == "S")
               for (unsigned int node = 0;
-                   node < simulation->discretization.n_owned_nodes();
+                   node < simulation->model.discretization.n_owned_nodes();
                    ++node)
                 {
                   state.displacement.local_element(3 * node + 2) = 0.;

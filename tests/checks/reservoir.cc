@@ -37,7 +37,7 @@ namespace Voussoir
         const auto parameters = make_case(file);
         Tank       tank(*parameters, communicator);
         double     velocity = 0., half = 0., height = 0., width = 0.;
-        for (const auto &x : tank.water.vertices)
+        for (const auto &x : tank.water_mesh.vertices)
           {
             half   = std::max(half, x[0]);
             height = std::max(height, x[2]);
@@ -91,7 +91,7 @@ namespace Voussoir
         Tank       tank(*parameters, communicator);
         Point<3>   corner;
         double     height = 0.;
-        for (const auto &x : tank.water.vertices)
+        for (const auto &x : tank.water_mesh.vertices)
           {
             corner[0] = std::max(corner[0], x[0]);
             height    = std::max(height, x[2]);
@@ -172,7 +172,7 @@ namespace Voussoir
         const auto parameters = make_case(file);
         Tank       tank(*parameters, communicator);
         Point<3>   middle;
-        for (const auto &x : tank.water.vertices)
+        for (const auto &x : tank.water_mesh.vertices)
           {
             middle[0] = std::max(middle[0], x[0]);
             middle[1] = std::max(middle[1], 0.5 * x[1]);
@@ -217,7 +217,7 @@ namespace Voussoir
               tank.step(along_y(pulse(tank.time, duration)));
               if (tank.time > duration + tank.time_step)
                 {
-                  const double energy = tank.reservoir.stored_energy();
+                  const double energy = tank.water.stored_energy();
                   least               = std::min(least, energy);
                   most                = std::max(most, energy);
                 }
@@ -235,7 +235,7 @@ namespace Voussoir
           {
             tank.step(along_y(pulse(tank.time, duration)),
                       along_y(-0.5 * pulse(tank.time, 2. * duration)));
-            const Reservoir    &water = tank.reservoir;
+            const WaterMotion  &water = tank.water;
             std::vector<double> sums{water.loss,
                                      water.work_on_solid,
                                      water.work_on_base};
@@ -306,9 +306,9 @@ namespace Voussoir
             const Tensor<1, 3> thrust = tank.thrust();
             for (unsigned int d = 0; d < 3; ++d)
               result[0].push_back(thrust[d]);
-            result[1].push_back(tank.reservoir.stored_energy());
+            result[1].push_back(tank.water.stored_energy());
             result[1].push_back(
-              Utilities::MPI::sum(tank.reservoir.loss, communicator));
+              Utilities::MPI::sum(tank.water.loss, communicator));
           }
         return result;
       }

@@ -48,27 +48,16 @@ namespace Voussoir
 
         const Damping      damping(parameters->damping);
         const InitialState initial_state;
-        CentralDifference  scheme(
-          tank.discretization,
-          internal_force,
-          mass,
-          damping,
-          tank.terms,
-          initial_state,
-          {},
-          [&](const double) {
-            std::fill(tank.terms.forces.begin(),
-                      tank.terms.forces.end(),
-                      Tensor<1, 3>());
-            tank.reservoir.add_forces(tank.terms);
-          },
-          [&](const State &now) {
-            tank.reservoir.advance(now.velocity, Tensor<1, 3>());
-          },
-          {},
-          false,
-          parameters->time.safety_factor * together);
-        tank.reservoir.prepare(scheme.time_step);
+        const double      time_step = parameters->time.safety_factor * together;
+        WaterMotion       water(tank.reservoir, tank.base, time_step);
+        CentralDifference scheme({tank.discretization,
+                                  internal_force,
+                                  mass,
+                                  tank.terms,
+                                  damping,
+                                  initial_state,
+                                  {&water}},
+                                 LeapFrog{time_step});
 
         State state = scheme.state_at_rest();
         for (unsigned int node = 0; node < tank.discretization.n_owned_nodes();
@@ -86,9 +75,9 @@ namespace Voussoir
                 Vector before(state.displacement), momentum(state.velocity);
                 before.add(-scheme.time_step, state.velocity);
                 momentum.scale(mass.mass);
-                const double water =
-                  tank.reservoir.stored_energy() +
-                  Utilities::MPI::sum(tank.reservoir.loss, communicator);
+                const double stored =
+                  water.stored_energy() +
+                  Utilities::MPI::sum(water.loss, communicator);
                 const double total =
                   0.5 * (momentum * state.velocity) +
                   internal_force.stored_energy(state.displacement,
@@ -96,11 +85,11 @@ namespace Voussoir
                                                initial_state,
                                                state.displacement,
                                                before) +
-                  water + tank.reservoir.work_ahead(state.velocity);
+                  stored + water.work_ahead(state.velocity);
                 if (step == 0)
                   initial = total;
                 worst    = std::max(worst, std::abs(total - initial));
-                in_water = std::max(in_water, water);
+                in_water = std::max(in_water, stored);
               }
             scheme.step(state);
           }

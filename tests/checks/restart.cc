@@ -71,7 +71,7 @@ namespace Voussoir
 
         const auto straight = make_case(folder(file, "straight", false));
         Simulation uninterrupted(*straight, options(false), communicator);
-        uninterrupted.run();
+        uninterrupted.run.march();
 
         // on the same ranks
         const auto stopped = make_case(folder(file, "together", true));
@@ -79,19 +79,19 @@ namespace Voussoir
         const auto continued = make_case(folder(file, "together", false));
         Simulation going_on(*continued, options(true), communicator);
         verdicts.is_true("it goes on from a time between start and end",
-                         going_on.state.time > 0. &&
-                           going_on.state.time < continued->time.end_time);
-        going_on.run();
+                         going_on.run.state.time > 0. &&
+                           going_on.run.state.time < continued->time.end_time);
+        going_on.run.march();
         verdicts.is_true("same displacement, bit for bit",
-                         same(uninterrupted.state.displacement,
-                              going_on.state.displacement));
+                         same(uninterrupted.run.state.displacement,
+                              going_on.run.state.displacement));
         verdicts.is_true("same velocity, bit for bit",
-                         same(uninterrupted.state.velocity,
-                              going_on.state.velocity));
-        bool memory = !going_on.state.memory.empty();
-        for (unsigned int i = 0; i < going_on.state.memory.size(); ++i)
-          memory = memory && same(uninterrupted.state.memory[i],
-                                  going_on.state.memory[i]);
+                         same(uninterrupted.run.state.velocity,
+                              going_on.run.state.velocity));
+        bool memory = !going_on.run.state.memory.empty();
+        for (unsigned int i = 0; i < going_on.run.state.memory.size(); ++i)
+          memory = memory && same(uninterrupted.run.state.memory[i],
+                                  going_on.run.state.memory[i]);
         verdicts.is_true("same damping memory, bit for bit", memory);
         for (unsigned int i = 0; i < straight->observers.size(); ++i)
           for (const auto &[name, vector] :
@@ -110,9 +110,9 @@ namespace Voussoir
               same(values,
                    continued->observers[i].second->checkpoint_values().at(name),
                    communicator));
-        if (uninterrupted.contact)
-          compare_contact(*uninterrupted.contact,
-                          *going_on.contact,
+        if (uninterrupted.run.contact)
+          compare_contact(*uninterrupted.run.contact,
+                          *going_on.run.contact,
                           communicator,
                           verdicts);
         verdicts.is_true("same list of pictures",
@@ -134,15 +134,15 @@ namespace Voussoir
         MPI_Barrier(communicator);
         const auto shared = make_case(folder(file, "alone", false));
         Simulation shared_run(*shared, options(true), communicator);
-        shared_run.run();
+        shared_run.run.march();
         verdicts.below("difference after a change of ranks",
-                       difference(uninterrupted.state.displacement,
-                                  shared_run.state.displacement),
+                       difference(uninterrupted.run.state.displacement,
+                                  shared_run.run.state.displacement),
                        1e-9);
         compare_tables("straight", "alone", verdicts);
-        if (uninterrupted.contact)
-          compare_energies(*uninterrupted.contact,
-                           *shared_run.contact,
+        if (uninterrupted.run.contact)
+          compare_energies(*uninterrupted.run.contact,
+                           *shared_run.run.contact,
                            verdicts);
 
         refuse(
@@ -185,7 +185,7 @@ namespace Voussoir
         bool stopped = false;
         try
           {
-            Simulation(parameters, options(false), communicator).run();
+            Simulation(parameters, options(false), communicator).run.march();
           }
         catch (const UserError &)
           {

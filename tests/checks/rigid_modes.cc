@@ -58,7 +58,7 @@ namespace Voussoir
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        Vector     u = simulation->discretization.create_vector(), force = u;
+        Vector u = simulation->model.discretization.create_vector(), force = u;
         const unsigned int       n = u.size();
         LAPACKFullMatrix<double> matrix(n);
         double                   asymmetry = 0.;
@@ -66,7 +66,7 @@ namespace Voussoir
           {
             u    = 0.;
             u[j] = 1.;
-            simulation->internal_force.apply(force, u);
+            simulation->model.internal_force.apply(force, u);
             for (unsigned int i = 0; i < n; ++i)
               {
                 matrix(i, j) = force[i];

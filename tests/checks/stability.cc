@@ -44,15 +44,15 @@ namespace Voussoir
         const auto parameters = make_case(
           file.with({"Time/Safety factor=" + std::to_string(factor)}));
         const auto simulation = make_simulation(*parameters, communicator);
-        State     &state      = simulation->state;
+        State     &state      = simulation->run.state;
         for (unsigned int node = 0;
-             node < simulation->discretization.n_owned_nodes();
+             node < simulation->model.discretization.n_owned_nodes();
              ++node)
           for (unsigned int d = 0; d < 3; ++d)
-            if (simulation->mass.inverse.local_element(3 * node + d) > 0.)
+            if (simulation->model.mass.inverse.local_element(3 * node + d) > 0.)
               {
                 const Point<3> &p =
-                  simulation->discretization.node_positions[node];
+                  simulation->model.discretization.node_positions[node];
                 state.velocity.local_element(3 * node + d) =
                   std::sin(700. * p[0] + 1300. * p[1] + 1900. * p[2] + 2.1 * d);
               }
@@ -60,7 +60,7 @@ namespace Voussoir
         double       largest = 0.;
         for (unsigned int step = 0; step < steps; ++step)
           {
-            simulation->scheme.step(state);
+            simulation->run.scheme.step(state);
             if (10 * step > 9 * steps)
               largest = std::max(largest, state.velocity.linfty_norm());
             if (!(largest < 1e6 * first))

@@ -28,11 +28,13 @@ namespace Voussoir
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        const PointWeights weights(simulation->discretization,
+        const PointWeights weights(simulation->model.discretization,
                                    {{"point", point}},
                                    "Point");
-        const Tensor<1, 3> displacement = Utilities::MPI::sum(
-          weights.share(simulation->initial.displacement)[0], communicator);
+        const Tensor<1, 3> displacement =
+          Utilities::MPI::sum(weights.share(
+                                simulation->rest.initial.displacement)[0],
+                              communicator);
         verdicts.near(
           "along the river", 1e3 * displacement[1], along, tolerance, "mm");
         if (upwards != 0.)

@@ -28,7 +28,7 @@ namespace Voussoir
             Tensor<1, 3> force;
             double       moment = 0.; // about the base
             for (const auto &[node, part] :
-                 depth_pressure_forces(simulation->discretization,
+                 depth_pressure_forces(simulation->model.discretization,
                                        {"right"},
                                        "The check",
                                        level,
@@ -36,7 +36,8 @@ namespace Voussoir
               {
                 force += part;
                 moment +=
-                  part[0] * simulation->discretization.node_positions[node][2];
+                  part[0] *
+                  simulation->model.discretization.node_positions[node][2];
               }
             force  = Utilities::MPI::sum(force, communicator);
             moment = Utilities::MPI::sum(moment, communicator);

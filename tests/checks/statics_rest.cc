@@ -21,18 +21,19 @@ namespace Voussoir
             const auto parameters =
               make_case(file.with({"Static state/Supports=" + supports}));
             const auto simulation = make_simulation(*parameters, communicator);
-            const Vector before   = simulation->state.displacement;
+            const Vector before   = simulation->run.state.displacement;
             double       fastest  = 0.;
-            while (simulation->state.time < parameters->time.end_time)
+            while (simulation->run.state.time < parameters->time.end_time)
               {
-                simulation->scheme.step(simulation->state);
-                if (simulation->state.step % 10 == 0)
+                simulation->run.scheme.step(simulation->run.state);
+                if (simulation->run.state.step % 10 == 0)
                   fastest =
-                    std::max(fastest, simulation->state.velocity.linfty_norm());
+                    std::max(fastest,
+                             simulation->run.state.velocity.linfty_norm());
               }
-            Vector drift = simulation->state.displacement;
+            Vector drift = simulation->run.state.displacement;
             drift -= before;
-            const auto &stages = simulation->static_summary.at("stages");
+            const auto &stages = simulation->rest.summary.at("stages");
             verdicts.above(
               "supports " + supports + ": largest static displacement [mm]",
               1e3 * stages.back().at("largest displacement [m]").get<double>(),

@@ -45,7 +45,7 @@ namespace Voussoir
       {
         const auto   parameters = make_case(file);
         const auto   simulation = make_simulation(*parameters, communicator);
-        const auto  &material   = *simulation->materials[0];
+        const auto  &material   = *simulation->model.materials[0];
         const double E          = material.elastic_constants().young_modulus *
                          material.static_factor,
                      strain = material.expansion * change;
@@ -101,9 +101,9 @@ namespace Voussoir
       displacement_error(const Simulation &simulation,
                          const double      strain) const
       {
-        const Discretization &discretization = simulation.discretization;
-        const Vector         &displacement   = simulation.initial.displacement;
-        const unsigned int    n              = discretization.n_owned_nodes();
+        const Discretization &discretization = simulation.model.discretization;
+        const Vector      &displacement = simulation.rest.initial.displacement;
+        const unsigned int n            = discretization.n_owned_nodes();
         // nothing holds the plate across: its mean is what the exact one has
         std::vector<double> sums(2);
         for (unsigned int node = 0; node < n; ++node)
@@ -112,7 +112,7 @@ namespace Voussoir
                        exact(discretization.node_positions[node], strain)[1];
             sums[1] += 1.;
           }
-        sums = sum_over_ranks(sums, simulation.grid.communicator());
+        sums = sum_over_ranks(sums, simulation.model.grid.communicator());
         const double shift = body == "plate" ? sums[0] / sums[1] : 0.;
 
         double difference = 0., size = 0.;
@@ -133,7 +133,7 @@ namespace Voussoir
                 size       = std::max(size, e.norm());
               }
           }
-        const MPI_Comm communicator = simulation.grid.communicator();
+        const MPI_Comm communicator = simulation.model.grid.communicator();
         return Utilities::MPI::max(difference, communicator) /
                Utilities::MPI::max(size, communicator);
       }
@@ -146,10 +146,11 @@ namespace Voussoir
         const std::vector<NamedPoint> points{{"middle", Point<3>()},
                                              {"corner",
                                               Point<3>(10., 0., 10.)}};
-        const auto share = PointWeights(simulation.discretization, points, "")
-                             .share(simulation.initial.displacement);
+        const auto                    share =
+          PointWeights(simulation.model.discretization, points, "")
+            .share(simulation.rest.initial.displacement);
         return Utilities::MPI::sum(share[1][1] - share[0][1],
-                                   simulation.grid.communicator()) /
+                                   simulation.model.grid.communicator()) /
                exact(points[1].position, strain)[1];
       }
 
@@ -158,11 +159,11 @@ namespace Voussoir
       std::pair<double, double>
       stress_range(const Simulation &simulation) const
       {
-        const Discretization &discretization = simulation.discretization;
+        const Discretization &discretization = simulation.model.discretization;
         const Vector          u =
-          with_ghosts(discretization, simulation.initial.displacement);
+          with_ghosts(discretization, simulation.rest.initial.displacement);
         const Vector temperature =
-          with_ghosts(discretization, simulation.initial.temperature);
+          with_ghosts(discretization, simulation.rest.initial.temperature);
         FEValues<3>                        values(discretization.mapping,
                            discretization.fe,
                            discretization.matrix_free.get_quadrature(),
@@ -180,7 +181,7 @@ namespace Voussoir
               values[all].get_function_values(temperature, temperatures);
               for (const unsigned int q : values.quadrature_point_indices())
                 {
-                  const auto &material = *simulation.materials[0];
+                  const auto &material = *simulation.model.materials[0];
                   const auto  stress   = material.stress(material.strain_of_law(
                     strains[q], strains[q], temperatures[q][0]));
                   for (unsigned int i = 0; i < (body == "clamped bar" ? 1 : 6);
@@ -192,7 +193,7 @@ namespace Voussoir
                     }
                 }
             }
-        const MPI_Comm communicator = simulation.grid.communicator();
+        const MPI_Comm communicator = simulation.model.grid.communicator();
         return {Utilities::MPI::min(smallest, communicator),
                 Utilities::MPI::max(largest, communicator)};
       }

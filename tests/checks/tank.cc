@@ -8,9 +8,9 @@ namespace Voussoir
 
   Tank::Tank(Case &parameters, const MPI_Comm communicator)
     : mesh(parameters.generator->generate())
-    , water(split_off_reservoir(mesh,
-                                split_list(parameters.reservoir.cell_sets),
-                                "The tank"))
+    , water_mesh(split_off_reservoir(mesh,
+                                     split_list(parameters.reservoir.cell_sets),
+                                     "The tank"))
     , grid(
         mesh,
         parameters.grid,
@@ -20,7 +20,7 @@ namespace Voussoir
                      parameters.discretization,
                      parameters.boundaries.supports.list(),
                      [](const Grid::Cell &) { return 0U; })
-    , reservoir(water,
+    , reservoir(water_mesh,
                 parameters.grid,
                 parameters.reservoir,
                 discretization,
@@ -28,9 +28,8 @@ namespace Voussoir
     , time_step(parameters.time.time_step > 0. ?
                   parameters.time.time_step :
                   parameters.time.safety_factor * reservoir.stable_step())
-  {
-    reservoir.prepare(time_step);
-  }
+    , water(reservoir, base, time_step)
+  {}
 
 
   void
@@ -39,9 +38,9 @@ namespace Voussoir
     Vector motion = discretization.create_vector();
     for (unsigned int i = 0; i < motion.locally_owned_size(); ++i)
       motion.local_element(i) = velocity[i % 3];
-    std::fill(terms.forces.begin(), terms.forces.end(), Tensor<1, 3>());
-    reservoir.add_forces(terms);
-    reservoir.advance(motion, base_velocity);
+    forces.assign(terms.nodes.size(), Tensor<1, 3>());
+    water.add_forces(time, forces);
+    water.advance(motion, base_velocity);
     time += time_step;
   }
 
@@ -50,7 +49,7 @@ namespace Voussoir
   Tank::thrust() const
   {
     Tensor<1, 3> sum;
-    for (const Tensor<1, 3> &force : terms.forces)
+    for (const Tensor<1, 3> &force : forces)
       sum += force;
     return Utilities::MPI::sum(sum, grid.communicator());
   }
@@ -62,7 +61,7 @@ namespace Voussoir
     double value = 0.;
     for (unsigned int i = 0; i < reservoir.space.node_positions.size(); ++i)
       if (position.distance(reservoir.space.node_positions[i]) < 1e-6)
-        value += reservoir.pressure.local_element(i);
+        value += water.pressure.local_element(i);
     return Utilities::MPI::sum(value, grid.communicator());
   }
 

@@ -1,7 +1,7 @@
 #ifndef voussoir_tests_tank_h
 #define voussoir_tests_tank_h
 
-#include <voussoir/loads/reservoir.h>
+#include <voussoir/loads/water_motion.h>
 #include <voussoir/mesh/reservoir_mesh.h>
 
 #include "check.h"
@@ -15,17 +15,20 @@ namespace Voussoir
     Tank(Case &parameters, const MPI_Comm communicator);
 
     CoarseMesh           mesh; // of the solid, once the water is made
-    const CoarseMesh     water;
+    const CoarseMesh     water_mesh;
     const Grid           grid;
     const Discretization discretization;
     NodalTerms           terms;
-    Reservoir            reservoir;
+    const Reservoir      reservoir;
+    const RigidBase      base;
     const double         time_step;
+    WaterMotion          water;
+    NodalForces          forces; // of the beginning of the last step
     double               time = 0.;
 
     /**
      * One step with the whole solid moving at these velocities at its middle
-     * [m/s]; `terms.forces` are then those of its beginning.
+     * [m/s].
      */
     void
     step(const dealii::Tensor<1, 3> &velocity,

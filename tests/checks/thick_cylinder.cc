@@ -106,16 +106,17 @@ namespace Voussoir
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        const Discretization &discretization = simulation->discretization;
-        const Material       &material       = *simulation->materials[0];
-        const PointHistory &history = *simulation->state.material_memory.of(0);
-        FEValues<3>         values(discretization.mapping,
+        const Discretization &discretization = simulation->model.discretization;
+        const Material       &material       = *simulation->model.materials[0];
+        const PointHistory   &history =
+          *simulation->run.state.material_memory.of(0);
+        FEValues<3>  values(discretization.mapping,
                            discretization.fe,
                            discretization.matrix_free.get_quadrature(),
                            update_gradients | update_JxW_values |
                              update_quadrature_points);
-        const double        expected     = plastic_radius();
-        Vector              displacement = simulation->initial.displacement;
+        const double expected     = plastic_radius();
+        Vector       displacement = simulation->rest.initial.displacement;
         displacement.update_ghost_values();
 
         double yielded = 0., volume = 0., error = 0.;

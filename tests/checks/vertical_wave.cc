@@ -39,7 +39,7 @@ namespace Voussoir
         const auto motion =
           parameters->ground_motion.build(parameters->file.folder());
 
-        const Discretization &discretization = simulation->discretization;
+        const Discretization &discretization = simulation->model.discretization;
         double                top            = -1e300;
         for (const Point<3> &p : discretization.node_positions)
           top = std::max(top, p[2]);
@@ -47,11 +47,11 @@ namespace Voussoir
 
         Tensor<1, 3> incident, incident_velocity, surface;
         double       spread = 0.;
-        while (simulation->state.time < parameters->time.end_time)
+        while (simulation->run.state.time < parameters->time.end_time)
           {
-            simulation->scheme.step(simulation->state);
+            simulation->run.scheme.step(simulation->run.state);
             // extremes of each level over the ranks, now and then
-            const bool look = simulation->state.step % 10 == 0;
+            const bool look = simulation->run.state.step % 10 == 0;
             std::map<long, std::array<double, 6>> levels;
             for (unsigned int node = 0; node < discretization.n_owned_nodes();
                  ++node)
@@ -69,8 +69,8 @@ namespace Voussoir
                 for (unsigned int d = 0; d < 3; ++d)
                   {
                     const double u =
-                      simulation->state.displacement.local_element(3 * node +
-                                                                   d);
+                      simulation->run.state.displacement.local_element(
+                        3 * node + d);
                     extremes[d]     = std::min(extremes[d], u);
                     extremes[3 + d] = std::max(extremes[3 + d], u);
                     if (z > top - 1e-6)
@@ -99,7 +99,7 @@ namespace Voussoir
             for (unsigned int d = 0; d < 3; ++d)
               if (motion[d])
                 {
-                  const double t = simulation->state.time;
+                  const double t = simulation->run.state.time;
                   incident[d] =
                     std::max(incident[d], std::abs(motion[d]->displacement(t)));
                   incident_velocity[d] =
@@ -119,12 +119,12 @@ namespace Voussoir
                        spread / incident.norm(),
                        uniformity);
         verdicts.below("velocity left over incident",
-                       simulation->state.velocity.linfty_norm() /
+                       simulation->run.state.velocity.linfty_norm() /
                          incident_velocity.norm(),
                        residual);
-        simulation->energy.evaluate(simulation->state);
+        simulation->run.energy.evaluate(simulation->run.state);
         verdicts.below("energy unaccounted for",
-                       simulation->energy.relative_error(),
+                       simulation->run.energy.relative_error(),
                        0.005);
       }
 

@@ -3,6 +3,7 @@
 
 #include <voussoir/base/log.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/fem/internal_force.h>
 #include <voussoir/loads/boundary_parameters.h>
 #include <voussoir/materials/material.h>
 

@@ -50,7 +50,8 @@ namespace Voussoir
                      Log            &log);
 
   private:
-    CentralDifference
+    /** The explicit steps under this mass-proportional damping [1/s]. */
+    std::unique_ptr<CentralDifference>
     make_scheme(const double mass_coefficient);
 
     /**
@@ -67,6 +68,7 @@ namespace Voussoir
     const InternalForce  &internal_force;
     LumpedMass            mass;
     NodalTerms            terms;
+    Damping               damping;
     Contact              *contact; // or null
     double                time_step;
     InitialState          loaded;

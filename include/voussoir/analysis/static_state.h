@@ -46,22 +46,25 @@ namespace Voussoir
     std::function<unsigned int(const Grid::Cell &)> material_of_cell;
     const BoundaryParameters                       &boundaries;
     const LumpedMass                               &mass;
-    NodalTerms                                     &terms;
+    const NodalTerms                               &terms;
     Contact                                        *contact; // or null
   };
 
   /**
    * The state under the loads that are there before the earthquake: stages one
    * after the other, each with the loads it names. The force that it returns
-   * holds the state in
-   * the dynamic model, reactions of supports that are held here only included,
-   * so that without an earthquake nothing moves. Forces of contact are no part
-   * of it, as the run finds them by itself.
+   * holds the state in the dynamic model, reactions of supports that are held
+   * here only included, so that without an earthquake nothing moves. Forces of
+   * contact are no part of it, as the run finds them by itself.
    *
-   * Without interfaces by multigrid, with them by damped motion; materials with
-   * memory are elastic then, and where they crack or yield under that state,
-   * damped motion goes on from it. An interface is grouted at the end of the
-   * stage that it names.
+   * Each stage is solved with elastic materials first, without interfaces by
+   * multigrid, with them by damped motion. Where materials crack or yield under
+   * that state, equilibrium is found again by the method of initial stresses;
+   * with interfaces, or where that fails, by damped motion. From then on a
+   * model without interfaces goes on from the cracked state. An interface is
+   * grouted at the end of the stage that names its load.
+   *
+   * Throws UserError if no equilibrium is found.
    *
    * @param summary resultants of loads and reactions, iterations, by stage
    */

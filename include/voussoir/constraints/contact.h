@@ -10,13 +10,15 @@
 #include <nlohmann/json.hpp>
 
 #include <chrono>
+#include <optional>
 
 namespace Voussoir
 {
   /**
    * Contact between the two sides of all interfaces of a case: after each step
    * no point of them has penetrated the other side, and they have opened and
-   * slipped only where their law lets them.
+   * slipped only where their law lets them. A copy goes on by itself from the
+   * state of the original.
    */
   class Contact : public Projection
   {
@@ -117,8 +119,8 @@ namespace Voussoir
     const InterfacesParameters                  &interfaces;
     std::vector<std::string>                     names;
     std::vector<unsigned int>                    interface_of_surface;
-    std::unique_ptr<ContactSolver>               solver;
-    std::unique_ptr<ContactExchange>             exchange;
+    std::optional<ContactSolver>                 solver;
+    std::optional<ContactExchange>               exchange;
     std::vector<dealii::Point<3>>                point_positions;
     std::vector<dealii::types::global_dof_index> first_node;
     std::vector<std::uint64_t>                   point_keys;

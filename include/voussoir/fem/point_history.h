@@ -34,13 +34,6 @@ namespace Voussoir
       return n_numbers == 0;
     }
 
-    /** Numbers of a point. */
-    unsigned int
-    width() const
-    {
-      return n_numbers;
-    }
-
     /** Points of a cell. */
     unsigned int
     n_points() const
@@ -48,7 +41,7 @@ namespace Voussoir
       return points->per_cell;
     }
 
-    /** The `width` numbers of point @p q of the cells of a batch. */
+    /** The numbers of point @p q of the cells of a batch. */
     Lanes *
     values(const unsigned int batch, const unsigned int q)
     {
@@ -189,7 +182,7 @@ namespace Voussoir
     void
     exchange(const bool load);
 
-    unsigned int                   n_numbers;
+    unsigned int                   n_numbers; // of a point
     std::shared_ptr<const Points>  points;
     std::shared_ptr<StaticStrains> static_strains;
     dealii::AlignedVector<Lanes>   numbers, damping_shares;

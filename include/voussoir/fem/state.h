@@ -5,6 +5,20 @@
 
 namespace Voussoir
 {
+  /**
+   * What has come in and been lost since the start by way of nodal vectors, of
+   * this rank [J]. Energy that the cells take is in the memory of their points
+   * and in the energy balance.
+   */
+  struct EnergyAccounts
+  {
+    double work_of_forces = 0.; // loads, boundary, water, weight of added mass
+    double work_of_base   = 0.; // inertia under a moving rigid base
+    double work_of_projections = 0.; // contact, prescribed motion
+    double loss_in_dashpots    = 0.; // of the absorbing boundary
+    double loss_by_mass        = 0.; // mass-proportional damping
+  };
+
   /** All that changes with time; a checkpoint holds these and nothing else. */
   struct State
   {
@@ -19,6 +33,8 @@ namespace Voussoir
 
     /** What the points of the materials remember; empty: they are elastic. */
     MaterialMemory material_memory;
+
+    EnergyAccounts accounts;
 
     double             time = 0.; // [s]
     unsigned long long step = 0;

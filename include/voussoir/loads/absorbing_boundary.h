@@ -35,10 +35,6 @@ namespace Voussoir
       const std::string                                     &quadrature,
       NodalTerms                                            &terms);
 
-    /** Lets a free field in; without one the boundary only absorbs. */
-    void
-    set_free_field(std::unique_ptr<FreeField> &&field);
-
     const BoundaryGeometry &
     geometry() const;
 
@@ -54,12 +50,9 @@ namespace Voussoir
     const std::vector<unsigned int> &
     materials_at_boundary() const;
 
+    /** Adds the nodal forces by which a free field enters [N]. */
     void
-    add_forces(const double time, NodalTerms &terms);
-
-    /** Brings the free field past a step whose forces are not wanted. */
-    void
-    replay(const double time);
+    add_forces(const FreeField &field, NodalForces &forces) const;
 
   private:
     std::vector<unsigned int> slots; // of the boundary nodes in NodalTerms
@@ -68,7 +61,6 @@ namespace Voussoir
     std::vector<SideFace>                         sides;
     std::pair<dealii::Point<3>, dealii::Point<3>> box;
     std::vector<unsigned int>                     touching_materials;
-    std::unique_ptr<FreeField>                    field;
   };
 } // namespace Voussoir
 

@@ -1,8 +1,8 @@
 #ifndef voussoir_loads_free_field_h
 #define voussoir_loads_free_field_h
 
-#include <voussoir/fem/damping.h>
 #include <voussoir/fem/discretization.h>
+#include <voussoir/fem/leap_frog.h>
 #include <voussoir/loads/ground_motion.h>
 #include <voussoir/materials/material.h>
 
@@ -76,6 +76,7 @@ namespace Voussoir
      *  traction over its part of the boundary [N]. */
     std::vector<dealii::Tensor<1, 3>> displacement, velocity, force;
   };
+
   class AbsorbingBoundary;
 
   /**
@@ -91,8 +92,7 @@ namespace Voussoir
                   const WaveParameters                &wave,
                   const std::string                   &given_at,
                   GroundMotionSignals                &&motion,
-                  const bool                           paper_scheme,
-                  const double                         time_step,
+                  const LeapFrog                      &leap_frog,
                   const double                         duration);
 } // namespace Voussoir
 

@@ -4,7 +4,7 @@
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/base/registry.h>
 #include <voussoir/fem/initial_state.h>
-#include <voussoir/fem/nodal_terms.h>
+#include <voussoir/loads/nodal_load.h>
 #include <voussoir/materials/material.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -25,11 +25,9 @@ namespace Voussoir
    * static stage that names it and stays as it is afterwards, or else acts from
    * the beginning of the earthquake.
    */
-  class Load
+  class Load : public NodalLoad
   {
   public:
-    virtual ~Load() = default;
-
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 
@@ -46,11 +44,6 @@ namespace Voussoir
     {
       return false;
     }
-
-    /** Adds its nodal forces at @p time [s] to `terms.forces` [N]. */
-    virtual void
-    add_forces(const double, NodalTerms &) const
-    {}
 
     /** Adds its steady nodal forces, of held nodes too [N]. */
     virtual void

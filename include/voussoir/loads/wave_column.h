@@ -1,6 +1,7 @@
 #ifndef voussoir_loads_wave_column_h
 #define voussoir_loads_wave_column_h
 
+#include <voussoir/fem/leap_frog.h>
 #include <voussoir/loads/free_field.h>
 
 #include <deal.II/base/polynomial.h>
@@ -30,8 +31,7 @@ namespace Voussoir
                const unsigned int        degree,
                const std::string        &quadrature,
                const Damping            &damping,
-               const bool                paper_scheme,
-               const double              time_step);
+               const LeapFrog           &leap_frog);
 
     /** Sets displacement, velocity and stress of this step and prepares the
      *  next; @p incident_velocity is that of the upgoing wave at the base. */
@@ -103,8 +103,8 @@ namespace Voussoir
     };
 
     const unsigned int degree;
-    const double       time_step;
-    const bool         central;
+    const LeapFrog     leap_frog;
+    const MaxwellStep  maxwell;
     // derivatives of the shape functions at the quadrature points, weights
     std::vector<std::vector<double>>                     gradients;
     std::vector<double>                                  weights;
@@ -114,7 +114,6 @@ namespace Voussoir
     dealii::Tensor<1, 3>                                 impedance;
     double                                               mass_coefficient;
     double                                               stiffness_coefficient;
-    std::vector<double>                                  decay, gain;
 
     // motion of the step (u_n and the velocity in the middle of its two half
     // steps) and what the next one starts from

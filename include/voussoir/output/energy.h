@@ -49,13 +49,8 @@ namespace Voussoir
   class EnergyBalance
   {
   public:
-    EnergyBalance(const Discretization    &discretization,
-                  const InternalForce     &internal_force,
-                  const LumpedMass        &mass,
-                  const Damping           &damping,
-                  const NodalTerms        &terms,
-                  const InitialState      &initial_state,
-                  const CentralDifference &scheme);
+    /** @param equation of the motion; must live as long as this */
+    EnergyBalance(const EquationOfMotion &equation, const double time_step);
 
     /** Writes to energy.csv in this folder from now on. @p restarted: continue
      *  the file of a run that was interrupted at @p start_time [s]. */
@@ -91,19 +86,24 @@ namespace Voussoir
     load(const nlohmann::json &saved);
 
   private:
-    const Discretization    &discretization;
-    const InternalForce     &internal_force;
-    const LumpedMass        &mass;
-    const Damping           &damping;
-    const NodalTerms        &terms;
-    const InitialState      &initial_state;
-    const CentralDifference &scheme;
+    /** Sums of all ranks at the state, without what the cells lose. */
+    EnergyTerms
+    terms_at(const State &state);
+
+    /** Sets the energy in the Maxwell branches and returns what they, or the
+     *  stiffness-proportional damping, lose per time [W]. */
+    double
+    damping_of_cells(const State &state, EnergyTerms &terms) const;
+
+    const EquationOfMotion equation;
+    const double           time_step;
 
     EnergyTerms terms_now;
     double      initial = 0., largest_turnover = 0., largest_error = 0.;
-    double      last_time = 0., last_loss_rate = 0., mass_loss = 0.;
-    double      round_off = 0.;
-    bool        first     = true;
+    double      last_time = 0., last_loss_rate = 0.;
+    double      loss_of_cells = 0.; // integral of the loss per time [J]
+    double      round_off     = 0.;
+    bool        first         = true;
     Vector      moved, moved_before; // at the step and the one before
     TimeTable   table;
   };

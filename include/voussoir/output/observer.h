@@ -5,6 +5,7 @@
 #include <voussoir/base/registry.h>
 #include <voussoir/fem/initial_state.h>
 #include <voussoir/fem/state.h>
+#include <voussoir/loads/rigid_base.h>
 #include <voussoir/materials/material.h>
 #include <voussoir/output/names.h>
 
@@ -13,7 +14,7 @@
 namespace Voussoir
 {
   class Contact;
-  class Reservoir;
+  class WaterMotion;
 
   /** What observers may see of a case besides its state. */
   struct ObservedModel
@@ -23,17 +24,15 @@ namespace Voussoir
     std::function<unsigned int(const Grid::Cell &)> material_of_cell;
     const MaterialMemory                           &material_memory;
     const InitialState                             &initial;
-    const Reservoir                                *reservoir; // or null
-    const Contact                                  *contact;   // or null
+    const WaterMotion                              *water;   // or null
+    const Contact                                  *contact; // or null
     std::string                                     folder;
     double                                          time_step; // [s]
     double                                          end_time;  // [s]
 
-    /** Motion of a rigid base (displacement, velocity, acceleration [m, m/s,
-     *  m/s2]) at a time [s], to which the state is relative; zero otherwise. */
-    std::function<std::array<dealii::Tensor<1, 3>, 3>(const double)>
-                base_motion;
-    bool        relative_to_base; // whether there is one
+    /** The ground, to which the state is relative where it moves. */
+    const RigidBase &base;
+
     ResultNames names;
   };
 

@@ -1,0 +1,28 @@
+#ifndef voussoir_driver_earthquake_h
+#define voussoir_driver_earthquake_h
+
+#include <voussoir/driver/time_step.h>
+#include <voussoir/loads/incoming_wave.h>
+#include <voussoir/loads/rigid_base.h>
+
+namespace Voussoir
+{
+  /** The earthquake of a run, in the one way or the other that it enters the
+   *  model. */
+  struct Earthquake
+  {
+    /** Reads or makes the motion of the case and says what it is. */
+    Earthquake(const Model    &model,
+               const Damping  &damping,
+               const TimeStep &time_step,
+               Log            &log);
+
+    /** The ground under the model, at rest unless it is a rigid base. */
+    RigidBase base;
+
+    /** What enters through the absorbing boundary, or null. */
+    std::unique_ptr<IncomingWave> wave;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,89 @@
+#ifndef voussoir_driver_model_h
+#define voussoir_driver_model_h
+
+#include <voussoir/base/log.h>
+#include <voussoir/constraints/contact.h>
+#include <voussoir/driver/case.h>
+#include <voussoir/fem/internal_force.h>
+#include <voussoir/fem/lumped_mass.h>
+#include <voussoir/loads/absorbing_boundary.h>
+#include <voussoir/loads/reservoir.h>
+
+namespace Voussoir
+{
+  /**
+   * What stands before anything moves: grid, materials, mass, internal force,
+   * boundary, reservoir, interfaces. Several runs, one after the other, may be
+   * made on one model; none of them changes it.
+   */
+  class Model
+  {
+  public:
+    /** Throws UserError if the case does not fit its mesh. */
+    Model(Case &parameters, Log &log);
+
+    /** Index of a cell's material. */
+    unsigned int
+    material_of(const Grid::Cell &cell) const;
+
+    /** The same, for those who know no model. */
+    std::function<unsigned int(const Grid::Cell &)>
+    material_of_cell() const;
+
+    /** Whether an earthquake enters as inertia on a rigid base. */
+    bool
+    rigid_base() const;
+
+    const Case                         &parameters;
+    const std::vector<const Material *> materials;
+
+  private:
+    const std::vector<unsigned int> material_of_coarse_cell;
+
+  public:
+    const Grid           grid;
+    const Discretization discretization;
+    const LumpedMass     mass;
+
+    /** Of the run: the moduli hold at the reference frequency of damping. */
+    const InternalForce internal_force;
+
+    NodalTerms              terms; // springs, dashpots, added mass
+    const AbsorbingBoundary boundary;
+
+    /** Loads that come with the earthquake, in their order. */
+    const std::vector<NodalLoad *> running_loads;
+
+    /** Westergaard's added mass over all facets, or zero [kg]. */
+    const double added_mass;
+
+    /** Compressible water, or null. */
+    const std::unique_ptr<const Reservoir> reservoir;
+
+    /** The constraints of the case by name, in their order. */
+    const std::vector<Projection *> constraints;
+
+    /** The interfaces before any load acts, or null. */
+    const std::unique_ptr<const Contact> contact;
+
+  private:
+    /** The meshes that are needed only until the grids are made. */
+    struct Meshes
+    {
+      Meshes(Case &parameters, Log &log);
+
+      CoarseMesh                solid, water;
+      std::vector<unsigned int> materials; // of the solid's cells
+    };
+
+    Model(Case &parameters, Meshes &&meshes, Log &log);
+
+    void
+    report(Log &log) const;
+
+    void
+    report_materials(Log &log) const;
+  };
+} // namespace Voussoir
+
+#endif

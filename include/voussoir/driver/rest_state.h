@@ -1,0 +1,33 @@
+#ifndef voussoir_driver_rest_state_h
+#define voussoir_driver_rest_state_h
+
+#include <voussoir/driver/model.h>
+
+namespace Voussoir
+{
+  /** The model before the earthquake, at rest under the loads of the static
+   *  stages. */
+  struct RestState
+  {
+    /** Without static stages. */
+    explicit RestState(const Model &model);
+
+    InitialState initial;
+
+    /** The interfaces as the static stages leave them; none without. */
+    std::optional<Contact> contact;
+
+    /** Resultants, reactions and iterations by stage; null without. */
+    nlohmann::json summary;
+  };
+
+  /** Applies the static stages of the case, if it has any. */
+  RestState
+  find_rest(const Model &model, Log &log);
+
+  /** The natural modes that the case asks for. */
+  Modes
+  find_modes(const Model &model, Log &log);
+} // namespace Voussoir
+
+#endif

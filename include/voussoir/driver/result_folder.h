@@ -1,0 +1,77 @@
+#ifndef voussoir_driver_result_folder_h
+#define voussoir_driver_result_folder_h
+
+#include <voussoir/base/log.h>
+#include <voussoir/driver/case.h>
+
+#include <nlohmann/json.hpp>
+
+namespace Voussoir
+{
+  /** How the command line wants a case to be run. */
+  struct RunOptions
+  {
+    bool restart   = false;
+    bool overwrite = false;
+    bool quiet     = false;
+
+    /** No output folder: for tests that look at the state themselves. */
+    bool no_output = false;
+
+    /** Set up for checks only: no static state, no modes. */
+    bool validate = false;
+  };
+
+  /** Where the results of a run go, and the checkpoint there that it goes on
+   *  from. */
+  class ResultFolder
+  {
+  public:
+    /**
+     * Chooses the folder: the one that the case names, with the next free
+     * number added if it exists; a restart goes on in the one that was written
+     * last. Throws UserError if it must not be overwritten, or if there is no
+     * checkpoint, or one of other physics.
+     */
+    ResultFolder(const Case &parameters, const RunOptions &options, Log &log);
+
+    /** Makes the folder, in it the parameters as run, and lets the log write
+     *  there. */
+    void
+    make(Log &log) const;
+
+    /** Empty: no output. */
+    std::string
+    path() const;
+
+    bool
+    exists() const;
+
+    bool
+    restarts() const;
+
+    /** Header of the checkpoint that a restart goes on from. */
+    const nlohmann::json &
+    checkpoint() const;
+
+    /** Simulated time at which the run starts [s]. */
+    double
+    start_time() const;
+
+    /** What must not change between a checkpoint and the run that goes on, each
+     *  as "Section/Entry = value". */
+    nlohmann::json
+    physics() const;
+
+  private:
+    void
+    check_checkpoint() const;
+
+    const Case      &parameters;
+    const RunOptions options;
+    std::string      chosen;
+    nlohmann::json   header;
+  };
+} // namespace Voussoir
+
+#endif

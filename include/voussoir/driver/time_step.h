@@ -1,0 +1,41 @@
+#ifndef voussoir_driver_time_step_h
+#define voussoir_driver_time_step_h
+
+#include <voussoir/driver/model.h>
+
+#include <optional>
+
+namespace Voussoir
+{
+  /** The time step of a run, and what limits it. */
+  struct TimeStep
+  {
+    /**
+     * Finds the limits and chooses the step by the section "Time" of the case.
+     * Throws UserError if the step that the case gives is above the limit.
+     *
+     * @param kept step of a checkpoint, which is taken instead [s]
+     */
+    TimeStep(const Model                 &model,
+             const Damping               &damping,
+             const std::optional<double> &kept,
+             Log                         &log);
+
+    /** Steps to this time [s]. */
+    unsigned long long
+    steps_to(const double time) const;
+
+    double undamped_limit; // [s], 0 where damping does not change it
+    double limit;          // [s]
+    double length;         // [s]
+    bool   central;        // see LeapFrog
+
+    LeapFrog
+    leap_frog() const
+    {
+      return {length, central};
+    }
+  };
+} // namespace Voussoir
+
+#endif

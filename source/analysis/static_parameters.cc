@@ -1,0 +1,98 @@
+#include <voussoir/analysis/static_state.h>
+#include <voussoir/base/error.h>
+#include <voussoir/base/text.h>
+
+#include <algorithm>
+#include <set>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  void
+  StaticParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter(
+      "Stages",
+      stages,
+      "Loads that are there before the earthquake: stages separated by "
+      "semicolons, in their order, with the names of loads separated by "
+      "commas, as in \"weight; water, silt; temperature\". They stay as they "
+      "are at t = 0. Empty: no static stage.");
+    prm.add_parameter(
+      "Supports",
+      supports,
+      "How the absorbing faces stand in the static stage: fixed, held at right "
+      "angles to themselves (roller), or on the springs of the boundary. Their "
+      "reactions stay when the faces begin to absorb.",
+      Patterns::Selection("fixed|roller|springs"));
+    prm.add_parameter("Relative tolerance",
+                      tolerance,
+                      "Residual of the static equations over the load.",
+                      Patterns::Double(1e-14, 1e-2));
+    prm.add_parameter("Rest tolerance",
+                      rest,
+                      "With interfaces: motion in a natural period over the "
+                      "largest displacement at which the state is at rest.",
+                      Patterns::Double(1e-12, 1e-2));
+  }
+
+
+  std::vector<std::vector<std::string>>
+  StaticParameters::stage_names() const
+  {
+    std::vector<std::vector<std::string>> names;
+    for (const std::string &stage : split_list(stages, ';'))
+      names.push_back(split_list(stage));
+    return names;
+  }
+
+
+  void
+  StaticParameters::check(const NamedLoads           &loads,
+                          const InterfacesParameters &interfaces) const
+  {
+    std::vector<std::string> known;
+    for (const auto &load : loads)
+      known.push_back(load.first);
+    std::set<std::string> staged;
+    for (const auto &stage : stage_names())
+      for (const std::string &name : stage)
+        {
+          if (std::find(known.begin(), known.end(), name) == known.end())
+            throw UserError("\"Stages\" in section \"Static state\" names \"" +
+                            name +
+                            "\", which is not among the \"Names\" of "
+                            "section \"Loads\"" +
+                            known_names(name, known) + ".");
+          if (!staged.insert(name).second)
+            throw UserError("\"Stages\" in section \"Static state\" names \"" +
+                            name + "\" twice; keep one of them.");
+        }
+    for (const auto &[name, load] : loads)
+      if (load->steady() && staged.count(name) == 0)
+        throw UserError("The load \"" + name +
+                        "\" is there before the earthquake, but \"Stages\" in "
+                        "section \"Static state\" does not name it; add it "
+                        "there.");
+    for (const InterfaceParameters &interface : interfaces.list)
+      {
+        const std::string &after = interface.grouted_after;
+        const std::string  place = "section \"Interfaces/" + interface.name;
+        if (after.empty())
+          continue;
+        if (staged.count(after) == 0)
+          throw UserError(
+            "\"Grouted after\" in " + place + "\" names \"" + after +
+            "\", which is not in the \"Stages\" of section \"Static state\"" +
+            known_names(after, {staged.begin(), staged.end()}) + ".");
+        const auto last = stage_names().back();
+        if (interface.uplift.given() &&
+            std::find(last.begin(), last.end(), after) != last.end())
+          throw UserError("The interface of " + place +
+                          "\" is grouted after the last of the static stages, "
+                          "so that its \"Uplift\" would come with the "
+                          "earthquake; let a stage follow.");
+      }
+  }
+} // namespace Voussoir

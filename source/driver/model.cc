@@ -1,0 +1,302 @@
+#include <voussoir/driver/model.h>
+#include <voussoir/loads/added_mass.h>
+#include <voussoir/mesh/reservoir_mesh.h>
+
+#include <iomanip>
+#include <set>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // The water that a mesh may have is a mesh of its own, used or not.
+    CoarseMesh
+    take_water(const ReservoirParameters &reservoir, CoarseMesh &mesh)
+    {
+      std::vector<std::string> sets;
+      for (const std::string &set : split_list(reservoir.cell_sets))
+        if (reservoir.model == "compressible" || mesh.cell_sets.count(set) > 0)
+          sets.push_back(set);
+      if (sets.empty())
+        return {};
+      return split_off_reservoir(mesh,
+                                 sets,
+                                 "\"Cell sets\" in section \"Reservoir\"");
+    }
+
+
+    std::vector<Support>
+    checked_supports(const Case &parameters, const Grid &grid)
+    {
+      parameters.boundaries.check(grid);
+      return parameters.boundaries.supports.list();
+    }
+
+
+    std::vector<double>
+    inertial_densities(const std::vector<const Material *> &materials)
+    {
+      std::vector<double> values;
+      for (const Material *material : materials)
+        values.push_back(material->inertial_density());
+      return values;
+    }
+
+
+    // Rock of reduced inertia takes no inertial earthquake force.
+    std::vector<double>
+    driven_densities(const std::vector<const Material *> &materials)
+    {
+      std::vector<double> values;
+      for (const Material *material : materials)
+        values.push_back(material->inertia_factor < 1. ? 0. :
+                                                         material->density);
+      return values;
+    }
+
+
+    // The moduli hold at the reference frequency of the damping.
+    std::vector<StiffnessFactors>
+    factors_under(const Damping                       &damping,
+                  const std::vector<const Material *> &materials)
+    {
+      std::vector<StiffnessFactors> list;
+      for (const Material *material : materials)
+        list.push_back(damping.stiffness_factors(material->damping_factor()));
+      return list;
+    }
+
+
+    // All loads know their nodes then; those in no static stage are returned.
+    std::vector<NodalLoad *>
+    prepared_loads(const Model &model, NodalTerms &terms)
+    {
+      const Case           &parameters = model.parameters;
+      const LoadedModel     loaded{model.discretization,
+                               model.materials,
+                               model.material_of_cell(),
+                               parameters.file};
+      std::set<std::string> staged;
+      for (const auto &stage : parameters.static_state.stage_names())
+        staged.insert(stage.begin(), stage.end());
+      std::vector<NodalLoad *> running;
+      for (const auto &[name, load] : parameters.loads.objects)
+        {
+          load->prepare(loaded, terms, "Loads/" + name);
+          if (staged.count(name) == 0)
+            running.push_back(load.get());
+        }
+      return running;
+    }
+
+
+    double
+    mass_added_to(NodalTerms                &terms,
+                  const Discretization      &discretization,
+                  const ReservoirParameters &water)
+    {
+      return water.model == "added mass" ?
+               add_westergaard_mass(discretization,
+                                    water.added_mass,
+                                    water.density,
+                                    terms) :
+               0.;
+    }
+
+
+    std::unique_ptr<const Reservoir>
+    make_reservoir(const Case           &parameters,
+                   const CoarseMesh     &water_mesh,
+                   const Discretization &discretization,
+                   NodalTerms           &terms)
+    {
+      if (parameters.reservoir.model != "compressible")
+        return nullptr;
+      return std::make_unique<const Reservoir>(water_mesh,
+                                               parameters.grid,
+                                               parameters.reservoir,
+                                               discretization,
+                                               terms);
+    }
+
+
+    std::vector<Projection *>
+    prepared_constraints(const Model &model)
+    {
+      std::vector<Projection *> list;
+      for (const auto &[name, constraint] :
+           model.parameters.projections.objects)
+        {
+          constraint->prepare(model.discretization,
+                              model.mass,
+                              model.parameters.file,
+                              "Constraints/" + name);
+          list.push_back(constraint.get());
+        }
+      return list;
+    }
+
+
+    std::unique_ptr<const Contact>
+    make_contact(const Discretization       &discretization,
+                 const InterfacesParameters &interfaces)
+    {
+      if (interfaces.list.empty())
+        return nullptr;
+      return std::make_unique<const Contact>(discretization, interfaces);
+    }
+  } // namespace
+
+
+  Model::Meshes::Meshes(Case &parameters, Log &log)
+  {
+    std::ostringstream report;
+    solid = parameters.make_mesh(report);
+    log(report.str());
+    water     = take_water(parameters.reservoir, solid);
+    materials = parameters.material_of_coarse_cells(solid);
+  }
+
+
+  Model::Model(Case &parameters, Log &log)
+    : Model(parameters, Meshes(parameters, log), log)
+  {}
+
+
+  Model::Model(Case &parameters, Meshes &&meshes, Log &log)
+    : parameters(parameters)
+    , materials(parameters.material_list())
+    , material_of_coarse_cell(std::move(meshes.materials))
+    , grid(
+        meshes.solid,
+        parameters.grid,
+        [this](const unsigned int cell) {
+          return materials[material_of_coarse_cell[cell]]->relative_cost();
+        },
+        log.communicator())
+    , discretization(grid,
+                     parameters.discretization,
+                     checked_supports(parameters, grid),
+                     material_of_cell())
+    , mass(discretization,
+           inertial_densities(materials),
+           driven_densities(materials),
+           material_of_cell())
+    , internal_force(discretization,
+                     std::vector<const CellKernel *>(materials.begin(),
+                                                     materials.end()),
+                     factors_under(Damping(parameters.damping), materials))
+    , boundary(discretization,
+               parameters.boundaries.absorbing,
+               materials,
+               material_of_cell(),
+               parameters.discretization.quadrature,
+               terms)
+    , running_loads(prepared_loads(*this, terms))
+    , added_mass(mass_added_to(terms, discretization, parameters.reservoir))
+    , reservoir(make_reservoir(parameters, meshes.water, discretization, terms))
+    , constraints(prepared_constraints(*this))
+    , contact(make_contact(discretization, parameters.interfaces))
+  {
+    report(log);
+  }
+
+
+  unsigned int
+  Model::material_of(const Grid::Cell &cell) const
+  {
+    return material_of_coarse_cell[Grid::coarse_cell(cell)];
+  }
+
+
+  std::function<unsigned int(const Grid::Cell &)>
+  Model::material_of_cell() const
+  {
+    return [this](const Grid::Cell &cell) { return material_of(cell); };
+  }
+
+
+  bool
+  Model::rigid_base() const
+  {
+    return parameters.ground_motion.type != "none" &&
+           parameters.wave.enters_through == "rigid base";
+  }
+
+
+  void
+  Model::report(Log &log) const
+  {
+    const MPI_Comm communicator = grid.communicator();
+    log.line("Mesh: ",
+             grid.describe_balance(),
+             ", partition by ",
+             parameters.grid.partition,
+             ", at most ",
+             discretization.largest_interface(),
+             " nodes of a rank owned by others");
+    log.line("Unknowns: ",
+             discretization.dof_handler.n_dofs(),
+             " of degree ",
+             discretization.degree);
+    report_materials(log);
+    if (parameters.reservoir.model == "added mass")
+      log.line("Reservoir: added mass of ", added_mass, " kg over all facets");
+    if (reservoir)
+      {
+        double surface = std::numeric_limits<double>::lowest();
+        for (const Point<3> &node : reservoir->space.node_positions)
+          surface = std::max(surface, node[2]);
+        log.line("Reservoir: ",
+                 reservoir->space.dof_handler.n_dofs(),
+                 " unknowns of compressible water up to z = ",
+                 Utilities::MPI::max(surface, communicator),
+                 " m, ",
+                 reservoir->space.grid.describe_balance(),
+                 ", largest step ",
+                 reservoir->stable_step(),
+                 " s");
+      }
+  }
+
+
+  void
+  Model::report_materials(Log &log) const
+  {
+    const MPI_Comm communicator = grid.communicator();
+    // longest edge and widest crack band of the cells of each material
+    std::vector<double> longest(materials.size(), 0.), widest(longest);
+    for (const auto &cell : grid.triangulation().active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          const unsigned int m = material_of(cell);
+          for (unsigned int line = 0; line < 12; ++line)
+            longest[m] = std::max(longest[m], cell->line(line)->diameter());
+          widest[m] =
+            std::max(widest[m],
+                     PointHistory::element_length_of(cell,
+                                                     discretization.degree));
+        }
+    for (unsigned int m = 0; m < materials.size(); ++m)
+      {
+        const ElasticConstants c = materials[m]->elastic_constants();
+        const double       edge = Utilities::MPI::max(longest[m], communicator);
+        std::ostringstream text;
+        text << std::setprecision(4) << "Material "
+             << parameters.materials.objects[m].first << ": mass "
+             << mass.total[m] << " kg, P wave " << c.p_wave_speed()
+             << " m/s, S wave " << c.s_wave_speed()
+             << " m/s; its largest cells carry waves up to "
+             << std::setprecision(2)
+             << c.s_wave_speed() * discretization.degree / (8. * edge)
+             << " Hz with 8 nodes per wavelength";
+        log.line(text.str());
+        const double band = Utilities::MPI::max(widest[m], communicator);
+        if (const std::string remark = materials[m]->remark(band);
+            !remark.empty())
+          log.line("  note: ", remark);
+      }
+  }
+} // namespace Voussoir

@@ -1,0 +1,178 @@
+// What a run says and writes of itself: its files, progress, summary.
+
+#include <voussoir/base/version.h>
+#include <voussoir/driver/run.h>
+#include <voussoir/output/field_writer.h>
+#include <voussoir/output/material_memory.h>
+
+#include <iomanip>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  ObservedModel
+  Run::what_is_observed() const
+  {
+    return {model.discretization,
+            model.materials,
+            model.material_of_cell(),
+            state.material_memory,
+            rest.initial,
+            water.get(),
+            contact ? &*contact : nullptr,
+            folder.path(),
+            time_step.length,
+            model.parameters.time.end_time,
+            earthquake.base,
+            ResultNames(model.parameters.material_names(),
+                        model.grid,
+                        contact ? &*contact : nullptr)};
+  }
+
+
+  void
+  Run::open_output()
+  {
+    folder.make(log);
+    write_modes();
+    energy.open(folder.path(), folder.start_time(), folder.restarts());
+    for (const auto &observer : model.parameters.observers)
+      observer.second->prepare(observed,
+                               folder.start_time(),
+                               folder.restarts());
+  }
+
+
+  void
+  Run::write_modes() const
+  {
+    if (modes.list.empty())
+      return;
+    std::vector<NodalField> fields;
+    for (unsigned int j = 0; j < modes.list.size(); ++j)
+      {
+        std::ostringstream name;
+        name << std::setprecision(4) << "mode " << j + 1 << " ("
+             << modes.list[j].frequency << " Hz)";
+        fields.push_back({&modes.list[j].shape, {name.str()}});
+      }
+    write_fields(observed, fields, nullptr, "modes", 0.);
+  }
+
+
+  void
+  Run::report_progress()
+  {
+    const double done =
+      double(state.step - first_step) / double(n_steps() - first_step);
+    const double       seconds = clock.wall_time();
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(1) << std::setw(5)
+         << 100. * double(state.step) / double(n_steps())
+         << " %  t = " << std::setprecision(3) << state.time << " s  "
+         << std::setprecision(1) << throughput(seconds)
+         << " MDOF-steps/s  energy error " << std::setprecision(3)
+         << 100. * energy.relative_error() << " %  time left "
+         << duration_text(seconds * (1. - done) / done);
+    log.line(text.str());
+  }
+
+
+  double
+  Run::throughput(const double seconds) const
+  {
+    return 1e-6 * double(model.discretization.dof_handler.n_dofs()) *
+           double(state.step - first_step) / seconds;
+  }
+
+
+  nlohmann::json
+  Run::summary() const
+  {
+    const MPI_Comm communicator = log.communicator();
+    nlohmann::json result;
+    result["version"]   = version();
+    result["title"]     = model.parameters.title;
+    result["SIMD bits"] = 64 * Lanes::size();
+    result["ranks"]     = Utilities::MPI::n_mpi_processes(communicator);
+    result["cells"]     = model.grid.triangulation().n_global_active_cells();
+    result["unknowns"]  = model.discretization.dof_handler.n_dofs();
+    result["degree"]    = model.discretization.degree;
+    result["time step [s]"]           = time_step.length;
+    result["largest stable step [s]"] = time_step.limit;
+    result["steps"]                   = state.step;
+    result["end time [s]"]            = state.time;
+    result["loop time [s]"]           = loop_seconds;
+    result["MDOF-steps/s"] = loop_seconds > 0. ? throughput(loop_seconds) : 0.;
+    Utilities::System::MemoryStats memory;
+    Utilities::System::get_memory_stats(memory);
+    result["peak memory of a rank [MB]"] =
+      Utilities::MPI::max(memory.VmHWM / 1024., communicator);
+    // the rank that comes last to the exchange of contact does not wait there
+    if (contact && loop_seconds > 0.)
+      result["contact share of the loop"] =
+        Utilities::MPI::min(contact->seconds(), communicator) / loop_seconds;
+    if (!rest.summary.is_null())
+      result["static state"] = rest.summary;
+    if (!modes.list.empty())
+      result["modes"] = modes.summary();
+    if (water)
+      result["reservoir"] = {{"unknowns",
+                              model.reservoir->space.dof_handler.n_dofs()},
+                             {"stored energy [J]", water->stored_energy()},
+                             {"radiated and absorbed [J]",
+                              Utilities::MPI::sum(water->loss, communicator)}};
+    if (model.internal_force.has_memory())
+      result["materials"] =
+        memory_summary(observed, model.parameters.material_names());
+    result["energy balance"] = energy.summary();
+    result["names"]          = observed.names.json();
+    return result;
+  }
+
+
+  void
+  Run::finish()
+  {
+    loop_seconds          = clock.wall_time();
+    nlohmann::json result = summary();
+    if (folder.exists())
+      {
+        TimerOutput::Scope scope(timer, "output");
+        for (const auto &observer : model.parameters.observers)
+          observer.second->finish(state, result);
+        if (Utilities::MPI::this_mpi_process(log.communicator()) == 0)
+          std::ofstream(folder.path() + "/summary.json")
+            << result.dump(2) << std::endl;
+      }
+
+    std::ostringstream text;
+    text << std::setprecision(3) << "Done: " << state.step - first_step
+         << " steps in " << duration_text(loop_seconds) << ", "
+         << throughput(loop_seconds) << " MDOF-steps/s, energy error "
+         << 100. * energy.relative_error() << " %\n";
+    if (contact)
+      text << "Contact: "
+           << 100. * result.at("contact share of the loop").get<double>()
+           << " % of the loop\n";
+    log(text.str());
+    log(timer_table());
+  }
+
+
+  std::string
+  Run::timer_table() const
+  {
+    std::ostringstream text;
+    const auto         times =
+      timer.get_summary_data(TimerOutput::OutputData::total_wall_time);
+    const auto calls = timer.get_summary_data(TimerOutput::OutputData::n_calls);
+    text << "  seconds      calls  section\n" << std::fixed;
+    for (const auto &[name, seconds] : times)
+      text << std::setw(9) << std::setprecision(2) << seconds << "  "
+           << std::setw(9) << std::setprecision(0) << calls.at(name) << "  "
+           << name << '\n';
+    return text.str();
+  }
+} // namespace Voussoir

@@ -1,0 +1,113 @@
+#include <voussoir/base/error.h>
+#include <voussoir/driver/time_step.h>
+#include <voussoir/fem/stable_step.h>
+
+#include <iomanip>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    double
+    limit_with_damping(const Model   &model,
+                       const Damping &damping,
+                       const bool     central)
+    {
+      const double alpha = damping.mass_coefficient;
+      StepLimits   limits;
+      limits.stiffening = [&](const double dt) {
+        return damping.stiffening(dt);
+      };
+      limits.add_diagonal =
+        [&](Vector &force, const Vector &displacement, const double dt) {
+          model.terms.add_to(force, displacement, central ? 0. : 2. / dt);
+          if (!central && alpha > 0.)
+            for (unsigned int i = 0; i < force.locally_owned_size(); ++i)
+              force.local_element(i) += 2. / dt * alpha *
+                                        model.mass.mass.local_element(i) *
+                                        displacement.local_element(i);
+          if (model.reservoir)
+            model.reservoir->add_coupling(force, displacement, dt);
+        };
+      const double step = stable_step(model.discretization,
+                                      model.internal_force,
+                                      model.mass,
+                                      limits);
+      // the bound on the coupling holds up to this share of the water's limit
+      return model.reservoir ?
+               std::min(step, 0.95 * model.reservoir->stable_step()) :
+               step;
+    }
+
+
+    double
+    limit_without_damping(const Model &model)
+    {
+      return stable_step(model.discretization,
+                         model.internal_force,
+                         model.mass,
+                         {[](const double) { return 0.; },
+                          [](Vector &, const Vector &, const double) {}});
+    }
+
+
+    double
+    chosen_step(const TimeParameters &parameters, const double limit)
+    {
+      const double given = parameters.time_step;
+      if (given > limit)
+        {
+          std::ostringstream text;
+          text << std::setprecision(3)
+               << "\"Time step\" in section \"Time\" is " << given
+               << " s, but the largest stable one is " << limit
+               << " s; choose a smaller one, or 0 for the automatic choice.";
+          throw UserError(text.str());
+        }
+      return given > 0. ? given : parameters.safety_factor * limit;
+    }
+  } // namespace
+
+
+  TimeStep::TimeStep(const Model                 &model,
+                     const Damping               &damping,
+                     const std::optional<double> &kept,
+                     Log                         &log)
+    : undamped_limit(0.)
+    , central(model.parameters.time.scheme != "paper")
+  {
+    std::vector<double> density;
+    for (const Material *material : model.materials)
+      density.push_back(material->inertial_density());
+    std::ostringstream text;
+    ElementSteps(model.discretization, model.internal_force, density)
+      .print(text);
+    log(text.str());
+
+    if (damping.stiffening(1.) > 0.)
+      undamped_limit = limit_without_damping(model);
+    limit  = limit_with_damping(model, damping, central);
+    length = kept ? *kept : chosen_step(model.parameters.time, limit);
+
+    std::ostringstream line;
+    damping.print(line);
+    line << std::setprecision(4) << "Time step: " << length
+         << " s, largest stable " << limit << " s";
+    if (undamped_limit > 0.)
+      line << " (" << std::setprecision(3) << 100. * limit / undamped_limit
+           << " % of the undamped " << std::setprecision(4) << undamped_limit
+           << " s)";
+    const double end_time = model.parameters.time.end_time;
+    line << ", " << steps_to(end_time) << " steps to " << end_time << " s\n";
+    log(line.str());
+  }
+
+
+  unsigned long long
+  TimeStep::steps_to(const double time) const
+  {
+    return std::ceil(time / length - 1e-9);
+  }
+} // namespace Voussoir

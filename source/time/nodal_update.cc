@@ -1,0 +1,125 @@
+#include <voussoir/fem/nodal_values.h>
+#include <voussoir/time/nodal_update.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  NodalUpdate::NodalUpdate(const NodalTerms &terms,
+                           const LumpedMass &mass,
+                           const double      mass_coefficient,
+                           const LeapFrog   &leap_frog)
+    : terms(terms)
+    , leap_frog(leap_frog)
+    , inverse(terms.nodes.size())
+    , masses(terms.nodes.size())
+    , applied(terms.nodes.size())
+    , last_displacement(terms.nodes.size())
+    , last_velocity(terms.nodes.size())
+  {
+    const double share = leap_frog.implicit_share();
+    for (unsigned int slot = 0; slot < terms.nodes.size(); ++slot)
+      {
+        masses[slot] = node_value(mass.mass, terms.nodes[slot]);
+        masses[slot] *= 1. + share * mass_coefficient;
+        // a held component keeps its zero velocity: unit row and column
+        Tensor<2, 3> matrix;
+        for (unsigned int d = 0; d < 3; ++d)
+          for (unsigned int e = 0; e < 3; ++e)
+            {
+              if (masses[slot][d] > 0. && masses[slot][e] > 0.)
+                matrix[d][e] = terms.added_mass[slot][d][e] +
+                               share * terms.dashpots[slot][d][e];
+              if (d == e)
+                matrix[d][e] += masses[slot][d] > 0. ? masses[slot][d] : 1.;
+            }
+        inverse[slot] = invert(matrix);
+      }
+  }
+
+
+  std::optional<Tensor<2, 3>>
+  NodalUpdate::inverse_at(const unsigned int node) const
+  {
+    const auto slot = terms.slot_at(node);
+    if (!slot)
+      return {};
+    Tensor<2, 3> result = inverse[*slot];
+    for (unsigned int d = 0; d < 3; ++d)
+      if (masses[*slot][d] == 0.)
+        result[d][d] = 0.;
+    return result;
+  }
+
+
+  void
+  NodalUpdate::before_step(const State        &state,
+                           const Tensor<1, 3> &base_acceleration)
+  {
+    base = base_acceleration;
+    for (unsigned int slot = 0; slot < terms.nodes.size(); ++slot)
+      {
+        last_displacement[slot] =
+          node_value(state.displacement, terms.nodes[slot]);
+        last_velocity[slot] = node_value(state.velocity, terms.nodes[slot]);
+      }
+  }
+
+
+  void
+  NodalUpdate::correct(State &state, const NodalForces &forces)
+  {
+    const double time_step = leap_frog.time_step,
+                 lag       = leap_frog.explicit_share();
+    for (unsigned int slot = 0; slot < terms.nodes.size(); ++slot)
+      {
+        const unsigned int  node     = terms.nodes[slot];
+        const Tensor<1, 3> &last     = last_velocity[slot];
+        const auto         &dashpots = terms.dashpots[slot];
+        // what drives the added mass is the ground under a rigid base
+        applied[slot] = forces[slot] - terms.added_mass[slot] * base;
+        Tensor<1, 3> momentum =
+          terms.added_mass[slot] * last +
+          time_step *
+            (applied[slot] - terms.springs[slot] * last_displacement[slot]) -
+          lag * (dashpots * last);
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            momentum[d] +=
+              masses[slot][d] * state.velocity.local_element(3 * node + d);
+            if (masses[slot][d] == 0.)
+              momentum[d] = 0.;
+          }
+        const Tensor<1, 3> next = inverse[slot] * momentum;
+        const Tensor<1, 3> mean = 0.5 * (next + last);
+        state.accounts.work_of_forces += time_step * (applied[slot] * mean);
+        state.accounts.loss_in_dashpots +=
+          time_step * (mean * (dashpots * leap_frog.damped(last, next)));
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            state.velocity.local_element(3 * node + d) = next[d];
+            state.displacement.local_element(3 * node + d) =
+              last_displacement[slot][d] + time_step * next[d];
+          }
+      }
+  }
+
+
+  void
+  NodalUpdate::account_for(const unsigned int  slot,
+                           const Tensor<1, 3> &velocity,
+                           const Tensor<1, 3> &change,
+                           EnergyAccounts     &accounts) const
+  {
+    const Tensor<1, 3> &last     = last_velocity[slot];
+    const auto         &dashpots = terms.dashpots[slot];
+    const Tensor<1, 3>  mean     = 0.5 * (velocity + last),
+                       was = mean - 0.5 * change, predicted = velocity - change;
+    accounts.work_of_forces +=
+      leap_frog.time_step * (applied[slot] * (mean - was));
+    accounts.loss_in_dashpots +=
+      leap_frog.time_step *
+      (mean * (dashpots * leap_frog.damped(last, velocity)) -
+       was * (dashpots * leap_frog.damped(last, predicted)));
+  }
+} // namespace Voussoir

@@ -145,7 +145,7 @@ namespace Voussoir
   };
 
   template <typename Number>
-  PrincipalBounds<Number>
+  DEAL_II_ALWAYS_INLINE inline PrincipalBounds<Number>
   principal_bounds(const SymmetricTensor3<Number> &stress)
   {
     const auto [first, second] = invariants(stress);

@@ -48,7 +48,8 @@ namespace Voussoir
                                "the check");
     Histories           histories;
     std::vector<double> shares;
-    while (simulation.run.state.time < simulation.model.parameters.time.end_time)
+    while (simulation.run.state.time <
+           simulation.model.parameters.time.end_time)
       {
         simulation.run.scheme.step(simulation.run.state);
         if (after_step)

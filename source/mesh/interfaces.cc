@@ -30,7 +30,7 @@ namespace Voussoir
     const Set &
     find_set(const std::map<std::string, Set> &sets,
              const std::string                &name,
-             const std::string                &kind,
+             const char                       *kind,
              const std::string                &place)
     {
       const auto set = sets.find(name);

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "check.h"
+#include "same.h"
 
 namespace Voussoir
 {
@@ -36,16 +37,6 @@ namespace Voussoir
         fs::create_directories(folder);
       MPI_Barrier(simulation.model.grid.communicator());
       return model;
-    }
-
-
-    std::string
-    text_of(const fs::path &file)
-    {
-      std::ifstream      in(file);
-      std::ostringstream text;
-      text << in.rdbuf();
-      return text.str();
     }
 
 

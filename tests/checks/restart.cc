@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "check.h"
+#include "same.h"
 
 namespace Voussoir
 {
@@ -116,13 +117,13 @@ namespace Voussoir
                           communicator,
                           verdicts);
         verdicts.is_true("same list of pictures",
-                         text("straight/fields.txt") ==
-                             text("together/fields.txt") &&
-                           text("straight/fields.txt").size() > 100);
+                         text_of("straight/fields.txt") ==
+                             text_of("together/fields.txt") &&
+                           text_of("straight/fields.txt").size() > 100);
         verdicts.is_true("same histories.csv",
-                         text("straight/histories.csv") ==
-                             text("together/histories.csv") &&
-                           text("straight/histories.csv").size() > 1000);
+                         text_of("straight/histories.csv") ==
+                             text_of("together/histories.csv") &&
+                           text_of("straight/histories.csv").size() > 1000);
         compare_tables("straight", "together", verdicts);
 
         // written by one rank, continued by all
@@ -214,30 +215,6 @@ namespace Voussoir
       }
 
 
-      static bool
-      same(const Vector &a, const Vector &b)
-      {
-        const bool here =
-          std::equal(a.begin(), a.begin() + a.locally_owned_size(), b.begin());
-        return Utilities::MPI::min(here ? 1 : 0, a.get_mpi_communicator()) == 1;
-      }
-
-
-      static bool
-      same(const KeyedValues &a,
-           const KeyedValues &b,
-           const MPI_Comm     communicator)
-      {
-        bool here = a.items.size() == b.items.size();
-        for (std::size_t i = 0; here && i < a.items.size(); ++i)
-          here = a.items[i].first == b.items[i].first &&
-                 std::equal(a.items[i].second,
-                            a.items[i].second + a.width,
-                            b.items[i].second);
-        return Utilities::MPI::min(here ? 1 : 0, communicator) == 1;
-      }
-
-
       static void
       compare_contact(Contact       &a,
                       Contact       &b,
@@ -294,14 +271,6 @@ namespace Voussoir
       }
 
 
-      static std::string
-      text(const std::string &name)
-      {
-        std::ifstream in(name);
-        return std::string(std::istreambuf_iterator<char>(in), {});
-      }
-
-
       /** The numbers of a table without its heading. */
       static std::vector<double>
       numbers(const std::string &name)
@@ -344,8 +313,9 @@ namespace Voussoir
                            change / size,
                            1e-8);
           }
-        const auto a = nlohmann::json::parse(text(reference + "/summary.json"));
-        const auto b = nlohmann::json::parse(text(folder + "/summary.json"));
+        const auto a =
+          nlohmann::json::parse(text_of(reference + "/summary.json"));
+        const auto b = nlohmann::json::parse(text_of(folder + "/summary.json"));
         for (const std::string quantity :
              {"largest displacement [m]", "largest acceleration [m/s2]"})
           verdicts.near("  " + quantity,

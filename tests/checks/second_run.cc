@@ -1,7 +1,7 @@
 #include <filesystem>
-#include <fstream>
 
 #include "check.h"
+#include "same.h"
 
 namespace Voussoir
 {
@@ -9,38 +9,6 @@ namespace Voussoir
 
   namespace
   {
-    bool
-    same(const Vector &a, const Vector &b)
-    {
-      const bool here =
-        std::equal(a.begin(), a.begin() + a.locally_owned_size(), b.begin());
-      return Utilities::MPI::min(here ? 1 : 0, a.get_mpi_communicator()) == 1;
-    }
-
-
-    bool
-    same(const KeyedValues &a,
-         const KeyedValues &b,
-         const MPI_Comm     communicator)
-    {
-      bool here = a.items.size() == b.items.size();
-      for (std::size_t i = 0; here && i < a.items.size(); ++i)
-        here = a.items[i].first == b.items[i].first &&
-               std::equal(a.items[i].second,
-                          a.items[i].second + a.width,
-                          b.items[i].second);
-      return Utilities::MPI::min(here ? 1 : 0, communicator) == 1;
-    }
-
-
-    std::string
-    text(const std::string &name)
-    {
-      std::ifstream in(name);
-      return std::string(std::istreambuf_iterator<char>(in), {});
-    }
-
-
     /**
      * Two runs, one after the other, on one model with joints that open and
      * slip, concrete that cracks and a static state: the second is the first,
@@ -103,9 +71,9 @@ namespace Voussoir
         for (const std::string table :
              {"histories.csv", "energy.csv", "interfaces.csv"})
           verdicts.is_true("same " + table,
-                           text("twice/" + table).size() > 1000 &&
-                             text("twice/" + table) ==
-                               text("twice-2/" + table));
+                           text_of("twice/" + table).size() > 1000 &&
+                             text_of("twice/" + table) ==
+                               text_of("twice-2/" + table));
       }
     };
 

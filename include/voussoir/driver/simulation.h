@@ -12,8 +12,8 @@ namespace Voussoir
   class Simulation
   {
   public:
-    /** Throws UserError for whatever cannot be computed; up to here nothing is
-     *  left behind. */
+    /** Throws UserError for whatever cannot be computed, before the output
+     *  folder is made. */
     Simulation(Case             &parameters,
                const RunOptions &options,
                const MPI_Comm    communicator);

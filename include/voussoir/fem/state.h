@@ -12,8 +12,8 @@ namespace Voussoir
    */
   struct EnergyAccounts
   {
-    double work_of_forces = 0.; // loads, boundary, water, weight of added mass
-    double work_of_base   = 0.; // inertia under a moving rigid base
+    double work_of_forces      = 0.; // also of the ground on added mass
+    double work_of_base        = 0.; // inertia under a moving rigid base
     double work_of_projections = 0.; // contact, prescribed motion
     double loss_in_dashpots    = 0.; // of the absorbing boundary
     double loss_by_mass        = 0.; // mass-proportional damping

@@ -279,7 +279,7 @@ namespace Voussoir
     bool
     StaticStages::dissipated() const
     {
-      return Utilities::MPI::max(state.material_memory.dissipated(),
+      return Utilities::MPI::max(state.material_memory.losses().material,
                                  model.discretization.grid.communicator()) > 0.;
     }
 
@@ -341,7 +341,7 @@ namespace Voussoir
     model.internal_force.respond(state.force,
                                  state.displacement,
                                  state.material_memory);
-    state.material_memory.set_dissipated(0.);
+    state.material_memory.set_losses({});
     model.terms.add_to(state.force, state.displacement, 0.);
     if (model.contact != nullptr)
       {

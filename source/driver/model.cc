@@ -276,8 +276,7 @@ namespace Voussoir
             longest[m] = std::max(longest[m], cell->line(line)->diameter());
           widest[m] =
             std::max(widest[m],
-                     PointHistory::element_length_of(cell,
-                                                     discretization.degree));
+                     CrackBands::along_edges(cell, discretization.degree));
         }
     for (unsigned int m = 0; m < materials.size(); ++m)
       {

@@ -76,7 +76,8 @@ namespace Voussoir
                rest.initial,
                nodal_loads(),
                projections(),
-               earthquake.base.moves() ? &earthquake.base : nullptr}
+               earthquake.base.moves() ? &earthquake.base : nullptr,
+               time_step.closing_viscosity}
     , scheme(equation, time_step.leap_frog())
     , state(scheme.state_at_rest())
     , observed(what_is_observed())

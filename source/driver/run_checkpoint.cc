@@ -19,7 +19,8 @@ namespace Voussoir
                                  &a.loss_in_dashpots,
                                  &a.work_of_base,
                                  &a.work_of_projections,
-                                 &a.loss_by_mass};
+                                 &a.loss_by_mass,
+                                 &a.work_on_cells};
       if (water != nullptr)
         sums.push_back(&water->loss);
       return sums;
@@ -83,7 +84,8 @@ namespace Voussoir
     std::vector<double> work;
     for (const double *sum : sums_of(state, water.get()))
       work.push_back(*sum);
-    work.push_back(state.material_memory.dissipated());
+    const PointLosses losses = state.material_memory.losses();
+    work.insert(work.end(), {losses.material, losses.closing});
     checkpoint.write(checkpoint_vectors(),
                      checkpoint_values(),
                      {{"time", state.time},
@@ -123,7 +125,9 @@ namespace Voussoir
     const auto sums = sums_of(state, water.get());
     for (unsigned int i = 0; i < sums.size(); ++i)
       *sums[i] = first ? work[i] : 0.;
-    state.material_memory.set_dissipated(first ? work.back() : 0.);
+    const unsigned int n = sums.size();
+    state.material_memory.set_losses(first ? PointLosses{work[n], work[n + 1]} :
+                                             PointLosses());
 
     // the free field has no checkpoint: it is marched again, which is cheap
     if (earthquake.wave)

@@ -20,6 +20,7 @@ namespace Voussoir
       limits.stiffening = [&](const double dt) {
         return damping.stiffening(dt);
       };
+      limits.mesh_viscosity = damping.mesh_viscosity;
       limits.add_diagonal =
         [&](Vector &force, const Vector &displacement, const double dt) {
           model.terms.add_to(force, displacement, central ? 0. : 2. / dt);
@@ -72,7 +73,7 @@ namespace Voussoir
 
 
   TimeStep::TimeStep(const Model                 &model,
-                     const Damping               &damping,
+                     Damping                     &damping,
                      const std::optional<double> &kept,
                      Log                         &log)
     : undamped_limit(0.)
@@ -86,13 +87,29 @@ namespace Voussoir
       .print(text);
     log(text.str());
 
-    if (damping.stiffening(1.) > 0.)
+    const bool cracks = model.internal_force.has_memory();
+    if (cracks || damping.stiffening(1.) > 0.)
       undamped_limit = limit_without_damping(model);
+    if (cracks)
+      damping.add_mesh_viscosity(undamped_limit);
     limit  = limit_with_damping(model, damping, central);
     length = kept ? *kept : chosen_step(model.parameters.time, limit);
+    if (cracks)
+      {
+        // a spring k with a dashpot c k is stable up to x^2 + 2 x c/dt_0 = 1
+        // with x = dt/dt_0; some of it is enough
+        const double x = std::min(0.999, length / undamped_limit);
+        closing_viscosity =
+          undamped_limit * std::min(0.2, 0.95 * (1. - x * x) / (2. * x));
+      }
 
     std::ostringstream line;
     damping.print(line);
+    if (cracks && damping.stiffening(1.) == 0.)
+      line
+        << "  note: materials can crack or yield, and this model hardly damps "
+           "the fast waves that cracks set free: one makes others, and their "
+           "number means little. The model Maxwell damps them.\n";
     line << std::setprecision(4) << "Time step: " << length
          << " s, largest stable " << limit << " s";
     if (undamped_limit > 0.)

@@ -45,6 +45,14 @@ namespace Voussoir
                       "Frequency at which the materials' moduli hold under "
                       "Maxwell damping [Hz]; 0 for at rest.",
                       Patterns::Double(0.));
+    prm.add_parameter(
+      "Mesh viscosity",
+      mesh_viscosity,
+      "Where materials can crack or yield: damping of waves that the cells are "
+      "too long to carry, as a share of critical at the highest frequency of "
+      "the mesh; within the band at most 0.005. Without it the ringing of one "
+      "crack makes the next ones.",
+      Patterns::Double(0., 0.3));
     prm.add_parameter("From modes",
                       modes,
                       "Two modes, as in \"1, 3\": Rayleigh damping has its "
@@ -162,6 +170,16 @@ namespace Voussoir
   }
 
 
+  void
+  Damping::add_mesh_viscosity(const double undamped_limit)
+  {
+    // xi = pi f beta; the mesh ends at w = 2 / (its stable step)
+    mesh_viscosity =
+      std::min(parameters.mesh_viscosity * undamped_limit,
+               0.005 / (numbers::PI * parameters.highest_frequency));
+  }
+
+
   unsigned int
   Damping::n_branches() const
   {
@@ -207,8 +225,9 @@ namespace Voussoir
         const double x = w * relaxation_times[i];
         sum += factor * coefficients[i] * x / (1. + x * x);
       }
-    return 0.5 * (sum / modulus_ratio(frequency, factor) +
-                  mass_coefficient / w + factor * stiffness_coefficient * w);
+    return 0.5 *
+           (sum / modulus_ratio(frequency, factor) + mass_coefficient / w +
+            (factor * stiffness_coefficient + mesh_viscosity) * w);
   }
 
 

@@ -120,7 +120,7 @@ namespace Voussoir
                        const Vector    *damping_memory,
                        const Vector    &undamped,
                        MaterialMemory  &memory,
-                       const double     time_step,
+                       const PointStep &step,
                        const RangeWork &before,
                        const RangeWork &after) const
   {
@@ -136,7 +136,7 @@ namespace Voussoir
                                         damping_memory,
                                         undamped,
                                         *history,
-                                        time_step);
+                                        step);
       else
         kernels[material]->add_force(
           cells, factors[material], dst, src, damping_memory);
@@ -199,7 +199,7 @@ namespace Voussoir
           displacement,
           memory,
           // the laws follow at once
-          std::numeric_limits<double>::max(),
+          {std::numeric_limits<double>::max()},
           [&](const unsigned int begin, const unsigned int end) {
             std::fill(force.begin() + begin, force.begin() + end, 0.);
           },
@@ -287,12 +287,9 @@ namespace Voussoir
     return sum(read, [&](const unsigned int material, const CellRange &cells) {
       const CellKernel   &kernel  = *kernels[material];
       const PointHistory *history = memory.of(material);
-      double              energy  = 0.5 * kernel.work(cells,
-                                        factors[material],
-                                        moved,
-                                        moved_before,
-                                        history,
-                                        CellKernel::Inelastic::not_at_all);
+      double              energy =
+        0.5 *
+        kernel.work(cells, factors[material], moved, moved_before, history);
       if (history != nullptr)
         energy += kernel.inelastic_energy(cells,
                                           factors[material],
@@ -306,21 +303,17 @@ namespace Voussoir
 
 
   double
-  InternalForce::damping_work(const Vector         &u,
+  InternalForce::elastic_work(const Vector         &u,
                               const Vector         &v,
-                              const MaterialMemory &memory) const
+                              const MaterialMemory &memory,
+                              const bool            by_damping_factor) const
   {
-    return sum({&u, &v},
-               [&](const unsigned int material, const CellRange &cells) {
-                 const CellKernel &kernel = *kernels[material];
-                 return kernel.damping_factor() *
-                        kernel.work(cells,
-                                    factors[material],
-                                    u,
-                                    v,
-                                    memory.of(material),
-                                    CellKernel::Inelastic::by_damping_share);
-               });
+    return sum(
+      {&u, &v}, [&](const unsigned int material, const CellRange &cells) {
+        const CellKernel &kernel = *kernels[material];
+        return (by_damping_factor ? kernel.damping_factor() : 1.) *
+               kernel.work(cells, factors[material], u, v, memory.of(material));
+      });
   }
 
 

@@ -4,6 +4,56 @@ namespace Voussoir
 {
   using namespace dealii;
 
+  namespace
+  {
+    // Half the mean edges of a cell along its unit coordinates, over the
+    // degree.
+    std::array<Tensor<1, 3>, 3>
+    half_edges(const Grid::Cell &cell, const unsigned int degree)
+    {
+      std::array<Tensor<1, 3>, 3> edges;
+      for (unsigned int v = 0; v < 8; ++v)
+        for (unsigned int k = 0; k < 3; ++k)
+          edges[k] += ((v >> k) & 1 ? 0.125 : -0.125) / degree *
+                      Tensor<1, 3>(cell->vertex(v));
+      return edges;
+    }
+  } // namespace
+
+
+  void
+  CrackBands::set_lane(const unsigned int lane,
+                       const Grid::Cell  &cell,
+                       const unsigned int degree)
+  {
+    const auto   edges   = half_edges(cell, degree);
+    const double volume  = edges[0] * cross_product_3d(edges[1], edges[2]);
+    double       longest = 0.;
+    for (unsigned int k = 0; k < 3; ++k)
+      {
+        const Tensor<1, 3> &next    = edges[(k + 1) % 3],
+                           &last    = edges[(k + 2) % 3];
+        const Tensor<1, 3> gradient = cross_product_3d(next, last) / volume;
+        for (unsigned int d = 0; d < 3; ++d)
+          gradients[k][d][lane] = gradient[d];
+        longest =
+          std::max({longest, (next + last).norm(), (next - last).norm()});
+      }
+    widest[lane] = 2. * longest;
+  }
+
+
+  double
+  CrackBands::along_edges(const Grid::Cell &cell, const unsigned int degree)
+  {
+    // l of a normal along an edge is its length
+    double longest = 0.;
+    for (const Tensor<1, 3> &edge : half_edges(cell, degree))
+      longest = std::max(longest, 2. * edge.norm());
+    return longest;
+  }
+
+
   PointHistory::PointHistory(const Discretization &discretization,
                              const unsigned int    material,
                              const unsigned int    width)
@@ -25,31 +75,32 @@ namespace Voussoir
         if (discretization.material_of_batch[batch] != material)
           continue;
         found.slot_of_batch[batch] = n_slots++;
-        Lanes length               = 1.;
+        CrackBands bands;
         for (unsigned int lane = 0;
              lane < matrix_free.n_active_entries_per_cell_batch(batch);
              ++lane)
           {
             const auto cell = matrix_free.get_cell_iterator(batch, lane);
-            length[lane]    = element_length_of(cell, discretization.degree);
+            bands.set_lane(lane, cell, discretization.degree);
             found.item_of_cell[cell->active_cell_index()] = found.cells.size();
             found.cells.push_back({cell, {batch, lane}});
           }
-        found.lengths.push_back(length);
+        found.bands.push_back(bands);
       }
     const std::size_t n_points = std::size_t(n_slots) * found.per_cell;
     numbers.resize(n_points * width);
-    damping_shares.resize(n_points, Lanes(1.));
     active.resize(n_points, 0);
     points = std::make_shared<const Points>(std::move(found));
   }
 
 
-  double
-  PointHistory::element_length_of(const Grid::Cell  &cell,
-                                  const unsigned int degree)
+  void
+  PointHistory::activate(const unsigned int batch,
+                         const unsigned int q,
+                         const ActivePoint &point)
   {
-    return std::cbrt(cell->measure()) / degree;
+    active_points.push_back(point);
+    active[index(batch, q)] = active_points.size();
   }
 
 
@@ -77,6 +128,15 @@ namespace Voussoir
   }
 
 
+  double
+  PointHistory::band(const Place &place, const unsigned int q) const
+  {
+    return is_active(place.batch, q) ?
+             active_point(place.batch, q).band[place.lane] :
+             0.;
+  }
+
+
   std::vector<double>
   PointHistory::read(const Place &place, const unsigned int q) const
   {
@@ -88,12 +148,39 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    // Calls trade(Lanes &) for all that a point remembers beside the numbers of
+    // its law, and returns how many that are.
+    template <typename Trade>
+    unsigned int
+    for_each_number(ActivePoint &point, const Trade &trade)
+    {
+      unsigned int n         = 0;
+      const auto   trade_one = [&](Lanes &number) {
+        trade(number);
+        ++n;
+      };
+      for (Lanes *number : {&point.band, &point.share, &point.impact})
+        trade_one(*number);
+      for (unsigned int d = 0; d < 3; ++d)
+        trade_one(point.normal[d]);
+      for (SymmetricTensor3<Lanes> *tensor :
+           {&point.strain, &point.seen, &point.plastic, &point.stress})
+        for (unsigned int i = 0; i < 6; ++i)
+          trade_one(tensor->access_raw_entry(i));
+      return n;
+    }
+  } // namespace
+
+
   KeyedValues
   PointHistory::checkpoint_values()
   {
-    // with the damping share
-    const unsigned int of_cell = n_points() * (n_numbers + 1);
-    packed.resize(points->cells.size() * of_cell);
+    ActivePoint        none;
+    const unsigned int of_cell =
+      n_points() * (n_numbers + for_each_number(none, [](const Lanes &) {}));
+    packed.assign(points->cells.size() * of_cell, 0.);
     exchange(false);
     KeyedValues values{of_cell, {}};
     for (unsigned int i = 0; i < points->cells.size(); ++i)
@@ -114,26 +201,28 @@ namespace Voussoir
   void
   PointHistory::exchange(const bool load)
   {
-    auto       item  = packed.begin();
-    const auto trade = [&](double &number) {
+    auto         item  = packed.begin();
+    unsigned int lane  = 0;
+    const auto   trade = [&](Lanes &number) {
       if (load)
-        number = *item++;
+        number[lane] = *item++;
       else
-        *item++ = number;
+        *item++ = number[lane];
     };
     for (const auto &place : points->cells)
       for (unsigned int q = 0; q < n_points(); ++q)
         {
-          const auto [batch, lane] = place.second;
-          bool is_new              = true;
+          const unsigned int batch = place.second.batch;
+          lane                     = place.second.lane;
           for (unsigned int i = 0; i < n_numbers; ++i)
-            {
-              trade(values(batch, q)[i][lane]);
-              is_new = is_new && values(batch, q)[i][lane] == 0.;
-            }
-          if (!is_new)
-            activate(batch, q);
-          trade(damping_shares[index(batch, q)][lane]);
+            trade(values(batch, q)[i]);
+          const bool  is_known = is_active(batch, q);
+          ActivePoint point = is_known ? active_point(batch, q) : ActivePoint();
+          for_each_number(point, trade);
+          if (load && is_known)
+            active_point(batch, q) = point;
+          else if (load && point.band[lane] > 0.)
+            activate(batch, q, point);
         }
   }
 
@@ -175,22 +264,22 @@ namespace Voussoir
   }
 
 
-  double
-  MaterialMemory::dissipated() const
+  PointLosses
+  MaterialMemory::losses() const
   {
-    double energy = 0.;
+    PointLosses sum;
     for (const PointHistory &history : histories)
-      energy += history.dissipated;
-    return energy;
+      sum += history.losses;
+    return sum;
   }
 
 
   void
-  MaterialMemory::set_dissipated(const double energy)
+  MaterialMemory::set_losses(const PointLosses &losses)
   {
     for (PointHistory &history : histories)
-      history.dissipated = 0.;
+      history.losses = {};
     if (!histories.empty())
-      histories[0].dissipated = energy;
+      histories[0].losses = losses;
   }
 } // namespace Voussoir

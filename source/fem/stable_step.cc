@@ -33,13 +33,15 @@ namespace Voussoir
               const LumpedMass     &mass,
               const StepLimits     &limits)
   {
-    Vector memory = discretization.create_vector(), start(memory);
+    Vector memory = discretization.create_vector(), start(memory),
+           stiffer(memory);
     fill_start(discretization, start);
     const auto limit = [&](const double dt) {
       const double gamma = limits.stiffening(dt);
       const auto   apply = [&](Vector &dst, const Vector &src) {
         memory.equ(gamma, src);
-        force.apply(dst, src, &memory);
+        stiffer.equ(1. + 2. * limits.mesh_viscosity / dt, src);
+        force.apply(dst, stiffer, &memory);
         limits.add_diagonal(dst, src, dt);
       };
       return 2. / std::sqrt(largest_eigenvalue(start, mass.inverse, apply));

@@ -101,7 +101,8 @@ namespace Voussoir
         const double       speed =
           constants[material].p_wave_speed() *
           std::sqrt(damping.stiffness_scale(factor) *
-                    (1. + factor * damping.stiffening(time_step)));
+                    (1. + factor * damping.stiffening(time_step) +
+                     2. * damping.mesh_viscosity / time_step));
         const bool last = levels.back() - level <= tolerance;
         const bool thin = limit * (level - lower) < time_step * speed;
         if (thin && !last)

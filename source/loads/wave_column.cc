@@ -31,6 +31,7 @@ namespace Voussoir
     , maxwell(damping, leap_frog.time_step)
     , mass_coefficient(damping.mass_coefficient)
     , stiffness_coefficient(damping.stiffness_coefficient)
+    , mesh_viscosity(damping.mesh_viscosity)
   {
     const QGaussLobatto<1> lobatto(degree + 1);
     shapes =
@@ -97,9 +98,10 @@ namespace Voussoir
           {
             Tensor<1, 3> strain;
             for (unsigned int i = 0; i <= degree; ++i)
-              strain += gradients[q][i] *
-                        (u[degree * e + i] +
-                         element.damping_factor * effective[degree * e + i]);
+              strain +=
+                gradients[q][i] *
+                (u[degree * e + i] + mesh_viscosity * v[degree * e + i] +
+                 element.damping_factor * effective[degree * e + i]);
             for (unsigned int d = 0; d < 3; ++d)
               strain[d] *= weights[q] * element.modulus[d] / element.height;
             for (unsigned int i = 0; i <= degree; ++i)

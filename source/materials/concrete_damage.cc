@@ -20,8 +20,8 @@ namespace Voussoir
      */
     struct ConcreteDamage : SplitDamage
     {
-      // equivalent strains in tension and compression, damages, e_p
-      static constexpr unsigned int n_history = 10;
+      // after the numbers of both curves e_p
+      static constexpr unsigned int n_history = n_curve_numbers + 6;
 
       double compressive_strength  = 25e6;
       double crushing_energy       = 30e3;
@@ -249,49 +249,14 @@ namespace Voussoir
                 3. * pressed[0]);
       }
 
-      /**
-       * Lets one damage go on where it grows, or may: only there the curve is
-       * looked up.
-       *
-       * @param equivalent effective stress of a uniaxial test [Pa]
-       * @param largest    effective strain so far
-       */
+      /** Share of what damage lags behind by that this step makes up for. */
       template <typename Number>
-      DamageProgress<Number>
-      grow(const unsigned int            sign,
-           const Number                 &equivalent,
-           Number                       &largest,
-           Number                       &damage,
-           const PointSituation<Number> &situation) const
+      double
+      followed(const PointSituation<Number> &situation) const
       {
-        // share of what damage lags behind by that this step makes up for
-        const double followed =
-          relaxation_time == 0. ?
-            1. :
-            situation.time_step / (relaxation_time + situation.time_step);
-        const bool irreversible =
-          (sign == 0 ? irreversible_tension : irreversible_crushing) > 0.;
-        DamageProgress<Number> progress;
-        progress.intact = 1. - damage;
-        const Number growth =
-          std::min(Number(equivalent - young_modulus * largest),
-                   Number(curve(sign).load_level(equivalent,
-                                                 situation.element_length) -
-                          1.));
-        if (any_above(irreversible ? std::max(growth, largest) : growth, 0.))
-          for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
-            if (lane_of(growth, lane) > 0. ||
-                (irreversible && lane_of(largest, lane) > 0.))
-              {
-                progress.set_lane(
-                  lane,
-                  curve(sign).go_on(lane_of(equivalent, lane),
-                                    lane_of(largest, lane),
-                                    lane_of(situation.element_length, lane),
-                                    followed));
-                lane_of(damage, lane) = 1. - lane_of(progress.intact, lane);
-              }
-        return progress;
+        return relaxation_time == 0. ?
+                 1. :
+                 situation.time_step / (relaxation_time + situation.time_step);
       }
 
       template <typename Number>
@@ -300,20 +265,24 @@ namespace Voussoir
               Number                         *history,
               const PointSituation<Number>   &situation) const
       {
-        const SymmetricTensor3<Number> plastic = tensor_of(history + 4);
+        Number                        *flowed  = history + n_curve_numbers;
+        const SymmetricTensor3<Number> plastic = tensor_of(flowed);
         const auto split = split_tension(stress(strain - plastic), *this);
         const OfBoth<Number> equivalent{
           {split.principal.values[0],
            equivalent_compression(split.compression)}};
+        const OfBoth<double> irreversible{
+          {irreversible_tension, irreversible_crushing}};
         OfBoth<DamageProgress<Number>>   damage;
         OfBoth<SymmetricTensor3<Number>> effective = split.parts();
         for (const unsigned int sign : {0, 1})
           {
             damage[sign]    = grow(sign,
                                 equivalent[sign],
-                                history[sign],
-                                history[2 + sign],
-                                situation);
+                                history + n_of_curve * sign,
+                                situation,
+                                followed(situation),
+                                irreversible[sign] > 0.);
             effective[sign] = damage[sign].effective * effective[sign];
           }
         PointResponse<Number> result =
@@ -321,7 +290,7 @@ namespace Voussoir
                    damage,
                    this->strain(effective[0] + effective[1]));
         if (irreversible_tension > 0. || irreversible_crushing > 0.)
-          flow(strain, plastic, damage, history + 4, result);
+          flow(strain, plastic, damage, flowed, result);
         return result;
       }
 
@@ -360,12 +329,10 @@ namespace Voussoir
       std::vector<double>
       outputs(const double *history, const double element_length) const
       {
-        std::vector<double> result{history[2], history[3]};
-        result.push_back(history[0] == 0. ?
-                           0. :
-                           1e3 * element_length *
-                             tension.at(history[0], element_length).inelastic);
-        return result;
+        return {damage_of(history, 0),
+                damage_of(history, 1),
+                1e3 * element_length *
+                  tension.at(history[0], element_length).inelastic};
       }
     };
 

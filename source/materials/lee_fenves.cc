@@ -270,7 +270,10 @@ namespace Voussoir
         Place  place       = at(left);
         double left_excess = place.excess;
         if (left_excess <= 0.)
-          return place;
+          {
+            place.stress = trial; // without round-off
+            return place;
+          }
         place               = at(right);
         double right_excess = place.excess;
         if (right_excess > 0.)

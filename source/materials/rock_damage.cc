@@ -21,8 +21,7 @@ namespace Voussoir
      */
     struct RockDamage : SplitDamage, CohesionAndFriction
     {
-      // largest equivalent strains in tension and shear
-      static constexpr unsigned int n_history = 2;
+      static constexpr unsigned int n_history = n_curve_numbers;
 
       double shear_energy      = 10e3;
       double residual_cohesion = 0.1;
@@ -100,12 +99,10 @@ namespace Voussoir
            friction * split.compression[0] - split.compression[2]}};
         OfBoth<DamageProgress<Number>> damage;
         for (const unsigned int sign : {0, 1})
-          for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
-            damage[sign].set_lane(
-              lane,
-              curve(sign).go_on(lane_of(equivalent[sign], lane),
-                                lane_of(history[sign], lane),
-                                lane_of(situation.element_length, lane)));
+          damage[sign] = grow(sign,
+                              equivalent[sign],
+                              history + n_of_curve * sign,
+                              situation);
         return response(split.parts(), damage, strain);
       }
 
@@ -116,16 +113,9 @@ namespace Voussoir
       }
 
       std::vector<double>
-      outputs(const double *history, const double element_length) const
+      outputs(const double *history, const double) const
       {
-        std::vector<double> result;
-        for (const unsigned int sign : {0, 1})
-          result.push_back(history[sign] == 0. ?
-                             0. :
-                             curve(sign)
-                               .at(history[sign], element_length)
-                               .damage(young_modulus));
-        return result;
+        return {damage_of(history, 0), damage_of(history, 1)};
       }
     };
 

@@ -53,65 +53,138 @@ namespace Voussoir
   }
 
 
-  SofteningCurve::Point
-  SofteningCurve::at(const double strain, const double band) const
+  double
+  SofteningCurve::OfBand::strain(const unsigned int node) const
   {
-    const double factor = strength_factor(band), share = straightness(band);
-    const auto   strain_of = [&](const unsigned int i) {
-      const Node  &node = nodes[i];
-      const double line =
-        i < peak ? 0. : straight * (nodes[peak].stress - node.stress);
-      return factor * node.stress / young_modulus +
-             stretch * (node.strain +
-                        ((1. - share) * node.displacement + share * line) /
-                          (factor * band));
-    };
-    double stress = young_modulus * strain;
-    double before = strain_of(0);
-    if (strain > before)
-      {
-        stress = factor * nodes.back().stress;
-        for (unsigned int i = 1; i < nodes.size(); ++i)
-          {
-            const double after = strain_of(i);
-            if (strain < after)
-              {
-                const double way = (strain - before) / (after - before);
-                stress           = factor * ((1. - way) * nodes[i - 1].stress +
-                                   way * nodes[i].stress);
-                break;
-              }
-            before = after;
-          }
-      }
-    const double inelastic    = (strain - stress / young_modulus) / stretch;
-    const double irreversible = irreversible_share * inelastic;
+    const auto  &nodes = curve.nodes;
+    const auto  &peak  = nodes[curve.peak];
+    const Node  &at    = nodes[node];
+    const double line =
+      node < curve.peak ? 0. : curve.straight * (peak.stress - at.stress);
+    return factor * at.stress / curve.young_modulus +
+           curve.stretch *
+             (at.strain + ((1. - share) * at.displacement + share * line) /
+                            (factor * band));
+  }
+
+
+  SofteningCurve::Point
+  SofteningCurve::OfBand::elastic(const double stress,
+                                  const double strain) const
+  {
+    const double inelastic =
+      (strain - stress / curve.young_modulus) / curve.stretch;
+    const double irreversible = curve.irreversible_share * inelastic;
     return {stress, inelastic, irreversible, strain - irreversible};
   }
 
 
-  DamageProgress<double>
-  SofteningCurve::go_on(const double equivalent_stress,
-                        double      &largest,
-                        const double band,
-                        const double followed) const
+  SofteningCurve::Point
+  SofteningCurve::OfBand::on_piece(const unsigned int node,
+                                   const double       at_strain) const
   {
-    const double before = std::max(largest, elastic_limit(band));
-    const Point  old    = at(before, band);
-    const double trial  = equivalent_stress / young_modulus + old.irreversible;
-    if (trial <= before)
-      return {1., largest == 0. ? 1. : 1. - old.damage(young_modulus), 0.};
-    largest         = before + followed * (trial - before);
-    const Point now = at(largest, band);
+    const auto &nodes = curve.nodes;
+    if (node == 0)
+      return elastic(curve.young_modulus * at_strain, at_strain);
+    if (node == nodes.size())
+      return elastic(factor * nodes.back().stress, at_strain);
+    const double before = strain(node - 1), after = strain(node);
+    const double way = (at_strain - before) / (after - before);
+    return elastic(factor * ((1. - way) * nodes[node - 1].stress +
+                             way * nodes[node].stress),
+                   at_strain);
+  }
 
-    // along straight pieces of the curve the work less what is stored is
-    // (sigma_old e - sigma e_old)/2 + (sigma_old + sigma)/2 dp
-    const double lost =
-      0.5 * (old.stress * now.elastic - now.stress * old.elastic) +
-      0.5 * (old.stress + now.stress) * (now.irreversible - old.irreversible);
-    return {now.elastic / (largest - old.irreversible),
-            1. - now.damage(young_modulus),
-            lost / (0.5 * young_modulus * now.elastic * now.elastic)};
+
+  unsigned int
+  SofteningCurve::piece_at(const double strain, const OfBand &curve) const
+  {
+    unsigned int node = 0;
+    while (node < nodes.size() && strain >= curve.strain(node))
+      ++node;
+    return node;
+  }
+
+
+  SofteningCurve::Point
+  SofteningCurve::at(const double strain, const double band) const
+  {
+    const OfBand curve = of_band(band);
+    return curve.on_piece(piece_at(strain, curve), strain);
+  }
+
+
+  DamageProgress<double>
+  SofteningCurve::go_on(const double         equivalent_stress,
+                        CurveMemory<double> &memory,
+                        const double         band,
+                        const double         followed) const
+  {
+    const OfBand curve    = of_band(band);
+    const bool   is_new   = memory.largest == 0.;
+    const double limit    = curve.strain(0);
+    const double largest  = is_new ? limit : memory.largest;
+    double       position = is_new ? limit : memory.position;
+    unsigned int node     = std::max(1U, piece_at(position, curve));
+    const Point  old      = curve.on_piece(node, position);
+    const double trial = equivalent_stress / young_modulus + old.irreversible;
+    DamageProgress<double> progress;
+    progress.intact = 1. - memory.damage;
+    if (trial <= largest)
+      {
+        if (!is_new)
+          memory.last = std::max(0., equivalent_stress / young_modulus);
+        return progress;
+      }
+    memory.largest = largest + followed * (trial - largest);
+
+    // from e_a, s_a; at first as if from the limit
+    const double strain      = memory.largest - old.irreversible;
+    const double last        = is_new ? limit : memory.last;
+    const double last_stress = progress.intact * young_modulus * last;
+
+    // The energy of the curve and that of the step are linear along each piece,
+    // as is their difference: go on until it vanishes.
+    Point  now  = old;
+    double used = 0.;
+    for (;; ++node)
+      {
+        const double end =
+          node < nodes.size() ? curve.strain(node) : position + 10. + strain;
+        const Point  far     = curve.on_piece(node, end);
+        const double ds      = far.stress - now.stress,
+                     de      = far.elastic - now.elastic,
+                     dp      = far.irreversible - now.irreversible,
+                     flowed  = now.irreversible - old.irreversible;
+        const double missing = 0.5 * last_stress * strain - used -
+                               0.5 * now.stress * (last - flowed);
+        const double rate =
+          0.5 * (now.stress * (de + dp) - ds * (now.elastic - last + flowed));
+        if (rate > missing || node == nodes.size())
+          {
+            // no energy is left where there is no stress
+            const double way =
+              rate > 0. ? std::max(0., std::min(1., missing / rate)) : 0.;
+            position += way * (end - position);
+            now = curve.on_piece(node, position);
+            break;
+          }
+        used += 0.5 * (now.stress * de - ds * now.elastic) +
+                0.5 * (now.stress + far.stress) * dp;
+        position = end;
+        now      = far;
+      }
+    memory.position    = position;
+    const double flow  = now.irreversible - old.irreversible;
+    const double after = strain - flow;
+    memory.last        = after;
+    progress.effective = after / strain;
+    progress.intact    = now.stress / (young_modulus * after);
+    progress.dissipation =
+      0.5 * (last_stress * strain - now.stress * last + now.stress * flow) /
+      (0.5 * young_modulus * after * after);
+    memory.damage = 1. - progress.intact;
+    return progress;
   }
 
 

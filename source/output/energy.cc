@@ -17,6 +17,14 @@ namespace Voussoir
     if (initial_state.force.size() > 0)
       round_off =
         1e-12 * std::abs(initial_state.displacement * initial_state.force);
+    if (initial_state.displacement.size() > 0)
+      {
+        force_at_rest = moved;
+        equation.terms.add_to(force_at_rest, initial_state.displacement, 0.);
+        force_at_rest *= -1.;
+        if (initial_state.contact_force.size() > 0)
+          force_at_rest += initial_state.contact_force;
+      }
   }
 
 
@@ -33,6 +41,7 @@ namespace Voussoir
                 "damping [J]",
                 "boundary [J]",
                 "material [J]",
+                "closing cracks [J]",
                 "input [J]",
                 "constraints [J]",
                 "unaccounted [J]"},
@@ -42,8 +51,31 @@ namespace Voussoir
   }
 
 
-  EnergyTerms
-  EnergyBalance::terms_at(const State &state)
+  double
+  EnergyBalance::energy_of_branches(const State &state)
+  {
+    // branch i is a spring D_i s K: stored w_n^T K w_(n-1) / (2 D_i / s)
+    const Damping    &damping = equation.damping;
+    const MaxwellStep maxwell(damping, time_step);
+    double            energy = 0.;
+    for (unsigned int i = 0; i < state.memory.size(); ++i)
+      if (damping.coefficients[i] > 0.)
+        {
+          Vector &next = moved_before; // has done its work
+          next.equ(maxwell.decay[i], state.memory[i]);
+          next.add(maxwell.gain[i], state.velocity);
+          energy += 0.5 / damping.coefficients[i] *
+                    equation.internal_force.elastic_work(state.memory[i],
+                                                         next,
+                                                         state.material_memory,
+                                                         true);
+        }
+    return energy;
+  }
+
+
+  const EnergyTerms &
+  EnergyBalance::evaluate(const State &state)
   {
     const InitialState &initial_state = equation.initial;
     moved                             = state.displacement;
@@ -60,6 +92,7 @@ namespace Voussoir
       }
     kinetic += equation.terms.kinetic_energy(state.velocity);
     const EnergyAccounts     &accounts = state.accounts;
+    const PointLosses         lost     = state.material_memory.losses();
     const std::vector<double> sums     = sum_over_ranks(
       std::vector<double>{kinetic,
                               equation.terms.spring_energy(moved, moved_before),
@@ -67,73 +100,43 @@ namespace Voussoir
                               accounts.work_of_forces + accounts.work_of_base,
                               accounts.work_of_projections,
                               accounts.loss_by_mass,
-                              state.material_memory.dissipated()},
+                              accounts.work_on_cells,
+                              lost.material,
+                              lost.closing},
       equation.discretization.grid.communicator());
 
-    EnergyTerms terms;
-    terms.kinetic = sums[0];
-    terms.strain  = equation.internal_force.stored_energy(state.displacement,
-                                                         state.material_memory,
-                                                         initial_state,
-                                                         moved,
-                                                         moved_before) +
-                   sums[1];
-    terms.boundary    = sums[2];
-    terms.input       = sums[3];
-    terms.constraints = sums[4];
-    terms.damping     = sums[5];
-    terms.material    = sums[6];
+    const double in_cells =
+      equation.internal_force.stored_energy(state.displacement,
+                                            state.material_memory,
+                                            initial_state,
+                                            moved,
+                                            moved_before);
+    EnergyTerms &terms = terms_now;
+    terms.kinetic      = sums[0];
+    terms.strain       = in_cells + sums[1];
+    terms.boundary     = sums[2];
+    terms.input        = sums[3];
+    terms.constraints  = sums[4];
+    terms.material     = sums[7];
+    terms.closing      = sums[8];
     // of the work of contact, what its static forces do on the way
     if (initial_state.contact_force.size() > 0)
       terms.constraints -= 0.5 * (initial_state.contact_force * moved +
                                   initial_state.contact_force * moved_before);
-    return terms;
-  }
-
-
-  double
-  EnergyBalance::damping_of_cells(const State &state, EnergyTerms &terms) const
-  {
-    // branch i is a spring D_i s K with a dashpot: stored w^T K w / (2 D_i /
-    // s), lost w^T K w / (D_i tau_i) per time
-    const Damping &damping   = equation.damping;
-    double         loss_rate = 0.;
-    for (unsigned int i = 0; i < state.memory.size(); ++i)
-      if (damping.coefficients[i] > 0.)
-        {
-          const double work =
-            equation.internal_force.damping_work(state.memory[i],
-                                                 state.memory[i],
-                                                 state.material_memory);
-          terms.memory += 0.5 * work / damping.coefficients[i];
-          loss_rate +=
-            work / (damping.coefficients[i] * damping.relaxation_times[i]);
-        }
-    if (damping.stiffness_coefficient > 0.)
-      loss_rate += damping.stiffness_coefficient *
-                   equation.internal_force.damping_work(state.velocity,
-                                                        state.velocity,
-                                                        state.material_memory);
-    return loss_rate;
-  }
-
-
-  const EnergyTerms &
-  EnergyBalance::evaluate(const State &state)
-  {
-    terms_now              = terms_at(state);
-    const double loss_rate = damping_of_cells(state, terms_now);
+    double work_on_cells = sums[6];
+    if (force_at_rest.size() > 0)
+      work_on_cells -=
+        0.5 * (force_at_rest * moved + force_at_rest * moved_before);
+    terms.memory = energy_of_branches(state);
     if (first)
       {
-        initial = terms_now.stored();
-        first   = false;
+        initial          = terms.stored();
+        initial_in_cells = in_cells + terms.memory - work_on_cells;
+        first            = false;
       }
-    else
-      loss_of_cells +=
-        0.5 * (loss_rate + last_loss_rate) * (state.time - last_time);
-    terms_now.damping += loss_of_cells;
-    last_loss_rate = loss_rate;
-    last_time      = state.time;
+    terms.damping = sums[5] + work_on_cells + initial_in_cells - in_cells -
+                    terms.memory - terms.material - terms.closing;
+    most_damping = std::max(most_damping, terms.damping);
 
     largest_turnover =
       std::max({largest_turnover,
@@ -152,6 +155,7 @@ namespace Voussoir
                  terms_now.damping,
                  terms_now.boundary,
                  terms_now.material,
+                 terms_now.closing,
                  terms_now.input,
                  terms_now.constraints,
                  terms_now.error(initial)});
@@ -179,10 +183,17 @@ namespace Voussoir
   std::string
   EnergyBalance::alarm() const
   {
+    constexpr double share = 0.01;
     if (!std::isfinite(terms_now.stored()))
       return "the motion is no longer finite (NaN or infinite)";
     if (terms_now.stored() > 100. * (largest_turnover + 1e-9))
       return "the stored energy has grown to a hundred times all energy that "
+             "came in";
+    if (terms_now.closing < -share * largest_turnover)
+      return "cracks that close have made more than one per cent of all energy "
+             "that came in";
+    if (terms_now.damping < most_damping - share * largest_turnover)
+      return "damping has given back more than one per cent of all energy that "
              "came in";
     return "";
   }
@@ -197,6 +208,7 @@ namespace Voussoir
             {"lost in damping [J]", terms_now.damping},
             {"gone through the boundary [J]", terms_now.boundary},
             {"lost to cracks and plastic flow [J]", terms_now.material},
+            {"lost by cracks that closed [J]", terms_now.closing},
             {"input [J]", terms_now.input},
             {"work of constraints [J]", terms_now.constraints},
             {"initial [J]", initial},
@@ -208,24 +220,22 @@ namespace Voussoir
   nlohmann::json
   EnergyBalance::save() const
   {
-    return {{"loss of cells", loss_of_cells},
-            {"initial", initial},
+    return {{"initial", initial},
+            {"initial in cells", initial_in_cells},
+            {"most damping", most_damping},
             {"largest_turnover", largest_turnover},
-            {"largest_error", largest_error},
-            {"last_time", last_time},
-            {"last_loss_rate", last_loss_rate}};
+            {"largest_error", largest_error}};
   }
 
 
   void
   EnergyBalance::load(const nlohmann::json &saved)
   {
-    loss_of_cells    = saved.at("loss of cells");
     initial          = saved.at("initial");
+    initial_in_cells = saved.at("initial in cells");
+    most_damping     = saved.at("most damping");
     largest_turnover = saved.at("largest_turnover");
     largest_error    = saved.at("largest_error");
-    last_time        = saved.at("last_time");
-    last_loss_rate   = saved.at("last_loss_rate");
     first            = false;
   }
 } // namespace Voussoir

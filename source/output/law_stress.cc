@@ -30,13 +30,10 @@ namespace Voussoir
   {
     const auto strain_of_law =
       material->strain_of_law(strain, initial_strain, temperature);
-    if (history == nullptr || !history->is_active(place.batch, q))
+    const double band = history == nullptr ? 0. : history->band(place, q);
+    if (band == 0.)
       return material->stress(strain_of_law);
     std::vector<double> memory = history->read(place, q);
-    return material
-      ->respond(strain_of_law,
-                memory.data(),
-                {history->element_length(place.batch)[place.lane], 0.})
-      .stress;
+    return material->respond(strain_of_law, memory.data(), {band, 0.}).stress;
   }
 } // namespace Voussoir

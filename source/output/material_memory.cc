@@ -20,18 +20,12 @@ namespace Voussoir
       for (const auto &[cell, place] : history.cells())
         for (unsigned int q = 0; q < history.n_points(); ++q)
           {
-            // lanes of one batch are active together
-            const std::vector<double> memory = history.read(place, q);
-            const bool                active =
-              std::any_of(memory.begin(), memory.end(), [](const double value) {
-                return value != 0.;
-              });
+            const double band = history.band(place, q);
             visit(cell,
-                  active,
-                  active ? material.outputs(memory.data(),
-                                            history.element_length(
-                                              place.batch)[place.lane]) :
-                           nothing);
+                  band > 0.,
+                  band > 0. ?
+                    material.outputs(history.read(place, q).data(), band) :
+                    nothing);
           }
     }
   } // namespace
@@ -92,7 +86,7 @@ namespace Voussoir
                          for (unsigned int i = 0; i < names.size(); ++i)
                            largest[i] = std::max(largest[i], outputs[i]);
                        });
-        volumes[2] = history->dissipated;
+        volumes[2] = history->losses.material;
         volumes    = sum_over_ranks(volumes, communicator);
         auto &item = result[material_names[m]];
         item["share of the volume that left the elastic range"] =

@@ -19,8 +19,9 @@ namespace Voussoir
                    leap_frog)
     , mass_coefficient(equation.damping.mass_coefficient)
     , stiffness_coefficient(equation.damping.stiffness_coefficient)
-    , damped(equation.damping.n_branches() > 0 || stiffness_coefficient != 0.)
-    , uniform(equation.internal_force.uniform_damping() || !damped)
+    , uniform(
+        equation.internal_force.uniform_damping() ||
+        (equation.damping.n_branches() == 0 && stiffness_coefficient == 0.))
     , forces(equation.terms.nodes.size())
     , force(equation.discretization.create_vector())
     , effective(force)
@@ -100,9 +101,9 @@ namespace Voussoir
       force,
       effective,
       uniform ? nullptr : &memory,
-      uniform && damped ? state.displacement : effective,
+      state.displacement,
       state.material_memory,
-      time_step,
+      {time_step, equation.closing_viscosity},
       [&](const unsigned int begin, const unsigned int end) {
         update_memory(state, begin, end);
       },
@@ -116,9 +117,35 @@ namespace Voussoir
 
     // contact: u_(n+1) += dt^2 M^-1 R^T p
     project(state, base);
+    state.accounts.work_on_cells +=
+      half_work(state, 0, force.locally_owned_size());
 
     for (NodalLoad *load : equation.loads)
       load->end_step(state);
+  }
+
+
+  double
+  CentralDifference::half_work(const State       &state,
+                               const unsigned int begin,
+                               const unsigned int end) const
+  {
+    const double *v = state.velocity.begin(), *f = force.begin();
+    Lanes         sums = 0.;
+    unsigned int  i    = begin;
+    for (; i + Lanes::size() <= end; i += Lanes::size())
+      {
+        Lanes a, b;
+        a.load(f + i);
+        b.load(v + i);
+        sums += a * b;
+      }
+    double sum = 0.;
+    for (; i < end; ++i)
+      sum += f[i] * v[i];
+    for (const double part : sums)
+      sum += part;
+    return 0.5 * time_step * sum;
   }
 
 
@@ -222,9 +249,15 @@ namespace Voussoir
             }
       }
 
+    const double viscosity = equation.damping.mesh_viscosity;
+    if (uniform)
 #pragma GCC ivdep
-    for (unsigned int i = begin; i < end; ++i)
-      e[i] = uniform ? e[i] + u[i] : u[i];
+      for (unsigned int i = begin; i < end; ++i)
+        e[i] += u[i] + viscosity * v[i];
+    else
+#pragma GCC ivdep
+      for (unsigned int i = begin; i < end; ++i)
+        e[i] = u[i] + viscosity * v[i];
 
     // the internal force is added to minus the steady one
     if (equation.initial.force.size() > 0)
@@ -249,6 +282,7 @@ namespace Voussoir
     double       *u       = state.displacement.begin();
     const double *f       = force.begin();
     const double *inverse = equation.mass.inverse.begin();
+    state.accounts.work_on_cells += half_work(state, begin, end);
 
     if (equation.base == nullptr && mass_coefficient == 0.)
       {

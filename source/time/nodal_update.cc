@@ -10,6 +10,8 @@ namespace Voussoir
                            const double      mass_coefficient,
                            const LeapFrog   &leap_frog)
     : terms(terms)
+    , mass(mass)
+    , mass_coefficient(mass_coefficient)
     , leap_frog(leap_frog)
     , inverse(terms.nodes.size())
     , masses(terms.nodes.size())
@@ -95,8 +97,20 @@ namespace Voussoir
         state.accounts.work_of_forces += time_step * (applied[slot] * mean);
         state.accounts.loss_in_dashpots +=
           time_step * (mean * (dashpots * leap_frog.damped(last, next)));
+        // the sweep counted these on the motion without terms
+        const Tensor<1, 3> swept        = node_value(state.velocity, node);
+        const Tensor<1, 3> damped       = leap_frog.damped(last, next),
+                           damped_swept = leap_frog.damped(last, swept);
         for (unsigned int d = 0; d < 3; ++d)
           {
+            const unsigned int entry = 3 * node + d;
+            state.accounts.work_of_base -= 0.5 * time_step *
+                                           mass.driven.local_element(entry) *
+                                           base[d] * (next[d] - swept[d]);
+            state.accounts.loss_by_mass +=
+              time_step * mass_coefficient * mass.mass.local_element(entry) *
+              (mean[d] * damped[d] -
+               0.5 * (swept[d] + last[d]) * damped_swept[d]);
             state.velocity.local_element(3 * node + d) = next[d];
             state.displacement.local_element(3 * node + d) =
               last_displacement[slot][d] + time_step * next[d];

@@ -1,6 +1,8 @@
 #include <voussoir/fem/nodal_values.h>
+#include <voussoir/materials/crack_normal.h>
 #include <voussoir/materials/point_test.h>
 
+#include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/physics/transformations.h>
 
@@ -214,8 +216,9 @@ namespace Voussoir
         // a rough field that grows: SIMD lanes against points by themselves
         Vector force = discretization.create_vector(), u = force, plain = force;
         std::map<std::pair<unsigned int, unsigned int>, std::vector<double>>
-               histories;
-        double worst = 0.;
+                                                                histories;
+        std::map<std::pair<unsigned int, unsigned int>, double> bands;
+        double                                                  worst = 0.;
         for (unsigned int step = 1; step <= 6; ++step)
           {
             for (unsigned int node = 0; node < discretization.n_owned_nodes();
@@ -228,7 +231,7 @@ namespace Voussoir
                     std::sin(3. * x[d] + 2. * x[(d + 1) % 3] + d);
               }
             internal.respond(force, u, memory);
-            respond_plainly(*simulation, u, plain, histories);
+            respond_plainly(*simulation, u, plain, histories, bands);
             plain -= force;
             worst = std::max(worst, plain.linfty_norm() / force.linfty_norm());
           }
@@ -301,15 +304,35 @@ namespace Voussoir
       }
 
 
+      /** Width of the band of a crack in a cell: Oliver's formula as it is
+       *  written, over the corner functions at the centre. */
+      static double
+      width_across(const Triangulation<3>::active_cell_iterator &cell,
+                   const unsigned int                            degree,
+                   const Tensor<1, 3>                           &normal)
+      {
+        const FE_Q<3>      corners(1);
+        const QMidpoint<3> centre;
+        FEValues<3>        values(corners, centre, update_gradients);
+        values.reinit(cell);
+        double sum = 0.;
+        for (const unsigned int a : values.dof_indices())
+          sum += std::abs(normal * values.shape_grad(a, 0));
+        return 2. / (sum * degree);
+      }
+
+
       /** The internal force from points by themselves; of cells with one point,
        *  which sees their mean strain, what it differs by from the elastic one.
        */
       void
-      respond_plainly(const Simulation              &simulation,
-                      const Vector                  &u,
-                      Vector                        &result,
-                      std::map<std::pair<unsigned int, unsigned int>,
-                               std::vector<double>> &histories) const
+      respond_plainly(
+        const Simulation &simulation,
+        const Vector     &u,
+        Vector           &result,
+        std::map<std::pair<unsigned int, unsigned int>, std::vector<double>>
+                                                                &histories,
+        std::map<std::pair<unsigned int, unsigned int>, double> &bands) const
       {
         const Discretization &discretization = simulation.model.discretization;
         const auto           &fe             = discretization.fe;
@@ -348,13 +371,20 @@ namespace Voussoir
               {
                 auto &history = histories[{cell->active_cell_index(), q}];
                 history.resize(material.n_history());
-                Tensor2 stress = material
-                                   .respond(strains[q],
-                                            history.data(),
-                                            {std::cbrt(cell->measure()) /
-                                               discretization.degree,
-                                             1e300})
-                                   .stress;
+                // of the crack that would open, until one has opened
+                double &band = bands[{cell->active_cell_index(), q}];
+                if (std::all_of(history.begin(),
+                                history.end(),
+                                [](const double number) {
+                                  return number == 0.;
+                                }))
+                  band =
+                    width_across(cell,
+                                 discretization.degree,
+                                 crack_normal(material.stress(strains[q])));
+                Tensor2 stress =
+                  material.respond(strains[q], history.data(), {band, 1e300})
+                    .stress;
                 if (one_point)
                   stress -= material.stress(strains[q]);
                 for (const unsigned int i : values.dof_indices())

@@ -162,7 +162,8 @@ namespace Voussoir
             largest = std::max(largest, sum / (window / 10));
           }
         return {largest,
-                simulation.run.state.material_memory.dissipated() / thickness};
+                simulation.run.state.material_memory.losses().material /
+                  thickness};
       }
     };
 

@@ -37,7 +37,7 @@ namespace Voussoir
     const Modes                 &modes;
     const ResultFolder          &folder;
     Log                         &log;
-    const Damping                damping;
+    Damping                      damping;
     const TimeStep               time_step;
     Earthquake                   earthquake;
     std::unique_ptr<WaterMotion> water;   // compressible, or null

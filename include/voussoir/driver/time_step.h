@@ -13,11 +13,12 @@ namespace Voussoir
     /**
      * Finds the limits and chooses the step by the section "Time" of the case.
      * Throws UserError if the step that the case gives is above the limit.
+     * Where materials have a memory the damping gets its mesh viscosity.
      *
      * @param kept step of a checkpoint, which is taken instead [s]
      */
     TimeStep(const Model                 &model,
-             const Damping               &damping,
+             Damping                     &damping,
              const std::optional<double> &kept,
              Log                         &log);
 
@@ -25,10 +26,11 @@ namespace Voussoir
     unsigned long long
     steps_to(const double time) const;
 
-    double undamped_limit; // [s], 0 where damping does not change it
-    double limit;          // [s]
-    double length;         // [s]
-    bool   central;        // see LeapFrog
+    double undamped_limit;         // [s], 0 where damping does not change it
+    double closing_viscosity = 0.; // c of DampedResponse [s]
+    double limit;                  // [s]
+    double length;                 // [s]
+    bool   central;                // see LeapFrog
 
     LeapFrog
     leap_frog() const

@@ -13,6 +13,13 @@ namespace Voussoir
     unsigned int                      begin, end;
   };
 
+  /** A step of time as points with memory see it. */
+  struct PointStep
+  {
+    double length;                 // [s]
+    double closing_viscosity = 0.; // c of DampedResponse [s]
+  };
+
   /**
    * What a material does with a run of cell batches: the only virtual call of
    * the cell loop. All vectors that are read must have their ghost values.
@@ -45,8 +52,7 @@ namespace Voussoir
      *
      * @param undamped  u_0 [m], by whose strain the law goes; it is @p
      *   displacement itself, or differs from it by damping memory that it
-     * contains
-     * @param time_step [s]
+     *   contains
      */
     virtual void
     add_response(const CellRange        &cells,
@@ -56,7 +62,7 @@ namespace Voussoir
                  const Vector           *damping_memory,
                  const Vector           &undamped,
                  PointHistory           &history,
-                 const double            time_step) const = 0;
+                 const PointStep        &step) const = 0;
 
     /**
      * Lets the history know the static displacement u_s [m] and the temperature
@@ -72,8 +78,9 @@ namespace Voussoir
                      const Vector           &temperature) const = 0;
 
     /**
-     * Energy stored at the points that have left the elastic range [J], less
-     * what the forces of the static state do.
+     * Energy stored since the static state at the points that have left the
+     * elastic range [J], less what the forces of that state do, half a step
+     * before the displacement.
      *
      * @param u_static         displacement of the static state, or empty
      * @param history_at_start memory of that state; null if there is none
@@ -97,15 +104,9 @@ namespace Voussoir
                       Vector                 &force,
                       const Vector           &temperature) const = 0;
 
-    /** How points that have left the elastic range count in an integral. */
-    enum class Inelastic
-    {
-      not_at_all,
-      by_damping_share
-    };
-
     /**
-     * Integral of k D epsilon(u) : epsilon(v) [J].
+     * Integral of k D epsilon(u) : epsilon(v) over the points that are elastic
+     * [J].
      *
      * @param history memory of the material; null: all of it is elastic
      */
@@ -114,8 +115,7 @@ namespace Voussoir
          const StiffnessFactors &factors,
          const Vector           &u,
          const Vector           &v,
-         const PointHistory     *history,
-         const Inelastic         inelastic) const = 0;
+         const PointHistory     *history) const = 0;
 
     /**
      * Largest eigenvalue of M^-1 K of each cell of a batch by itself [1/s2].

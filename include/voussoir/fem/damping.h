@@ -19,6 +19,7 @@ namespace Voussoir
     double                    highest_frequency = 20.;
     unsigned int              branches          = 3;
     double                    reference         = 3.;
+    double                    mesh_viscosity    = 0.06;
     std::vector<unsigned int> modes;
 
     void
@@ -53,8 +54,18 @@ namespace Voussoir
     /** Stiffness-proportional coefficient beta [s]. */
     double stiffness_coefficient = 0.;
 
+    /** Viscosity of what the mesh does not carry [s]: it acts on the velocity
+     * as the stiffness-proportional coefficient, whatever the material's
+     * factor, and under every model. See DampingParameters::mesh_viscosity. */
+    double mesh_viscosity = 0.;
+
     /** Maxwell branches: D_i and tau_i [s]. */
     std::vector<double> coefficients, relaxation_times;
+
+    /** Sets the mesh viscosity by the parameters, for a mesh whose undamped
+     *  stable step is @p undamped_limit [s]. */
+    void
+    add_mesh_viscosity(const double undamped_limit);
 
     /** Vectors of damping memory that a state has. */
     unsigned int

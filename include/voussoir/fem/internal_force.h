@@ -55,12 +55,12 @@ namespace Voussoir
 
     /**
      * force = f(displacement + s damping_memory) by the materials' laws, which
-     * see the strain of @p undamped and whose @p memory goes on by @p time_step
-     * (if it is empty, with the elastic moduli), with @p before and @p after
-     * called once for every owned entry: before it is first read, after its
-     * last contribution has arrived (on one rank; across ranks the library
-     * orders the exchange accordingly). @p before may still change the source
-     * vectors.
+     * have the strain of @p undamped without damping and whose @p memory goes
+     * one @p step on (if it is empty, with the elastic moduli), with @p before
+     * and @p after called once for every owned entry: before it is first read,
+     * after its last contribution has arrived (on one rank; across ranks the
+     * library orders the exchange accordingly). @p before may still change the
+     * source vectors.
      */
     void
     sweep(Vector          &force,
@@ -68,7 +68,7 @@ namespace Voussoir
           const Vector    *damping_memory,
           const Vector    &undamped,
           MaterialMemory  &memory,
-          const double     time_step,
+          const PointStep &step,
           const RangeWork &before,
           const RangeWork &after) const;
 
@@ -106,12 +106,17 @@ namespace Voussoir
     void
     add_thermal_force(Vector &force, const Vector &temperature) const;
 
-    /** Integral of the damping factor times k D epsilon(u) : epsilon(v), of
-     *  which damage leaves a share [J]. */
+    /**
+     * Integral of k D epsilon(u) : epsilon(v) over all points that are elastic
+     * [J].
+     *
+     * @param by_damping_factor whether each material counts by that
+     */
     double
-    damping_work(const Vector         &u,
+    elastic_work(const Vector         &u,
                  const Vector         &v,
-                 const MaterialMemory &memory) const;
+                 const MaterialMemory &memory,
+                 const bool            by_damping_factor) const;
 
     /** Largest eigenvalue of M^-1 K of each cell of a batch; see
      *  CellKernel::element_eigenvalues. */

@@ -9,6 +9,84 @@
 namespace Voussoir
 {
   /**
+   * What an integration point that has left the elastic range remembers beside
+   * the numbers of its law: its crack, and its last step, to which the energy
+   * of the next one refers. See DampedResponse.
+   */
+  struct ActivePoint
+  {
+    Lanes band = 0.;                    // width of the crack band [m]; 0: none
+    dealii::Tensor<1, 3, Lanes> normal; // across the crack
+
+    SymmetricTensor3<Lanes> strain;      // B u [1]
+    SymmetricTensor3<Lanes> seen;        // by the law, e [1]
+    SymmetricTensor3<Lanes> plastic;     // e_p [1]
+    SymmetricTensor3<Lanes> stress;      // of the law [Pa]
+    Lanes                   share  = 1.; // b [1]
+    Lanes                   impact = 0.; // across a crack that closes [Pa]
+  };
+
+
+  /** Energy that has been lost at the points since the start, of this rank [J]:
+   *  by the law in cracks and plastic flow, and by cracks that close. */
+  struct PointLosses
+  {
+    double material = 0., closing = 0.;
+
+    PointLosses &
+    operator+=(const PointLosses &other)
+    {
+      material += other.material;
+      closing += other.closing;
+      return *this;
+    }
+  };
+
+
+  /**
+   * The shape of the cells of a batch as cracks see it: the width of the band
+   * that a crack with the normal n takes (Oliver 1989),
+   *   l(n) = 2 / sum_a |n . grad N_a|
+   * over the corner functions at the centre, divided by the degree. As these
+   * gradients are (+-r_1 +-r_2 +-r_3)/8 with the gradients r of the unit
+   * coordinates, the sum is that of |+-n.r_1 +-n.r_2 +-n.r_3| over four choices
+   * of signs, divided by four.
+   */
+  class CrackBands
+  {
+  public:
+    CrackBands() = default;
+
+    /** Takes the shape of a cell into one lane. */
+    void
+    set_lane(const unsigned int lane,
+             const Grid::Cell  &cell,
+             const unsigned int degree);
+
+    /** l(n) [m]. */
+    Lanes
+    across(const dealii::Tensor<1, 3, Lanes> &normal) const
+    {
+      const Lanes a = normal * gradients[0], b = normal * gradients[1],
+                  c = normal * gradients[2];
+      return 8. / (std::abs(a + b + c) + std::abs(a + b - c) +
+                   std::abs(a - b + c) + std::abs(a - b - c));
+    }
+
+    /** The largest of all normals: the longest diagonal of a face [m]. */
+    Lanes widest = 1.;
+
+    /** The band of a crack across the longest edge of a cell [m]. */
+    static double
+    along_edges(const Grid::Cell &cell, const unsigned int degree);
+
+  private:
+    // of the unit coordinates, times the degree [1/m]
+    std::array<dealii::Tensor<1, 3, Lanes>, 3> gradients;
+  };
+
+
+  /**
    * What the integration points of the cells of one material remember: the
    * numbers of its law, which begin at zero, in SIMD lanes. Copies share what
    * no step changes: the places of the points and their static strains.
@@ -62,22 +140,29 @@ namespace Voussoir
       return active[index(batch, q)] != 0;
     }
 
-    void
-    activate(const unsigned int batch, const unsigned int q)
+    /** What such a point remembers. */
+    ActivePoint &
+    active_point(const unsigned int batch, const unsigned int q)
     {
-      active[index(batch, q)] = 1;
+      return active_points[active[index(batch, q)] - 1];
     }
 
-    /** Width of the band in which a crack lives: the edge of a cube of the
-     *  cell's volume over the degree of the elements [m]. */
-    static double
-    element_length_of(const Grid::Cell &cell, const unsigned int degree);
-
-    /** That of the cells of a batch [m]. */
-    const Lanes &
-    element_length(const unsigned int batch) const
+    const ActivePoint &
+    active_point(const unsigned int batch, const unsigned int q) const
     {
-      return points->lengths[points->slot_of_batch[batch]];
+      return active_points[active[index(batch, q)] - 1];
+    }
+
+    void
+    activate(const unsigned int batch,
+             const unsigned int q,
+             const ActivePoint &point);
+
+    /** Shape of the cells of a batch. */
+    const CrackBands &
+    bands(const unsigned int batch) const
+    {
+      return points->bands[points->slot_of_batch[batch]];
     }
 
     /** Strain offset e_0, which the law sees beside the strain of the
@@ -119,19 +204,6 @@ namespace Voussoir
     void
     make_static_strains();
 
-    /** Share of the stress of damping that damage has left. */
-    Lanes &
-    damping_share(const unsigned int batch, const unsigned int q)
-    {
-      return damping_shares[index(batch, q)];
-    }
-
-    const Lanes &
-    damping_share(const unsigned int batch, const unsigned int q) const
-    {
-      return damping_shares[index(batch, q)];
-    }
-
     /** Cells of this material on this rank, with their places. */
     const std::vector<std::pair<Discretization::Cell, Place>> &
     cells() const;
@@ -139,6 +211,11 @@ namespace Voussoir
     /** Place of a cell of this material. */
     Place
     place_of(const Discretization::Cell &cell) const;
+
+    /** Width of the crack band of one point of one cell [m]; zero if it is
+     *  elastic. */
+    double
+    band(const Place &place, const unsigned int q) const;
 
     /** The numbers of one point of one cell. */
     std::vector<double>
@@ -152,9 +229,8 @@ namespace Voussoir
     void
     load();
 
-    /** Energy lost to cracks and plastic flow since the start, this rank's [J].
-     */
-    double dissipated = 0.;
+    /** Since the start. */
+    PointLosses losses;
 
   private:
     /** Where the points are. */
@@ -164,7 +240,7 @@ namespace Voussoir
       std::vector<unsigned int>                           slot_of_batch;
       std::vector<std::pair<Discretization::Cell, Place>> cells;
       std::vector<unsigned int>                           item_of_cell;
-      dealii::AlignedVector<Lanes>                        lengths; // by slot
+      dealii::AlignedVector<CrackBands>                   bands; // by slot
     };
 
     /** What the static state leaves at the points. */
@@ -185,9 +261,13 @@ namespace Voussoir
     unsigned int                   n_numbers; // of a point
     std::shared_ptr<const Points>  points;
     std::shared_ptr<StaticStrains> static_strains;
-    dealii::AlignedVector<Lanes>   numbers, damping_shares;
-    std::vector<char>              active;
-    std::vector<double>            packed;
+    dealii::AlignedVector<Lanes>   numbers;
+
+    // place among the points that have left the elastic range, from one; or 0
+    std::vector<unsigned int>          active;
+    dealii::AlignedVector<ActivePoint> active_points;
+
+    std::vector<double> packed;
   };
 
 
@@ -216,13 +296,13 @@ namespace Voussoir
     bool
     empty() const;
 
-    /** Energy lost to cracks and plastic flow so far, this rank's [J]. */
-    double
-    dissipated() const;
+    /** Energy lost so far. */
+    PointLosses
+    losses() const;
 
-    /** Counts the energy lost on from here. */
+    /** Counts on from here. */
     void
-    set_dissipated(const double energy);
+    set_losses(const PointLosses &losses);
 
   private:
     std::vector<PointHistory> histories; // of each material

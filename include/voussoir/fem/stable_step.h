@@ -11,8 +11,9 @@ namespace Voussoir
   /**
    * What limits the time step beside the mass and the stiffness of the cells:
    * the scheme is stable up to the dt at which the largest eigenvalue of
-   *   M^-1 [ sum_m (1 + s_m gamma(dt)) K_m + diagonal terms ]
-   * reaches 4/dt^2, with the damping factor s_m of each material.
+   *   M^-1 [ sum_m (1 + s_m gamma(dt) + 2 beta/dt) K_m + diagonal terms ]
+   * reaches 4/dt^2, with the damping factor s_m of each material and the mesh
+   * viscosity beta.
    */
   struct StepLimits
   {
@@ -24,6 +25,9 @@ namespace Voussoir
     std::function<
       void(Vector &force, const Vector &displacement, const double dt)>
       add_diagonal;
+
+    /** Damping::mesh_viscosity [s]. */
+    double mesh_viscosity = 0.;
   };
 
   /**

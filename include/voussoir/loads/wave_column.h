@@ -113,7 +113,7 @@ namespace Voussoir
     std::vector<double>                                  mass; // [kg/m2]
     dealii::Tensor<1, 3>                                 impedance;
     double                                               mass_coefficient;
-    double                                               stiffness_coefficient;
+    double stiffness_coefficient, mesh_viscosity;
 
     // motion of the step (u_n and the velocity in the middle of its two half
     // steps) and what the next one starts from

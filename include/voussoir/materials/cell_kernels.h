@@ -21,10 +21,6 @@ namespace Voussoir
     constexpr bool is_one_point =
       std::is_same_v<std::decay_t<Cell>, OnePointCell>;
 
-    /** Load level from which a law with memory itself is asked: below one, as
-     *  damping adds to the stress or takes from it. */
-    constexpr double watched = 0.8;
-
     /** Calls work(cell) with the kind of cells of the discretization. */
     template <typename Work>
     void
@@ -124,7 +120,7 @@ namespace Voussoir
                  const double            damping_factor,
                  const Vector           &undamped,
                  PointHistory           &history,
-                 const double            time_step)
+                 const PointStep        &step)
     {
       const DampedResponse<Law> response(law, factors);
       const double              stress_factor = factors.stress;
@@ -132,12 +128,12 @@ namespace Voussoir
       const bool                damped =
         damping_memory != nullptr || &undamped != &displacement;
       with_cells(matrix_free, [&](auto &&cell) {
-        // the law goes by the strain without damping
+        // damping does not reach into cracks
         std::decay_t<decltype(cell)> undamped_cell(matrix_free);
         auto                        &own = damped ? undamped_cell : cell;
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
           {
-            const Lanes length = history.element_length(batch);
+            const Lanes widest = history.bands(batch).widest;
             cell.reinit(batch);
             read_filtered(cell, displacement, damping_memory, damping_factor);
             cell.evaluate(dealii::EvaluationFlags::gradients);
@@ -148,9 +144,10 @@ namespace Voussoir
                   stress_factor * law.stress(cell.get_symmetric_gradient(q));
                 SymmetricTensor3<Lanes> trial = stress;
                 if (history.has_static_strains())
-                  trial += law.stress(history.strain_offset(batch, q));
+                  trial +=
+                    law.stress(response.elastic_offset(batch, q, history));
                 if (history.is_active(batch, q) ||
-                    any_above(law.load_level(trial, length), watched))
+                    any_above(law.load_level(trial, widest), 1.))
                   {
                     if (!knows_own)
                       {
@@ -166,7 +163,7 @@ namespace Voussoir
                       q,
                       matrix_free.n_active_entries_per_cell_batch(batch),
                       cell.JxW(q),
-                      time_step,
+                      step,
                       history);
                   }
                 cell.submit_symmetric_gradient(stress, q);
@@ -256,15 +253,13 @@ namespace Voussoir
                   SymmetricTensor3<Lanes> static_strain;
                   if (from_static_state)
                     static_strain = cell_static.get_symmetric_gradient(q);
-                  sum +=
-                    response.stored_energy(cell.get_symmetric_gradient(q),
-                                           from_static_state ? &static_strain :
-                                                               nullptr,
-                                           batch,
-                                           q,
-                                           history,
-                                           history_at_start) *
-                    cell.JxW(q);
+                  sum += response.stored_energy(cell.get_symmetric_gradient(q),
+                                                static_strain,
+                                                batch,
+                                                q,
+                                                history,
+                                                history_at_start) *
+                         cell.JxW(q);
                 }
             total += sum_of_cells(cells.matrix_free, batch, sum);
           }
@@ -309,13 +304,12 @@ namespace Voussoir
     /** CellKernel::work. */
     template <typename Law>
     double
-    work(const Law                  &law,
-         const CellRange            &cells,
-         const double                stress_factor,
-         const Vector               &u,
-         const Vector               &v,
-         const PointHistory         *history,
-         const CellKernel::Inelastic inelastic)
+    work(const Law          &law,
+         const CellRange    &cells,
+         const double        stress_factor,
+         const Vector       &u,
+         const Vector       &v,
+         const PointHistory *history)
     {
       const auto &matrix_free = cells.matrix_free;
       double      total       = 0.;
@@ -342,9 +336,12 @@ namespace Voussoir
                              other->get_symmetric_gradient(q) * cell_u.JxW(q);
                 if (Law::n_history > 0 && history != nullptr &&
                     history->is_active(batch, q))
-                  part *= inelastic == CellKernel::Inelastic::not_at_all ?
-                            Lanes(0.) :
-                            history->damping_share(batch, q);
+                  part = dealii::compare_and_apply_mask<
+                    dealii::SIMDComparison::equal>(
+                    history->active_point(batch, q).band,
+                    Lanes(0.),
+                    part,
+                    Lanes(0.));
                 sum += part;
               }
             if constexpr (is_one_point<decltype(cell_u)>)

@@ -1,8 +1,8 @@
 #ifndef voussoir_materials_damped_response_h
 #define voussoir_materials_damped_response_h
 
-#include <voussoir/fem/point_history.h>
-#include <voussoir/fem/stiffness_factors.h>
+#include <voussoir/fem/cell_kernel.h>
+#include <voussoir/materials/crack_normal.h>
 #include <voussoir/materials/law.h>
 
 namespace Voussoir
@@ -11,27 +11,41 @@ namespace Voussoir
    * What a point of a law with memory does under a damping model. With
    *
    *   u    displacement [m], B u its strain [1]
-   *   w    damping memory [m]: filters that follow u, times the damping factor
+   *   w    damping memory [m]: filters that follow u, times the damping factor,
+   *        and the viscosity of what the mesh does not carry
    *   D    elastic stiffness of the law [Pa]
    *   k    factor on the stress, StiffnessFactors::stress
    *   m    factor on the strain, StiffnessFactors::strain
    *   e_0  strain offset [1]: what the static factor and temperature do
    *   e_s  elastic strain of the static state [1], which damping leaves out
    *   e_p  plastic strain of the law [1]
-   *   b    share that damage leaves of the stress of damping [1]
+   *   b    share that damage has left of damping [1]
    *
-   * the law sees e = m B u + e_0, without damping, and answers sigma(e).
-   * Damping acts on the elastic strain since the static state by a stress of
-   * its own:
+   * the law sees the strain that makes the whole stress of an elastic point,
    *
-   *   sigma(e) - D : (e_0 - (k - m) e_s)
-   *            + b D : [k B w + (k - m) (B u - e_p - e_s)] .
+   *   e = m B u + e_0 + b [ (k - m) (B u - e_p - e_s) + k B w ] ,
    *
-   * As long as the law is elastic, that is k D : B (u + w). With b go the
-   * energies that these stresses have stored; that of the filters is at least
-   * k B w : D : B w / (2 sum D_i), with the sum of the springs' factors D_i,
-   * StiffnessFactors::filters, and comes to this for a fast crack, which all
-   * filters follow.
+   * so that it fails at its strength at any rate, and the stress is
+   *
+   *   sigma(e) - D : (e_0 - (k - m) e_s) + s n n ,
+   *
+   * which as long as the law is elastic is k D : B (u + w). In a crack damping
+   * must not pull: b is the fourth power of what damage has left of the
+   * stiffness, before this step.
+   *
+   * A crack that closes is an impact: the two stiffnesses of a unilateral crack
+   * make energy of the oscillations between them, at any time step. While it is
+   * closed, is about to close or has just opened by the traction of its
+   * effective stress across the crack, a viscosity c acts on that traction,
+   *   s = c d(n . D : B u . n)/dt ,
+   * never in a crack that stays open.
+   *
+   * Central differences integrate the stress by the trapezoidal rule. With the
+   * energy sigma : e_e / 2 of the elastic strain e_e, a step from a to b hence
+   * loses exactly
+   *   L = (sigma_a : e_e,b - sigma_b : e_e,a)/2 + (sigma_a + sigma_b) : d
+   * e_p/2, of which the law itself counts its dissipation; the rest is what
+   * closing takes beside s, or makes. The difference of B u and e is damping's.
    */
   template <typename Law>
   class DampedResponse
@@ -41,8 +55,18 @@ namespace Voussoir
       : law(law)
       , k(factors.stress)
       , m(factors.strain)
-      , filter_stiffness(factors.filters)
+      , difference(k - m)
     {}
+
+    /** Strain by which the law's elastic stress is above the stress. */
+    SymmetricTensor3<Lanes>
+    elastic_offset(const unsigned int  batch,
+                   const unsigned int  q,
+                   const PointHistory &history) const
+    {
+      return history.strain_offset(batch, q) -
+             difference * history.static_strain(batch, q);
+    }
 
     /**
      * Lets the memory of point @p q of the cells of a batch go one step on, and
@@ -61,51 +85,84 @@ namespace Voussoir
             const unsigned int             q,
             const unsigned int             n_cells,
             const Lanes                   &weight,
-            const double                   time_step,
+            const PointStep               &step,
             PointHistory                  &history) const
     {
-      SymmetricTensor3<Lanes> strain = m * own_strain, offset, elastic_static;
+      const bool        was_active = history.is_active(batch, q);
+      const ActivePoint last =
+        was_active ? history.active_point(batch, q) : ActivePoint();
+      ActivePoint now = last;
+
+      SymmetricTensor3<Lanes> offset, elastic_static;
       if (history.has_static_strains())
         {
           offset         = history.strain_offset(batch, q);
           elastic_static = history.static_strain(batch, q);
-          strain += offset;
         }
+      const SymmetricTensor3<Lanes> filter = filtered - own_strain;
+      now.strain                           = own_strain;
+      now.seen                             = m * own_strain + offset +
+                 last.share *
+                   (difference * (own_strain - last.plastic - elastic_static) +
+                    k * filter);
+
+      find_bands(last.band, history.bands(batch), now);
       Lanes     *values = history.values(batch, q);
       const auto response =
-        law.respond(strain,
+        law.respond(now.seen,
                     values,
-                    PointSituation<Lanes>{history.element_length(batch),
-                                          time_step});
+                    PointSituation<Lanes>{now.band, step.length});
+      const auto square = response.damping_share * response.damping_share;
+      now.share         = square * square;
+      now.plastic       = now.seen - response.elastic_strain;
+      now.stress        = response.stress;
 
-      const double                  difference = k - m;
-      const SymmetricTensor3<Lanes> stretch =
-        own_strain - (strain - response.elastic_strain) - elastic_static;
-      const SymmetricTensor3<Lanes> filter        = filtered - own_strain,
-                                    filter_stress = k * law.stress(filter),
-                                    stretch_stress =
-                                      difference * law.stress(stretch);
-      const Lanes before = history.damping_share(batch, q),
-                  now    = response.damping_share;
-      Lanes lost =
-        response.dissipation +
-        0.5 * (before + now) * (stretch_stress * response.plastic_increment) +
-        0.5 * (before - now) * (stretch_stress * stretch);
-      if (filter_stiffness > 0.)
-        lost +=
-          0.5 * (before - now) * (filter_stress * filter) / filter_stiffness;
+      // the law's numbers stay zero while it is elastic
+      Lanes begins = 0.;
+      for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+        if (last.band[lane] == 0.)
+          {
+            bool elastic = true;
+            for (unsigned int i = 0; i < Law::n_history; ++i)
+              elastic = elastic && values[i][lane] == 0.;
+            if (elastic)
+              now.band[lane] = 0.;
+            else
+              begins[lane] = 1.;
+          }
 
-      history.damping_share(batch, q) = now;
+      const SymmetricTensor3<Lanes> change = own_strain - last.strain;
+      if (was_active)
+        now.impact = impact(law.stress(change),
+                            law.stress(response.elastic_strain),
+                            last,
+                            now,
+                            step);
+
+      const Lanes lost    = response.dissipation;
+      Lanes       closing = 0.;
+      if (was_active)
+        closing =
+          0.5 * (last.stress * response.elastic_strain -
+                 now.stress * (last.seen - last.plastic) +
+                 (last.stress + now.stress) * (now.plastic - last.plastic) +
+                 (last.impact + now.impact) *
+                   (now.normal * (change * now.normal))) -
+          lost;
       for (unsigned int lane = 0; lane < n_cells; ++lane)
-        history.dissipated += lost[lane] * weight[lane];
-      if (!history.is_active(batch, q))
-        for (unsigned int lane = 0; lane < n_cells; ++lane)
-          for (unsigned int i = 0; i < Law::n_history; ++i)
-            if (values[i][lane] != 0.)
-              history.activate(batch, q);
-      return response.stress -
-             law.stress(offset - difference * elastic_static) +
-             now * (filter_stress + stretch_stress);
+        if (now.band[lane] > 0.)
+          {
+            history.losses.material += weight[lane] * lost[lane];
+            // the first step begins somewhere below the limit
+            if (begins[lane] == 0.)
+              history.losses.closing += weight[lane] * closing[lane];
+          }
+
+      if (was_active)
+        history.active_point(batch, q) = now;
+      else if (any_above(begins, 0.))
+        history.activate(batch, q, now);
+      return total(now) - law.stress(offset - difference * elastic_static);
     }
 
     /**
@@ -131,69 +188,140 @@ namespace Voussoir
         offset[d][d] -= static_factor * expansion * temperature[d];
       auto &elastic = history.static_strain(batch, q);
       elastic       = strain;
-      if (history.is_active(batch, q))
-        elastic -= m * strain + offset -
-                   look_at(strain, batch, q, history, &history).elastic_strain;
+      if (!history.is_active(batch, q))
+        return;
+      ActivePoint                      &point = history.active_point(batch, q);
+      std::array<Lanes, Law::n_history> copy;
+      std::copy_n(history.values(batch, q), Law::n_history, copy.begin());
+      point.strain = strain;
+      point.seen   = m * strain + offset;
+      const auto response =
+        law.respond(point.seen,
+                    copy.data(),
+                    PointSituation<Lanes>{band_of(point, history, batch), 0.});
+      point.stress  = response.stress;
+      point.plastic = point.seen - response.elastic_strain;
+      point.impact  = 0.;
+      elastic -= point.plastic;
     }
 
     /**
-     * Energy stored at a point that has left the elastic range [J/m3]; with a
-     * static state that since then, less what its forces do.
+     * Energy stored since the static state at a point that has left the elastic
+     * range, less what the forces of that state do, half a step before the
+     * displacement [J/m3]; zero in lanes that are elastic.
      *
      * @param strain        B u
-     * @param static_strain B u_s; null without a static state
+     * @param static_strain B u_s, or zero
      * @param at_start      memory of that state; null: elastic
      */
     Lanes
     stored_energy(const SymmetricTensor3<Lanes> &strain,
-                  const SymmetricTensor3<Lanes> *static_strain,
+                  const SymmetricTensor3<Lanes> &static_strain,
                   const unsigned int             batch,
                   const unsigned int             q,
                   const PointHistory            &history,
                   const PointHistory            *at_start) const
     {
-      const auto now    = look_at(strain, batch, q, history, &history);
-      Lanes      energy = 0.5 * (now.stress * now.elastic_strain);
-      SymmetricTensor3<Lanes> stretched = now.elastic_strain;
-      if (static_strain != nullptr)
+      const ActivePoint      &point     = history.active_point(batch, q);
+      SymmetricTensor3<Lanes> seen_then = m * static_strain;
+      if (history.has_static_strains())
+        seen_then += history.strain_offset(batch, q);
+      SymmetricTensor3<Lanes> elastic_then = seen_then,
+                              stress_then  = law.stress(seen_then);
+      if (at_start != nullptr && at_start->is_active(batch, q))
         {
-          const auto then =
-            look_at(*static_strain, batch, q, history, at_start);
-          const SymmetricTensor3<Lanes> moved = strain - *static_strain;
-          energy -= then.stress * (0.5 * then.elastic_strain + moved);
-          stretched -= then.elastic_strain;
+          const ActivePoint &then = at_start->active_point(batch, q);
+          for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+            if (then.band[lane] > 0.)
+              for (unsigned int i = 0; i < 6; ++i)
+                {
+                  stress_then.access_raw_entry(i)[lane] =
+                    then.stress.access_raw_entry(i)[lane];
+                  elastic_then.access_raw_entry(i)[lane] =
+                    then.seen.access_raw_entry(i)[lane] -
+                    then.plastic.access_raw_entry(i)[lane];
+                }
         }
-      // what the damping model takes off the moduli
-      energy += 0.5 * (k - m) * history.damping_share(batch, q) *
-                (law.stress(stretched) * stretched);
-      return energy;
+      // what the law stores over e is over B u as much more as e is less
+      const Lanes of_law =
+        0.5 * (point.stress * (point.seen - point.plastic)) -
+        stress_then * (0.5 * elastic_then + point.seen - seen_then);
+      const Lanes energy =
+        of_law / (m + difference * point.share) +
+        0.5 * ((total(point) - stress_then) * (strain - point.strain));
+      return dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
+        point.band, Lanes(0.), Lanes(0.), energy);
     }
 
   private:
-    /** Response to a strain of the displacement with the @p remembered numbers
-     *  (null: zeros), which stay as they are. */
-    PointResponse<Lanes>
-    look_at(const SymmetricTensor3<Lanes> &strain,
-            const unsigned int             batch,
-            const unsigned int             q,
-            const PointHistory            &history,
-            const PointHistory            *remembered) const
+    static SymmetricTensor3<Lanes>
+    total(const ActivePoint &point)
     {
-      std::array<Lanes, Law::n_history> copy;
-      copy.fill(Lanes(0.));
-      if (remembered != nullptr)
-        std::copy_n(remembered->values(batch, q), Law::n_history, copy.begin());
-      SymmetricTensor3<Lanes> total = m * strain;
-      if (history.has_static_strains())
-        total += history.strain_offset(batch, q);
-      return law.respond(total,
-                         copy.data(),
-                         PointSituation<Lanes>{history.element_length(batch),
-                                               0.});
+      return point.stress +
+             point.impact *
+               dealii::symmetrize(
+                 dealii::outer_product(point.normal, point.normal));
+    }
+
+    /** Bands, of any normal where the point is elastic. */
+    static Lanes
+    band_of(const ActivePoint  &point,
+            const PointHistory &history,
+            const unsigned int  batch)
+    {
+      return dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
+        point.band, Lanes(0.), history.bands(batch).widest, point.band);
+    }
+
+    /** Where there is no band yet, that of the crack that would open now. */
+    void
+    find_bands(const Lanes      &known,
+               const CrackBands &bands,
+               ActivePoint      &point) const
+    {
+      using dealii::compare_and_apply_mask;
+      using Comparison = dealii::SIMDComparison;
+      bool all_known   = true;
+      for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+        all_known = all_known && known[lane] > 0.;
+      if (all_known)
+        return;
+      const dealii::Tensor<1, 3, Lanes> normal =
+        crack_normal(law.stress(point.seen));
+      const Lanes zero = 0.;
+      for (unsigned int d = 0; d < 3; ++d)
+        point.normal[d] = compare_and_apply_mask<Comparison::equal>(
+          known, zero, normal[d], point.normal[d]);
+      point.band = compare_and_apply_mask<Comparison::equal>(
+        known, zero, bands.across(normal), known);
+    }
+
+    /** s of a crack that closes [Pa]; both stresses effective. */
+    static Lanes
+    impact(const SymmetricTensor3<Lanes> &change,
+           const SymmetricTensor3<Lanes> &stress,
+           const ActivePoint             &last,
+           const ActivePoint             &now,
+           const PointStep               &step)
+    {
+      using dealii::compare_and_apply_mask;
+      using Comparison     = dealii::SIMDComparison;
+      const Lanes zero     = 0.;
+      const Lanes changed  = now.normal * (change * now.normal),
+                  traction = now.normal * (stress * now.normal);
+      const Lanes viscous  = step.closing_viscosity / step.length * changed;
+      const Lanes closed   = compare_and_apply_mask<Comparison::less_than>(
+        traction - std::abs(changed), zero, viscous, zero);
+      return compare_and_apply_mask<Comparison::less_than>(
+        now.share,
+        Lanes(1.),
+        compare_and_apply_mask<Comparison::equal>(
+          last.band, zero, zero, closed),
+        zero);
     }
 
     const Law   &law;
-    const double k, m, filter_stiffness;
+    const double k, m, difference;
   };
 } // namespace Voussoir
 

@@ -106,7 +106,7 @@ namespace Voussoir
   template <typename Number>
   struct PointSituation
   {
-    Number element_length; // width of the band in which a crack lives [m]
+    Number element_length; // width of the band of the crack in the cell [m]
     double time_step;      // since the last call [s]
   };
 
@@ -130,8 +130,8 @@ namespace Voussoir
      *  loses is no part of it. */
     Number dissipation = Number(0.);
 
-    /** b [1]: share that damage leaves of the stress of damping, for a single
-     *  damage d that is 1 - d. */
+    /** Share of the stiffness that damage leaves, with which damping goes; for
+     * a single damage d that is 1 - d. */
     Number damping_share = Number(1.);
 
     /** Plastic strain of this step [1]. */

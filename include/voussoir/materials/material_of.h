@@ -105,7 +105,7 @@ namespace Voussoir
                  const Vector           *damping_memory,
                  const Vector           &undamped,
                  PointHistory           &history,
-                 const double            time_step) const override
+                 const PointStep        &step) const override
     {
       if constexpr (has_memory)
         CellKernels::add_response(law,
@@ -117,7 +117,7 @@ namespace Voussoir
                                   damping,
                                   undamped,
                                   history,
-                                  time_step);
+                                  step);
     }
 
     void
@@ -173,11 +173,9 @@ namespace Voussoir
          const StiffnessFactors &factors,
          const Vector           &u,
          const Vector           &v,
-         const PointHistory     *history,
-         const Inelastic         inelastic) const override
+         const PointHistory     *history) const override
     {
-      return CellKernels::work(
-        law, cells, factors.stress, u, v, history, inelastic);
+      return CellKernels::work(law, cells, factors.stress, u, v, history);
     }
 
     Lanes

@@ -10,6 +10,20 @@
 
 namespace Voussoir
 {
+  /** What a point remembers of the curve that its damage follows; zero while it
+   *  is elastic. */
+  template <typename Number>
+  struct CurveMemory
+  {
+    Number largest  = 0.; // effective strain so far, from which damage grows
+    Number position = 0.; // effective strain up to which the curve is used up
+    Number last     = 0.; // effective elastic strain of the last step
+    Number damage   = 0.;
+
+    static constexpr unsigned int n_numbers = 4;
+  };
+
+
   /** What a step does to a point whose damage follows a curve. */
   template <typename Number>
   struct DamageProgress
@@ -80,19 +94,30 @@ namespace Voussoir
     at(const double strain, const double band) const;
 
     /**
-     * Lets the damage of a point go one step on.
+     * Lets the damage of a point go one step on. A step of finite length cuts
+     * the corners of the curve; it goes as far along it as gives up the energy
+     * that the trapezoidal rule of the time step takes,
+     *   (s_a e_b - s_b e_a)/2 + (s_a + s_b) (p_b - p_a)/2 ,
+     * with the elastic strain e and the irreversible p: then a crack takes its
+     * energy whatever the steps are, and makes none.
      *
      * @param equivalent_stress effective stress of a uniaxial test [Pa]
-     * @param largest effective strain so far; zero if it has always been
-     * elastic
      * @param band width of the band [m]
      * @param followed share of the growth that this step takes in
      */
     DamageProgress<double>
-    go_on(const double equivalent_stress,
-          double      &largest,
-          const double band,
-          const double followed = 1.) const;
+    go_on(const double         equivalent_stress,
+          CurveMemory<double> &memory,
+          const double         band,
+          const double         followed = 1.) const;
+
+    /** Stress of the elastic limit, in a band that needs no strength factor
+     *  [Pa]. */
+    double
+    strength() const
+    {
+      return nodes[0].stress;
+    }
 
     /** Strain of the elastic limit. */
     double
@@ -159,6 +184,35 @@ namespace Voussoir
     parse(const std::string &table, const std::string &place);
 
   private:
+    /** The curve of a band, over the effective strain. */
+    struct OfBand
+    {
+      const SofteningCurve &curve;
+      double                band, factor, share;
+
+      /** Effective strain at a node. */
+      double
+      strain(const unsigned int node) const;
+
+      /** At this strain on the straight piece before a node. */
+      Point
+      on_piece(const unsigned int node, const double strain) const;
+
+      Point
+      elastic(const double stress, const double strain) const;
+    };
+
+    OfBand
+    of_band(const double band) const
+    {
+      return {*this, band, strength_factor(band), straightness(band)};
+    }
+
+    /** The node that ends the straight piece at this strain; one beyond the
+     *  last node where the stress stays. */
+    unsigned int
+    piece_at(const double strain, const OfBand &curve) const;
+
     std::vector<Node> nodes;
     double            young_modulus = 1., irreversible_share = 0.;
     double            stretch  = 1.; // effective over uniaxial inelastic strain

@@ -10,9 +10,11 @@ namespace Voussoir
    * What laws with two scalar damages of the effective stress s = C : e_e have
    * in common, which is split into tension and compression (see split_tension):
    *   sigma = (1 - d+) s+ + (1 - d-) s- .
-   * Each damage follows a uniaxial curve from the largest equivalent stress of
-   * its own so far, so that a step needs no iteration, and a crack that closes
-   * has its stiffness back.
+   * Each damage follows a uniaxial curve by the equivalent stress of its own,
+   * so that a step needs no iteration, and a crack that closes has its
+   * stiffness back.
+   *
+   * The history begins with the memories of the two curves.
    */
   struct SplitDamage : IsotropicElasticity, TensileCrack
   {
@@ -36,6 +38,74 @@ namespace Voussoir
     remark(const double element_length) const
     {
       return tension.remark(element_length);
+    }
+
+    /** Numbers of one curve and of both. */
+    static constexpr unsigned int n_of_curve = CurveMemory<double>::n_numbers,
+                                  n_curve_numbers = 2 * n_of_curve;
+
+    static double
+    damage_of(const double *history, const unsigned int sign)
+    {
+      return history[n_of_curve * sign + 3];
+    }
+
+    /**
+     * Lets one damage go on where it grows, or may: only there the curve is
+     * looked up.
+     *
+     * @param equivalent effective stress of a uniaxial test [Pa]
+     * @param memory     the numbers of a CurveMemory
+     * @param followed   see SofteningCurve::go_on
+     * @param flows      whether a share of the strain is irreversible
+     */
+    template <typename Number>
+    DamageProgress<Number>
+    grow(const unsigned int            sign,
+         const Number                 &equivalent,
+         Number                       *memory,
+         const PointSituation<Number> &situation,
+         const double                  followed = 1.,
+         const bool                    flows    = false) const
+    {
+      Number &largest = memory[0], &position = memory[1], &last = memory[2],
+             &damage = memory[3];
+      DamageProgress<Number> progress;
+      progress.intact   = 1. - damage;
+      const Number zero = 0.;
+      const Number growth =
+        std::min(Number(equivalent - young_modulus * largest),
+                 Number(curve(sign).load_level(equivalent,
+                                               situation.element_length) -
+                        1.));
+      Number now =
+        dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
+          largest,
+          zero,
+          zero,
+          std::max(Number(equivalent / young_modulus), zero));
+      if (any_above(flows ? std::max(growth, largest) : growth, 0.))
+        for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
+          if (lane_of(growth, lane) > 0. ||
+              (flows && lane_of(largest, lane) > 0.))
+            {
+              CurveMemory<double> one{lane_of(largest, lane),
+                                      lane_of(position, lane),
+                                      lane_of(last, lane),
+                                      lane_of(damage, lane)};
+              progress.set_lane(
+                lane,
+                curve(sign).go_on(lane_of(equivalent, lane),
+                                  one,
+                                  lane_of(situation.element_length, lane),
+                                  followed));
+              lane_of(largest, lane)  = one.largest;
+              lane_of(position, lane) = one.position;
+              lane_of(now, lane)      = one.last;
+              lane_of(damage, lane)   = one.damage;
+            }
+      last = now;
+      return progress;
     }
 
     /** What a step does in tension and in compression, or to their parts. */

@@ -12,9 +12,11 @@ namespace Voussoir
    * Where the energy is and where it went, all in J and half a step before the
    * time of the state. With kinetic energy v^T M v / 2 of the half step and
    * strain energy u_n^T K u_(n-1) / 2 the balance of the undamped scheme is
-   * exact, not only to the order of the time step. After a static stage u is
-   * the displacement since then: what the static loads do is left out on both
-   * sides.
+   * exact, not only to the order of the time step: the work on the cells is
+   * summed in every step, and what they have not stored nor lost otherwise is
+   * lost in damping. It must not fall: what does not obey its law makes energy
+   * there. After a static stage u is the displacement since then: what the
+   * static loads do is left out on both sides.
    */
   struct EnergyTerms
   {
@@ -24,6 +26,7 @@ namespace Voussoir
     double damping     = 0.; // lost in the material so far
     double boundary    = 0.; // gone through the boundary dashpots so far
     double material    = 0.; // lost to cracks and plastic flow so far
+    double closing     = 0.; // lost by cracks that closed so far
     double input       = 0.; // work of all forces and of a moving base so far
     double constraints = 0.; // work of the projections so far
 
@@ -38,7 +41,7 @@ namespace Voussoir
     error(const double initial) const
     {
       return input + constraints + initial - stored() - damping - material -
-             boundary;
+             closing - boundary;
     }
   };
 
@@ -86,25 +89,20 @@ namespace Voussoir
     load(const nlohmann::json &saved);
 
   private:
-    /** Sums of all ranks at the state, without what the cells lose. */
-    EnergyTerms
-    terms_at(const State &state);
-
-    /** Sets the energy in the Maxwell branches and returns what they, or the
-     *  stiffness-proportional damping, lose per time [W]. */
+    /** Energy in the Maxwell branches at points that are elastic [J]. */
     double
-    damping_of_cells(const State &state, EnergyTerms &terms) const;
+    energy_of_branches(const State &state);
 
     const EquationOfMotion equation;
     const double           time_step;
 
     EnergyTerms terms_now;
     double      initial = 0., largest_turnover = 0., largest_error = 0.;
-    double      last_time = 0., last_loss_rate = 0.;
-    double      loss_of_cells = 0.; // integral of the loss per time [J]
-    double      round_off     = 0.;
-    bool        first         = true;
+    double      initial_in_cells = 0., most_damping = 0.; // [J]
+    double      round_off = 0.;
+    bool        first     = true;
     Vector      moved, moved_before; // at the step and the one before
+    Vector      force_at_rest;       // on the cells beside F_0; empty: none
     TimeTable   table;
   };
 } // namespace Voussoir

@@ -30,6 +30,8 @@ namespace Voussoir
     std::vector<NodalLoad *>  loads       = {}; // F(t), in their order
     std::vector<Projection *> projections = {}; // in their order
     const RigidBase          *base = nullptr;   // null: the ground stands still
+
+    double closing_viscosity = 0.; // c of DampedResponse [s]
   };
 
   /** Explicit central differences in leap-frog form; see LeapFrog. */
@@ -64,6 +66,13 @@ namespace Voussoir
                   const unsigned int          begin,
                   const unsigned int          end);
 
+    /** Half of the work that the force on the cells does on a range of entries
+     *  with this velocity [J]. */
+    double
+    half_work(const State       &state,
+              const unsigned int begin,
+              const unsigned int end) const;
+
     /** Lets the projections correct the motion, and the accounts know it. */
     void
     project(State &state, const dealii::Tensor<1, 3> &base);
@@ -80,7 +89,7 @@ namespace Voussoir
     const MaxwellStep      maxwell;
     NodalUpdate            nodal_update;
     const double           mass_coefficient, stiffness_coefficient;
-    const bool             damped, uniform; // stiffness damping, its factors
+    const bool             uniform; // damping factors
 
     // nodes of the projections, slots of those with nodal terms, and their
     // velocity before the step and before the projections
@@ -90,8 +99,8 @@ namespace Voussoir
 
     NodalForces forces;    // F_n
     Vector      force;     // f(u_n) - F_0
-    Vector      effective; // u plus damping memory, or u where factors differ
-    Vector      memory;    // the memory by itself where factors differ
+    Vector      effective; // u + beta v and, if factors are uniform, the memory
+    Vector      memory;    // of damping, where factors differ
   };
 } // namespace Voussoir
 

@@ -52,6 +52,8 @@ namespace Voussoir
 
   private:
     const NodalTerms                 &terms;
+    const LumpedMass                 &mass;
+    const double                      mass_coefficient;
     const LeapFrog                    leap_frog;
     std::vector<dealii::Tensor<2, 3>> inverse;
     std::vector<dealii::Tensor<1, 3>> masses;  // diagonal

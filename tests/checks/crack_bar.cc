@@ -1,0 +1,83 @@
+#include <voussoir/output/material_memory.h>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * A bar along z whose weak cells crack: as many layers of cells as should,
+     * for the energy of as many cracks, while cracks that shut make no energy.
+     */
+    class CrackBar : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Cracks", cracks, "Layers that crack.");
+        prm.add_parameter("Crack energy",
+                          crack_energy,
+                          "What one crack takes [J]; 0: not compared.");
+        prm.add_parameter("Tolerance", tolerance, "Of that energy.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto     parameters = make_case(file);
+        const auto     simulation = make_simulation(*parameters, communicator);
+        Run           &run        = simulation->run;
+        const Schedule schedule(parameters->output.energy_interval,
+                                run.time_step.length);
+        double         turnover = 0., made = 0.;
+        while (run.state.time < parameters->time.end_time)
+          {
+            run.scheme.step(run.state);
+            if (!schedule.due(run.state.step))
+              continue;
+            const EnergyTerms &terms = run.energy.evaluate(run.state);
+            turnover =
+              std::max(turnover, std::abs(terms.input + terms.constraints));
+            // a NaN stays
+            made = !(terms.closing > -made) ? -terms.closing : made;
+          }
+
+        std::set<long> layers;
+        const auto     damage = memory_of_cells(run.observed);
+        const auto     name   = damage.count("tension damage") > 0 ?
+                                  damage.find("tension damage") :
+                                  damage.find("damage");
+        for (const auto &cell :
+             simulation->model.grid.triangulation().active_cell_iterators())
+          if (name->second[cell->active_cell_index()] > 0.5)
+            layers.insert(std::lround(1e3 * cell->center()[2]));
+        verdicts.near("layers that cracked", layers.size(), cracks, 1e-6);
+        if (crack_energy > 0.)
+          verdicts.near("energy lost in cracks",
+                        run.state.material_memory.losses().material,
+                        cracks * crack_energy,
+                        tolerance,
+                        "J");
+        verdicts.below("energy made by cracks that close, over the input",
+                       made / turnover,
+                       1e-3);
+        verdicts.below("largest unaccounted share of the input",
+                       run.energy.summary()["largest unaccounted share"],
+                       0.01);
+      }
+
+    private:
+      unsigned int cracks       = 1;
+      double       crack_energy = 0., tolerance = 0.01;
+    };
+
+    const Registry<Check>::Add<CrackBar>
+      registered("crack bar", "A bar with a weak layer of cells.");
+  } // namespace
+} // namespace Voussoir

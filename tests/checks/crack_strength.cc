@@ -1,0 +1,100 @@
+#include <voussoir/fem/nodal_values.h>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** A short column that is pulled and pressed with growing motion fails at
+     * its strength, whatever the frequency and the damping. */
+    class CrackStrength : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Strength", strength, "In tension [Pa].");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        for (const double ratio : {0.02, 0.05, 0.1, 0.15})
+          for (const double frequency : {0.2, 3., 20.})
+            {
+              const std::string f = std::to_string(frequency);
+              // the elastic limit is passed within the fifth period
+              const auto parameters = make_case(
+                file.with({"Damping/Ratio=" + std::to_string(ratio),
+                           "Constraints/pull/Time function=" + f +
+                             "/4.5*t*sin(2*pi*" + f + "*t)",
+                           "Time/End time=" + std::to_string(5. / frequency)}));
+              std::ostringstream name;
+              name << "strength with " << 100. * ratio << " % at " << frequency
+                   << " Hz";
+              verdicts.near(name.str(),
+                            1e-6 * largest_stress(*parameters, communicator),
+                            1e-6 * strength,
+                            0.02,
+                            "MPa");
+            }
+      }
+
+    private:
+      double
+      largest_stress(Case &parameters, const MPI_Comm communicator) const
+      {
+        const auto simulation = make_simulation(parameters, communicator);
+        Run       &run        = simulation->run;
+        const InternalForce &internal_force = simulation->model.internal_force;
+        const MaxwellStep    maxwell(run.damping, run.time_step.length);
+        Vector force    = simulation->model.discretization.create_vector();
+        Vector filtered = force;
+        double largest  = 0.;
+        while (run.state.time < parameters.time.end_time)
+          {
+            // the force of this step before the step is made
+            filtered = run.state.displacement;
+            filtered.add(run.damping.mesh_viscosity, run.state.velocity);
+            for (unsigned int i = 0; i < run.state.memory.size(); ++i)
+              filtered.add(maxwell.decay[i],
+                           run.state.memory[i],
+                           maxwell.gain[i],
+                           run.state.velocity);
+            MaterialMemory memory = run.state.material_memory;
+            internal_force.sweep(
+              force,
+              filtered,
+              nullptr,
+              run.state.displacement,
+              memory,
+              {run.time_step.length},
+              [&](const unsigned int begin, const unsigned int end) {
+                std::fill(force.begin() + begin, force.begin() + end, 0.);
+              },
+              {});
+            double pull = 0.;
+            for (unsigned int node = 0;
+                 node < simulation->model.discretization.n_owned_nodes();
+                 ++node)
+              if (simulation->model.discretization.node_positions[node][2] ==
+                  0.)
+                pull -= node_value(force, node)[2];
+            largest = std::max(largest, pull); // of one square metre
+            run.scheme.step(run.state);
+          }
+        return largest;
+      }
+
+      double strength = 2e6;
+    };
+
+    const Registry<Check>::Add<CrackStrength>
+      registered("crack strength", "One strength at all rates and dampings.");
+  } // namespace
+} // namespace Voussoir

@@ -97,10 +97,10 @@ namespace Voussoir
 
 
   unsigned int
-  SofteningCurve::piece_at(const double strain, const OfBand &curve) const
+  SofteningCurve::OfBand::piece_at(const double at_strain) const
   {
     unsigned int node = 0;
-    while (node < nodes.size() && strain >= curve.strain(node))
+    while (node < curve.nodes.size() && at_strain >= strain(node))
       ++node;
     return node;
   }
@@ -110,22 +110,22 @@ namespace Voussoir
   SofteningCurve::at(const double strain, const double band) const
   {
     const OfBand curve = of_band(band);
-    return curve.on_piece(piece_at(strain, curve), strain);
+    return curve.on_piece(curve.piece_at(strain), strain);
   }
 
 
   DamageProgress<double>
-  SofteningCurve::go_on(const double         equivalent_stress,
-                        CurveMemory<double> &memory,
-                        const double         band,
-                        const double         followed) const
+  SofteningCurve::go_on(const double equivalent_stress,
+                        CurveMemory &memory,
+                        const double band,
+                        const double followed) const
   {
     const OfBand curve    = of_band(band);
     const bool   is_new   = memory.largest == 0.;
     const double limit    = curve.strain(0);
     const double largest  = is_new ? limit : memory.largest;
     double       position = is_new ? limit : memory.position;
-    unsigned int node     = std::max(1U, piece_at(position, curve));
+    unsigned int node     = std::max(1U, curve.piece_at(position));
     const Point  old      = curve.on_piece(node, position);
     const double trial = equivalent_stress / young_modulus + old.irreversible;
     DamageProgress<double> progress;

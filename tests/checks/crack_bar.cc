@@ -1,6 +1,7 @@
 #include <voussoir/output/material_memory.h>
 
 #include "check.h"
+#include "march_with_energy.h"
 
 namespace Voussoir
 {
@@ -30,23 +31,19 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const auto     parameters = make_case(file);
-        const auto     simulation = make_simulation(*parameters, communicator);
-        Run           &run        = simulation->run;
-        const Schedule schedule(parameters->output.energy_interval,
-                                run.time_step.length);
-        double         turnover = 0., made = 0.;
-        while (run.state.time < parameters->time.end_time)
-          {
-            run.scheme.step(run.state);
-            if (!schedule.due(run.state.step))
-              continue;
-            const EnergyTerms &terms = run.energy.evaluate(run.state);
-            turnover =
-              std::max(turnover, std::abs(terms.input + terms.constraints));
-            // a NaN stays
-            made = !(terms.closing > -made) ? -terms.closing : made;
-          }
+        const auto parameters = make_case(file);
+        const auto simulation = make_simulation(*parameters, communicator);
+        Run       &run        = simulation->run;
+        double     turnover = 0., made = 0.;
+        march_with_energy(*parameters, run, [&](const bool evaluated) {
+          if (!evaluated)
+            return;
+          const EnergyTerms &terms = run.energy.latest();
+          turnover =
+            std::max(turnover, std::abs(terms.input + terms.constraints));
+          // a NaN stays
+          made = !(terms.closing > -made) ? -terms.closing : made;
+        });
 
         std::set<long> layers;
         const auto     damage = memory_of_cells(run.observed);

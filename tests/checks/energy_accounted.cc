@@ -1,4 +1,5 @@
 #include "check.h"
+#include "march_with_energy.h"
 
 namespace Voussoir
 {
@@ -16,21 +17,15 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const auto     parameters = make_case(file);
-        const auto     simulation = make_simulation(*parameters, communicator);
-        const Schedule schedule(parameters->output.energy_interval,
-                                simulation->run.time_step.length);
-        const bool     cracks = simulation->model.internal_force.has_memory();
-        double         in_dampers = 0.; // what they lose, step by step
-        while (simulation->run.state.time < parameters->time.end_time)
-          {
-            simulation->run.scheme.step(simulation->run.state);
-            if (schedule.due(simulation->run.state.step))
-              simulation->run.energy.evaluate(simulation->run.state);
-            if (!cracks)
-              in_dampers +=
-                simulation->run.time_step.length * loss_rate(*simulation);
-          }
+        const auto parameters = make_case(file);
+        const auto simulation = make_simulation(*parameters, communicator);
+        const bool cracks     = simulation->model.internal_force.has_memory();
+        double     in_dampers = 0.; // what they lose, step by step
+        march_with_energy(*parameters, simulation->run, [&](const bool) {
+          if (!cracks)
+            in_dampers +=
+              simulation->run.time_step.length * loss_rate(*simulation);
+        });
         const auto   summary = simulation->run.energy.summary();
         const double input   = summary["input [J]"];
         verdicts.above("lost in damping over input [%]",
@@ -54,10 +49,7 @@ namespace Voussoir
       }
 
     private:
-      /** What the dampers of the cells and of the mass lose per time [W]:
-       * branch i is a spring D_i s K with a dashpot, which loses w^T K w s/(D_i
-       * tau_i).
-       */
+      /** What the dampers of the cells and of the mass lose per time [W]. */
       static double
       loss_rate(const Simulation &simulation)
       {
@@ -71,6 +63,7 @@ namespace Voussoir
           damping.stiffness_coefficient > 0. ?
             damping.stiffness_coefficient * work(run.state.velocity) :
             0.;
+        // branch i is a spring D_i s K with a dashpot: w^T K w s / (D_i tau_i)
         for (unsigned int i = 0; i < run.state.memory.size(); ++i)
           rate += work(run.state.memory[i]) /
                   (damping.coefficients[i] * damping.relaxation_times[i]);

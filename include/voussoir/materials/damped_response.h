@@ -43,9 +43,9 @@ namespace Voussoir
    * Central differences integrate the stress by the trapezoidal rule. With the
    * energy sigma : e_e / 2 of the elastic strain e_e, a step from a to b hence
    * loses exactly
-   *   L = (sigma_a : e_e,b - sigma_b : e_e,a)/2 + (sigma_a + sigma_b) : d
-   * e_p/2, of which the law itself counts its dissipation; the rest is what
-   * closing takes beside s, or makes. The difference of B u and e is damping's.
+   *   (sigma_a : e_e,b - sigma_b : e_e,a)/2 + (sigma_a + sigma_b) : de_p/2 ,
+   * of which the law itself counts its dissipation; the rest is what closing
+   * takes beside s, or makes. The difference of B u and e is damping's.
    */
   template <typename Law>
   class DampedResponse
@@ -93,11 +93,12 @@ namespace Voussoir
         was_active ? history.active_point(batch, q) : ActivePoint();
       ActivePoint now = last;
 
-      SymmetricTensor3<Lanes> offset, elastic_static;
+      SymmetricTensor3<Lanes> offset, elastic_static, of_law_alone;
       if (history.has_static_strains())
         {
           offset         = history.strain_offset(batch, q);
           elastic_static = history.static_strain(batch, q);
+          of_law_alone   = elastic_offset(batch, q, history);
         }
       const SymmetricTensor3<Lanes> filter = filtered - own_strain;
       now.strain                           = own_strain;
@@ -106,7 +107,7 @@ namespace Voussoir
                    (difference * (own_strain - last.plastic - elastic_static) +
                     k * filter);
 
-      find_bands(last.band, history.bands(batch), now);
+      find_bands(history.bands(batch), now);
       Lanes     *values = history.values(batch, q);
       const auto response =
         law.respond(now.seen,
@@ -162,7 +163,7 @@ namespace Voussoir
         history.active_point(batch, q) = now;
       else if (any_above(begins, 0.))
         history.activate(batch, q, now);
-      return total(now) - law.stress(offset - difference * elastic_static);
+      return total(now) - law.stress(of_law_alone);
     }
 
     /**
@@ -275,10 +276,9 @@ namespace Voussoir
 
     /** Where there is no band yet, that of the crack that would open now. */
     void
-    find_bands(const Lanes      &known,
-               const CrackBands &bands,
-               ActivePoint      &point) const
+    find_bands(const CrackBands &bands, ActivePoint &point) const
     {
+      const Lanes known = point.band;
       using dealii::compare_and_apply_mask;
       using Comparison = dealii::SIMDComparison;
       bool all_known   = true;

@@ -12,13 +12,12 @@ namespace Voussoir
 {
   /** What a point remembers of the curve that its damage follows; zero while it
    *  is elastic. */
-  template <typename Number>
   struct CurveMemory
   {
-    Number largest  = 0.; // effective strain so far, from which damage grows
-    Number position = 0.; // effective strain up to which the curve is used up
-    Number last     = 0.; // effective elastic strain of the last step
-    Number damage   = 0.;
+    double largest;  // effective strain so far, from which damage grows
+    double position; // effective strain up to which the curve is used up
+    double last;     // effective elastic strain of the last step
+    double damage;
 
     static constexpr unsigned int n_numbers = 4;
   };
@@ -106,18 +105,10 @@ namespace Voussoir
      * @param followed share of the growth that this step takes in
      */
     DamageProgress<double>
-    go_on(const double         equivalent_stress,
-          CurveMemory<double> &memory,
-          const double         band,
-          const double         followed = 1.) const;
-
-    /** Stress of the elastic limit, in a band that needs no strength factor
-     *  [Pa]. */
-    double
-    strength() const
-    {
-      return nodes[0].stress;
-    }
+    go_on(const double equivalent_stress,
+          CurveMemory &memory,
+          const double band,
+          const double followed = 1.) const;
 
     /** Strain of the elastic limit. */
     double
@@ -190,6 +181,11 @@ namespace Voussoir
       const SofteningCurve &curve;
       double                band, factor, share;
 
+      /** The node that ends the straight piece at this strain; one beyond the
+       *  last node where the stress stays. */
+      unsigned int
+      piece_at(const double strain) const;
+
       /** Effective strain at a node. */
       double
       strain(const unsigned int node) const;
@@ -207,11 +203,6 @@ namespace Voussoir
     {
       return {*this, band, strength_factor(band), straightness(band)};
     }
-
-    /** The node that ends the straight piece at this strain; one beyond the
-     *  last node where the stress stays. */
-    unsigned int
-    piece_at(const double strain, const OfBand &curve) const;
 
     std::vector<Node> nodes;
     double            young_modulus = 1., irreversible_share = 0.;

@@ -30,27 +30,6 @@ namespace Voussoir
   };
 
 
-  /** Two directions across a unit vector (Duff et al. 2017). */
-  template <typename Number>
-  std::array<dealii::Tensor<1, 3, Number>, 2>
-  across(const dealii::Tensor<1, 3, Number> &n)
-  {
-    const Number zero = 0.;
-    const Number sign =
-      dealii::compare_and_apply_mask<dealii::SIMDComparison::less_than>(
-        n[2], zero, Number(-1.), Number(1.));
-    const Number                 f = -1. / (sign + n[2]), g = n[0] * n[1] * f;
-    dealii::Tensor<1, 3, Number> u, v;
-    u[0] = 1. + sign * n[0] * n[0] * f;
-    u[1] = sign * g;
-    u[2] = -sign * n[0];
-    v[0] = g;
-    v[1] = sign + n[1] * n[1] * f;
-    v[2] = -n[1];
-    return {{u, v}};
-  }
-
-
   /**
    * The principal value furthest from the other two in closed form, the others
    * in the plane across its direction (Scherzinger and Dohrmann 2008): to
@@ -107,7 +86,17 @@ namespace Voussoir
       }
     n *= 1. / std::sqrt(n.norm_square());
 
-    const auto [u, v] = across(n);
+    // two directions across it (Duff et al. 2017)
+    const Number sign =
+      compare_and_apply_mask<less>(n[2], zero, Number(-1.), Number(1.));
+    const Number f = -1. / (sign + n[2]), g = n[0] * n[1] * f;
+    Vector3      u, v;
+    u[0] = 1. + sign * n[0] * n[0] * f;
+    u[1] = sign * g;
+    u[2] = -sign * n[0];
+    v[0] = g;
+    v[1] = sign + n[1] * n[1] * f;
+    v[2] = -n[1];
 
     // one of Jacobi's rotations turns them into those of the other values:
     // t = sign(d) b / (|d| + sqrt(d^2 + b^2)) is its tangent with b = 2 b_uv

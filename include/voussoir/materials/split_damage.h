@@ -41,7 +41,7 @@ namespace Voussoir
     }
 
     /** Numbers of one curve and of both. */
-    static constexpr unsigned int n_of_curve = CurveMemory<double>::n_numbers,
+    static constexpr unsigned int n_of_curve      = CurveMemory::n_numbers,
                                   n_curve_numbers = 2 * n_of_curve;
 
     static double
@@ -89,10 +89,10 @@ namespace Voussoir
           if (lane_of(growth, lane) > 0. ||
               (flows && lane_of(largest, lane) > 0.))
             {
-              CurveMemory<double> one{lane_of(largest, lane),
-                                      lane_of(position, lane),
-                                      lane_of(last, lane),
-                                      lane_of(damage, lane)};
+              CurveMemory one{lane_of(largest, lane),
+                              lane_of(position, lane),
+                              lane_of(last, lane),
+                              lane_of(damage, lane)};
               progress.set_lane(
                 lane,
                 curve(sign).go_on(lane_of(equivalent, lane),

@@ -151,8 +151,7 @@ namespace Voussoir
           for_each_material(model.materials,
                             [](const Material &material) {
                               return StiffnessFactors{material.static_factor,
-                                                      material.static_factor,
-                                                      0.};
+                                                      material.static_factor};
                             })))
       , on_springs(parameters.supports == "springs")
       , constraints(model.discretization.make_constraints(

@@ -276,7 +276,7 @@ namespace Voussoir
             longest[m] = std::max(longest[m], cell->line(line)->diameter());
           widest[m] =
             std::max(widest[m],
-                     CrackBands::along_edges(cell, discretization.degree));
+                     CrackBands::along_edges(cell, discretization.crack_share));
         }
     for (unsigned int m = 0; m < materials.size(); ++m)
       {
@@ -296,6 +296,9 @@ namespace Voussoir
         if (const std::string remark = materials[m]->remark(band);
             !remark.empty())
           log.line("  note: ", remark);
+        if (materials[m]->n_history() > 0 && discretization.degree > 2)
+          log.line("  note: fracture energies hold in cells of degree 1 and 2; "
+                   "in those of a higher degree a crack takes more or less.");
       }
   }
 } // namespace Voussoir

@@ -190,14 +190,7 @@ namespace Voussoir
   double
   Damping::stiffening(const double dt) const
   {
-    return 2. * stiffness_coefficient / dt + filter_stiffness(1.);
-  }
-
-
-  double
-  Damping::filter_stiffness(const double factor) const
-  {
-    return factor *
+    return 2. * stiffness_coefficient / dt +
            std::accumulate(coefficients.begin(), coefficients.end(), 0.);
   }
 
@@ -241,7 +234,7 @@ namespace Voussoir
   StiffnessFactors
   Damping::stiffness_factors(const double factor) const
   {
-    return {stiffness_scale(factor), 1., filter_stiffness(factor)};
+    return {stiffness_scale(factor), 1.};
   }
 
 

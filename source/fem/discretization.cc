@@ -36,6 +36,20 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    // A crack across a row of cells of degree 2: strain is linear in a cell,
+    // force alike in its outer points, of which one opens with the centre while
+    // the other unloads.
+    double
+    share_of_crack(const Quadrature<1> &quadrature, const unsigned int degree)
+    {
+      return degree == 2 ? quadrature.weight(0) + quadrature.weight(1) :
+                           1. / degree;
+    }
+  } // namespace
+
+
   Discretization::Discretization(
     const Grid                                            &grid,
     const DiscretizationParameters                        &parameters,
@@ -83,6 +97,7 @@ namespace Voussoir
       quadratures = {QGauss<1>(degree + 1)};
     else
       quadratures = {QGaussLobatto<1>(degree + 1)};
+    crack_share = share_of_crack(quadratures[0], degree);
     matrix_free.reinit(mapping,
                        std::vector<const DoFHandler<3> *>{&dof_handler},
                        std::vector<const AffineConstraints<double> *>{

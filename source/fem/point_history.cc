@@ -4,56 +4,6 @@ namespace Voussoir
 {
   using namespace dealii;
 
-  namespace
-  {
-    // Half the mean edges of a cell along its unit coordinates, over the
-    // degree.
-    std::array<Tensor<1, 3>, 3>
-    half_edges(const Grid::Cell &cell, const unsigned int degree)
-    {
-      std::array<Tensor<1, 3>, 3> edges;
-      for (unsigned int v = 0; v < 8; ++v)
-        for (unsigned int k = 0; k < 3; ++k)
-          edges[k] += ((v >> k) & 1 ? 0.125 : -0.125) / degree *
-                      Tensor<1, 3>(cell->vertex(v));
-      return edges;
-    }
-  } // namespace
-
-
-  void
-  CrackBands::set_lane(const unsigned int lane,
-                       const Grid::Cell  &cell,
-                       const unsigned int degree)
-  {
-    const auto   edges   = half_edges(cell, degree);
-    const double volume  = edges[0] * cross_product_3d(edges[1], edges[2]);
-    double       longest = 0.;
-    for (unsigned int k = 0; k < 3; ++k)
-      {
-        const Tensor<1, 3> &next    = edges[(k + 1) % 3],
-                           &last    = edges[(k + 2) % 3];
-        const Tensor<1, 3> gradient = cross_product_3d(next, last) / volume;
-        for (unsigned int d = 0; d < 3; ++d)
-          gradients[k][d][lane] = gradient[d];
-        longest =
-          std::max({longest, (next + last).norm(), (next - last).norm()});
-      }
-    widest[lane] = 2. * longest;
-  }
-
-
-  double
-  CrackBands::along_edges(const Grid::Cell &cell, const unsigned int degree)
-  {
-    // l of a normal along an edge is its length
-    double longest = 0.;
-    for (const Tensor<1, 3> &edge : half_edges(cell, degree))
-      longest = std::max(longest, 2. * edge.norm());
-    return longest;
-  }
-
-
   PointHistory::PointHistory(const Discretization &discretization,
                              const unsigned int    material,
                              const unsigned int    width)
@@ -81,7 +31,7 @@ namespace Voussoir
              ++lane)
           {
             const auto cell = matrix_free.get_cell_iterator(batch, lane);
-            bands.set_lane(lane, cell, discretization.degree);
+            bands.set_lane(lane, cell, discretization.crack_share);
             found.item_of_cell[cell->active_cell_index()] = found.cells.size();
             found.cells.push_back({cell, {batch, lane}});
           }

@@ -40,7 +40,7 @@ namespace Voussoir
                 z,
                 1.,
                 verdicts);
-        look_at("degree two", {{x, y, 4. * z}}, z, 2., verdicts, 2);
+        look_at("half the cell", {{x, y, 4. * z}}, z, 2., verdicts, 0.5);
       }
 
     private:
@@ -50,7 +50,7 @@ namespace Voussoir
               const Tensor<1, 3>                &normal,
               const double                       width,
               Verdicts                          &verdicts,
-              const unsigned int                 degree = 1)
+              const double                       share = 1.)
       {
         std::vector<Point<3>> vertices;
         for (unsigned int v = 0; v < 8; ++v)
@@ -66,7 +66,7 @@ namespace Voussoir
         Triangulation<3> triangulation;
         triangulation.create_triangulation(vertices, {corners}, {});
         CrackBands bands;
-        bands.set_lane(0, triangulation.begin_active(), degree);
+        bands.set_lane(0, triangulation.begin_active(), share);
         Tensor<1, 3, Lanes> n;
         for (unsigned int d = 0; d < 3; ++d)
           n[d] = normal[d] / normal.norm();

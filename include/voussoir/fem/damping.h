@@ -91,11 +91,6 @@ namespace Voussoir
     double
     stiffness_scale(const double factor) const;
 
-    /** Stiffness of all branches' springs over that at rest, for a material of
-     *  factor s. */
-    double
-    filter_stiffness(const double factor) const;
-
     /** What the model makes of the moduli of a material of factor s. */
     StiffnessFactors
     stiffness_factors(const double factor) const;

@@ -63,6 +63,8 @@ namespace Voussoir
 
     const Grid                       &grid;
     const unsigned int                degree;
+    /** Share of the width of a cell that one crack takes. */
+    double                            crack_share;
     const dealii::FESystem<3>         fe;
     const dealii::MappingQ1<3>        mapping;
     dealii::DoFHandler<3>             dof_handler;

@@ -16,10 +16,6 @@ namespace Voussoir
     /** m on the strain that a law with memory sees: the static factor in the
      *  static stage, else one. */
     double strain = 1.;
-
-    /** Stiffness of the springs of the damping filters together, over the
-     *  material's own. */
-    double filters = 0.;
   };
 } // namespace Voussoir
 

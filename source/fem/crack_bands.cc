@@ -6,8 +6,8 @@ namespace Voussoir
 
   namespace
   {
-    // Half the mean edges of a cell along its unit coordinates, of which a crack
-    // takes a share.
+    // Half the mean edges of a cell along its unit coordinates, of which a
+    // crack takes a share.
     std::array<Tensor<1, 3>, 3>
     half_edges(const Grid::Cell &cell, const double share)
     {

@@ -17,7 +17,7 @@ namespace Voussoir
     : nodes(nodes)
     , young_modulus(young_modulus)
     , irreversible_share(irreversible_share)
-    , stretch((1. - irreversible_share) / (1. - relief) + irreversible_share)
+    , stretch(1. / (1. - relief))
   {
     for (unsigned int i = 0; i < nodes.size(); ++i)
       if (nodes[i].stress >= nodes[peak].stress)
@@ -74,7 +74,9 @@ namespace Voussoir
   {
     const double inelastic =
       (strain - stress / curve.young_modulus) / curve.stretch;
-    const double irreversible = curve.irreversible_share * inelastic;
+    // the flow of the law is relieved sideways as the opening is
+    const double irreversible =
+      curve.irreversible_share * curve.stretch * inelastic;
     return {stress, inelastic, irreversible, strain - irreversible};
   }
 
@@ -225,21 +227,22 @@ namespace Voussoir
 
 
   std::string
-  SofteningCurve::remark(const double element_length) const
+  SofteningCurve::remark(const double       element_length,
+                         const std::string &what,
+                         const std::string &strength) const
   {
     std::ostringstream text;
     text << std::setprecision(3) << "cells of up to " << element_length
          << " m are longer than ";
     if (element_length > widest)
-      text << widest
-           << " m, beyond which a crack would snap back; to keep the fracture "
-              "energy their tensile strength is lowered by up to "
+      text << widest << " m, beyond which " << what
+           << " would snap back; to keep its energy their " << strength
+           << " is lowered by up to "
            << 100. * (1. - strength_factor(element_length)) << " %.";
     else if (element_length > widest_of_curve)
-      text << widest_of_curve
-           << " m, beyond which a crack would snap back at first; in them the "
-              "stress falls in a straighter line, with the same strength and "
-              "fracture energy.";
+      text << widest_of_curve << " m, beyond which " << what
+           << " would snap back at first; in them the stress falls in a "
+              "straighter line, with the same strength and energy.";
     else
       return {};
     return text.str();

@@ -61,8 +61,8 @@ namespace Voussoir
       const std::vector<Support>                            &supports,
       const std::function<unsigned int(const Grid::Cell &)> &material_of_cell);
 
-    const Grid                       &grid;
-    const unsigned int                degree;
+    const Grid        &grid;
+    const unsigned int degree;
     /** Share of the width of a cell that one crack takes. */
     double                            crack_share;
     const dealii::FESystem<3>         fe;

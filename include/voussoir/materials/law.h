@@ -62,9 +62,9 @@ namespace Voussoir
     {}
 
     /**
-     * A bound that costs little: one at the elastic limit or before. A point
-     * that has been elastic so far stays it without a call of `respond` while
-     * this is below 0.8. By default every point is asked.
+     * A bound that costs little: above one at the elastic limit or before. A
+     * point that has been elastic so far stays it without a call of `respond`
+     * as long as this is not above one. By default every point is asked.
      *
      * @param elastic_stress [Pa]
      * @param element_length as in PointSituation [m]
@@ -74,7 +74,7 @@ namespace Voussoir
     load_level(const SymmetricTensor3<Number> & /*elastic_stress*/,
                const Number & /*element_length*/) const
     {
-      return 1.;
+      return 2.;
     }
 
     /** What the history tells the user, with units; words that several laws

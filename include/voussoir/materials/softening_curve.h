@@ -164,10 +164,12 @@ namespace Voussoir
     static std::vector<Node>
     exponential(const double strength, const double energy);
 
-    /** A sentence about cells of this length [m] if a crack in them snaps
-     *  back; else empty. */
+    /** A sentence about cells of this length [m] if @p what, which takes the
+     *  energy and begins at @p strength, snaps back in them; else empty. */
     std::string
-    remark(const double element_length) const;
+    remark(const double       element_length,
+           const std::string &what     = "a crack",
+           const std::string &strength = "tensile strength") const;
 
     /** From "strain or displacement: stress, ...", beginning at 0, for a
      *  message named by @p place. */

@@ -37,7 +37,12 @@ namespace Voussoir
     std::string
     remark(const double element_length) const
     {
-      return tension.remark(element_length);
+      const std::string in_tension = tension.remark(element_length),
+                        in_compression =
+                          compression.remark(element_length,
+                                             "crushing",
+                                             "compressive strength");
+      return in_tension + (in_tension.empty() ? "" : " ") + in_compression;
     }
 
     /** Numbers of one curve and of both. */

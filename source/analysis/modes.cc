@@ -238,6 +238,24 @@ namespace Voussoir
     }
 
 
+    /** r^T (M + M_a) r of a rigid motion r in one direction of all that is not
+     *  held, which the effective masses of all modes add up to [kg]. */
+    double
+    moving_mass(const unsigned int   direction,
+                const Vector        &mass,
+                const ModalMass     &modal_mass,
+                const ElasticSolver &solver)
+    {
+      Vector motion(mass), momentum(mass);
+      motion = 0.;
+      for (unsigned int i = direction; i < motion.locally_owned_size(); i += 3)
+        motion.local_element(i) = 1.;
+      solver.clear_held(motion);
+      modal_mass(momentum, motion);
+      return momentum * motion;
+    }
+
+
     /** A mode from an eigenvector with phi^T (M + M_a) phi = 1. */
     Mode
     make_mode(const double     eigenvalue,
@@ -326,7 +344,7 @@ namespace Voussoir
   Modes::summary() const
   {
     nlohmann::json result;
-    result["moving mass without water [kg]"] = to_json(moving_mass);
+    result["moving mass [kg]"] = to_json(moving_mass);
     Tensor<1, 3> sum;
     for (const Mode &mode : list)
       {
@@ -393,7 +411,8 @@ namespace Voussoir
                   parameters.tolerance);
 
     Modes modes;
-    modes.moving_mass = resultant(mass);
+    for (unsigned int d = 0; d < 3; ++d)
+      modes.moving_mass[d] = moving_mass(d, mass, modal_mass, solver);
     for (unsigned int j = 0; j < parameters.number; ++j)
       modes.list.push_back(make_mode(pairs.values[j],
                                      pairs.residuals[j],
@@ -409,7 +428,7 @@ namespace Voussoir
          << modes.moving_mass[0] << ", " << modes.moving_mass[1] << ", "
          << modes.moving_mass[2] << " kg in x, y, z";
     if (parameters.water && has_added_mass(model))
-      text << " (of which the water that moves with it is no part)";
+      text << ", the water that moves along included";
     log.line(text.str());
     log(table(modes));
     return modes;

@@ -102,7 +102,7 @@ namespace Voussoir
     prm.add_parameter("Safety factor",
                       safety_factor,
                       "Time step over the largest stable one.",
-                      Patterns::Double(0.01, 1.1));
+                      Patterns::Double(0.01, 1.));
     prm.add_parameter(
       "Scheme",
       scheme,
@@ -129,12 +129,15 @@ namespace Voussoir
     prm.add_parameter(
       "Energy interval",
       energy_interval,
-      "Time between two lines of the energy balance, at which "
-      "the run is also checked for growth and NaN [s]. The loss "
-      "in damping is integrated over these lines: where they "
-      "are far apart for the motion, the balance does not "
-      "close.",
+      "Time between two lines of the energy balance, at which the run is also "
+      "checked for growth and NaN [s].",
       Patterns::Double(1e-9));
+    prm.add_parameter(
+      "Energy limit",
+      energy_limit,
+      "Energy that may come from nowhere before the run stops, over what came "
+      "in; from a hundredth on the run warns.",
+      Patterns::Double(0., 1.));
     prm.add_parameter(
       "Checkpoint interval",
       checkpoint_interval,

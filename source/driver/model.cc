@@ -262,18 +262,50 @@ namespace Voussoir
   }
 
 
+  std::vector<double>
+  Model::longest_edges() const
+  {
+    std::vector<double> longest(materials.size(), 0.);
+    for (const auto &cell : grid.triangulation().active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (unsigned int line = 0; line < 12; ++line)
+          longest[material_of(cell)] =
+            std::max(longest[material_of(cell)], cell->line(line)->diameter());
+    Utilities::MPI::max(longest, grid.communicator(), longest);
+    return longest;
+  }
+
+
+  double
+  Model::carried_frequency(const unsigned int material, const double edge) const
+  {
+    return materials[material]->elastic_constants().s_wave_speed() *
+           discretization.degree / (8. * edge);
+  }
+
+
+  double
+  Model::carried_frequency() const
+  {
+    const std::vector<double> edges   = longest_edges();
+    double                    highest = 0.;
+    for (unsigned int m = 0; m < materials.size(); ++m)
+      if (edges[m] > 0.)
+        highest = std::max(highest, carried_frequency(m, edges[m]));
+    return highest;
+  }
+
+
   void
   Model::report_materials(Log &log) const
   {
-    const MPI_Comm communicator = grid.communicator();
-    // longest edge and widest crack band of the cells of each material
-    std::vector<double> longest(materials.size(), 0.), widest(longest);
+    const MPI_Comm            communicator = grid.communicator();
+    const std::vector<double> longest      = longest_edges();
+    std::vector<double>       widest(materials.size(), 0.); // crack bands
     for (const auto &cell : grid.triangulation().active_cell_iterators())
       if (cell->is_locally_owned())
         {
           const unsigned int m = material_of(cell);
-          for (unsigned int line = 0; line < 12; ++line)
-            longest[m] = std::max(longest[m], cell->line(line)->diameter());
           widest[m] =
             std::max(widest[m],
                      CrackBands::along_edges(cell, discretization.crack_share));
@@ -281,15 +313,13 @@ namespace Voussoir
     for (unsigned int m = 0; m < materials.size(); ++m)
       {
         const ElasticConstants c = materials[m]->elastic_constants();
-        const double       edge = Utilities::MPI::max(longest[m], communicator);
-        std::ostringstream text;
+        std::ostringstream     text;
         text << std::setprecision(4) << "Material "
              << parameters.materials.objects[m].first << ": mass "
              << mass.total[m] << " kg, P wave " << c.p_wave_speed()
              << " m/s, S wave " << c.s_wave_speed()
              << " m/s; its largest cells carry waves up to "
-             << std::setprecision(2)
-             << c.s_wave_speed() * discretization.degree / (8. * edge)
+             << std::setprecision(2) << carried_frequency(m, longest[m])
              << " Hz with 8 nodes per wavelength";
         log.line(text.str());
         const double band = Utilities::MPI::max(widest[m], communicator);

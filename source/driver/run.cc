@@ -39,6 +39,22 @@ namespace Voussoir
     }
 
 
+    /** The shortest of all records [s]; 0 if nothing is recorded. */
+    double
+    record_interval(const Model &model, const ResultFolder &folder)
+    {
+      double shortest = 0.;
+      if (folder.exists())
+        for (const auto &observer : model.parameters.observers)
+          {
+            const double interval = observer.second->record_interval();
+            if (interval > 0. && (shortest == 0. || interval < shortest))
+              shortest = interval;
+          }
+      return shortest;
+    }
+
+
     std::unique_ptr<WaterMotion>
     make_water(const Model      &model,
                const Earthquake &earthquake,
@@ -64,7 +80,11 @@ namespace Voussoir
     , folder(folder)
     , log(log)
     , damping(adapted_damping(model.parameters.damping, modes))
-    , time_step(model, damping, kept_step(folder), log)
+    , time_step(model,
+                damping,
+                kept_step(folder),
+                record_interval(model, folder),
+                log)
     , earthquake(model, damping, time_step, log)
     , water(make_water(model, earthquake, time_step))
     , contact(rest.contact)
@@ -179,8 +199,23 @@ namespace Voussoir
   {
     TimerOutput::Scope scope(timer, "energy balance");
     energy.evaluate(state);
-    if (const std::string reason = energy.alarm(); !reason.empty())
+    if (const std::string reason =
+          energy.alarm(model.parameters.output.energy_limit);
+        !reason.empty())
       abort(reason);
+    const double error =
+      std::max(energy.relative_error(), energy.error_of_losses());
+    if (error > 0.01 && warnings.empty())
+      {
+        std::ostringstream text;
+        text << std::setprecision(3) << "from t = " << state.time
+             << " s on more than 1 % of the energy comes from nowhere: "
+             << 100. * energy.relative_error() << " % of what came in, "
+             << 100. * energy.error_of_losses()
+             << " % of what damping, cracks, friction and impacts took";
+        warnings.push_back(text.str());
+        log.line("Warning: ", text.str());
+      }
   }
 
 
@@ -234,6 +269,9 @@ namespace Voussoir
                      last_good.time);
         written =
           "; the last good state is in " + folder.path() + "/last_good.vtu";
+        nlohmann::json result = summary();
+        result["verdict"]     = "stopped: " + reason;
+        write_summary(result);
       }
     std::ostringstream text;
     text << "Stopped at t = " << state.time << " s, because " << reason

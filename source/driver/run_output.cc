@@ -24,6 +24,7 @@ namespace Voussoir
             folder.path(),
             time_step.length,
             model.parameters.time.end_time,
+            model.carried_frequency(),
             earthquake.base,
             ResultNames(model.parameters.material_names(),
                         model.grid,
@@ -127,7 +128,10 @@ namespace Voussoir
       result["materials"] =
         memory_summary(observed, model.parameters.material_names());
     result["energy balance"] = energy.summary();
-    result["names"]          = observed.names.json();
+    result["verdict"] =
+      warnings.empty() ? "no objection" : "with warnings, see there";
+    result["warnings"] = warnings;
+    result["names"]    = observed.names.json();
     return result;
   }
 
@@ -142,9 +146,7 @@ namespace Voussoir
         TimerOutput::Scope scope(timer, "output");
         for (const auto &observer : model.parameters.observers)
           observer.second->finish(state, result);
-        if (Utilities::MPI::this_mpi_process(log.communicator()) == 0)
-          std::ofstream(folder.path() + "/summary.json")
-            << result.dump(2) << std::endl;
+        write_summary(result);
       }
 
     std::ostringstream text;
@@ -156,8 +158,19 @@ namespace Voussoir
       text << "Contact: "
            << 100. * result.at("contact share of the loop").get<double>()
            << " % of the loop\n";
+    for (const std::string &warning : warnings)
+      text << "Warning: " << warning << '\n';
     log(text.str());
     log(timer_table());
+  }
+
+
+  void
+  Run::write_summary(const nlohmann::json &result) const
+  {
+    if (Utilities::MPI::this_mpi_process(log.communicator()) == 0)
+      std::ofstream(folder.path() + "/summary.json")
+        << result.dump(2) << std::endl;
   }
 
 

@@ -55,7 +55,17 @@ namespace Voussoir
 
 
     double
-    chosen_step(const TimeParameters &parameters, const double limit)
+    fitted_step(const double step, const double interval)
+    {
+      const double whole = interval / std::ceil(interval / step - 1e-9);
+      return whole > 0.9 * step ? whole : step;
+    }
+
+
+    double
+    chosen_step(const TimeParameters &parameters,
+                const double          limit,
+                const double          interval)
     {
       const double given = parameters.time_step;
       if (given > limit)
@@ -67,7 +77,9 @@ namespace Voussoir
                << " s; choose a smaller one, or 0 for the automatic choice.";
           throw UserError(text.str());
         }
-      return given > 0. ? given : parameters.safety_factor * limit;
+      return given > 0. ?
+               given :
+               fitted_step(parameters.safety_factor * limit, interval);
     }
   } // namespace
 
@@ -75,6 +87,7 @@ namespace Voussoir
   TimeStep::TimeStep(const Model                 &model,
                      Damping                     &damping,
                      const std::optional<double> &kept,
+                     const double                 interval,
                      Log                         &log)
     : undamped_limit(0.)
     , central(model.parameters.time.scheme != "paper")
@@ -93,7 +106,7 @@ namespace Voussoir
     if (cracks)
       damping.add_mesh_viscosity(undamped_limit);
     limit  = limit_with_damping(model, damping, central);
-    length = kept ? *kept : chosen_step(model.parameters.time, limit);
+    length = kept ? *kept : chosen_step(model.parameters.time, limit, interval);
     if (cracks)
       {
         // a spring k with a dashpot c k is stable up to x^2 + 2 x c/dt_0 = 1

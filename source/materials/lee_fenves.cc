@@ -401,7 +401,9 @@ namespace Voussoir
 
     const Registry<Material>::Add<MaterialOf<LeeFenves>> registered(
       "lee-fenves",
-      "Concrete with plastic strain and damage in tension and compression, the "
-      "reference law for dams.");
+      "Concrete with plastic strain and damage in tension and compression after "
+      "Lee and Fenves (1998), modified: a crack that closes gets the stiffness "
+      "of the pressed directions back, not of all, so that the stress has a "
+      "potential.");
   } // namespace
 } // namespace Voussoir

@@ -2,9 +2,11 @@
 #include <voussoir/materials/principal_stress.h>
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/law_stress.h>
-#include <voussoir/output/stress_points.h>
 
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_tools.h>
+
+#include <bitset>
 
 namespace Voussoir
 {
@@ -12,27 +14,41 @@ namespace Voussoir
 
   namespace
   {
+    /** Of a cell: largest and smallest principal stress over the run [Pa], and
+     *  when [s]. */
+    using StressExtremes = std::array<double, 4>;
+
+
     /**
-     * Largest and smallest principal stress over the run in the centre of each
-     * cell, where stresses of trilinear cells are most accurate.
+     * Extremes of the principal stresses over the run in each cell, over the
+     * points that pictures show: its nodes.
      */
     class StressEnvelope
     {
     public:
-      /** @param sets cell sets to look at; none for all cells. Of a SIMD batch
-       *  with a cell in one of them all cells are looked at, and given. */
+      /** @param sets cell sets to look at; none for all cells */
       StressEnvelope(const ObservedModel            &model,
                      const std::vector<std::string> &sets)
         : model(model)
         , matrix_free(model.discretization.matrix_free)
+        , points(QTrapezoid<1>(), model.discretization.degree)
       {
         const auto &scalar = model.discretization.fe.base_element(0);
-        for (const unsigned int j :
-             FETools::lexicographic_to_hierarchic_numbering<3>(
-               model.discretization.degree))
+        const auto  order  = FETools::lexicographic_to_hierarchic_numbering<3>(
+          model.discretization.degree);
+        for (const Point<3> &point : points.get_points())
           {
-            shape_values.push_back(scalar.shape_value(j, centre));
-            shape_gradients.push_back(scalar.shape_grad(j, centre));
+            shape_values.emplace_back();
+            shape_gradients.emplace_back();
+            vertex_gradients.emplace_back();
+            for (const unsigned int j : order)
+              {
+                shape_values.back().push_back(scalar.shape_value(j, point));
+                shape_gradients.back().push_back(scalar.shape_grad(j, point));
+              }
+            for (unsigned int v = 0; v < 8; ++v)
+              vertex_gradients.back()[v] =
+                GeometryInfo<3>::d_linear_shape_function_gradient(point, v);
           }
         const bool is_static = model.initial.displacement.size() > 0;
         if (is_static)
@@ -42,8 +58,11 @@ namespace Voussoir
           }
         Evaluation cells(matrix_free);
         for (unsigned int b = 0; b < matrix_free.n_cell_batches(); ++b)
-          if (sets.empty() || any_cell_in(b, sets))
-            batches.push_back(make_batch(b, is_static, cells));
+          {
+            const auto watched = lanes_in(b, sets);
+            if (watched.any())
+              batches.push_back(make_batch(b, watched, is_static, cells));
+          }
         if (is_static)
           {
             model.initial.displacement.zero_out_ghost_values();
@@ -52,140 +71,339 @@ namespace Voussoir
       }
 
       void
-      update(const Vector &displacement)
+      update(const Vector &displacement, const double time)
       {
         displacement.update_ghost_values();
         Evaluation cells(matrix_free);
         for (Batch &batch : batches)
           {
-            const auto              total = strain(cells, batch, displacement);
-            SymmetricTensor3<Lanes> stress;
-            for (unsigned int lane = 0; lane < n_lanes(batch.number); ++lane)
+            cells.reinit(batch.number);
+            cells.read_dof_values(displacement);
+            Lanes high = -std::numeric_limits<double>::max(), low = -high;
+            for (unsigned int p = 0; p < points.size(); ++p)
               {
-                SymmetricTensor<2, 3> one, initial;
-                for (unsigned int c = 0; c < 6; ++c)
-                  {
-                    one.access_raw_entry(c) = total.access_raw_entry(c)[lane];
-                    initial.access_raw_entry(c) =
-                      batch.initial_strain.access_raw_entry(c)[lane];
-                  }
-                one = batch.laws[lane](one, initial, batch.temperature[lane]);
-                for (unsigned int c = 0; c < 6; ++c)
-                  stress.access_raw_entry(c)[lane] = one.access_raw_entry(c);
+                SymmetricTensor3<Lanes> total = strain(cells, batch, p);
+                if (!batch.offsets.empty())
+                  total += batch.offsets[p];
+                const auto [largest, smallest] =
+                  largest_and_smallest_principal(stress(batch, p, total));
+                high = std::max(high, largest);
+                low  = std::min(low, smallest);
               }
-            const auto [largest, smallest] =
-              largest_and_smallest_principal(stress);
-            for (unsigned int lane = 0; lane < n_lanes(batch.number); ++lane)
+            for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
               {
-                auto &[high, low] = batch.extremes[lane];
-                high              = std::max(high, largest[lane]);
-                low               = std::min(low, smallest[lane]);
+                StressExtremes &extremes = batch.extremes[lane];
+                // a NaN stays
+                if (!(high[lane] <= extremes[0]))
+                  {
+                    extremes[0] = high[lane];
+                    extremes[2] = time;
+                  }
+                if (!(low[lane] >= extremes[1]))
+                  {
+                    extremes[1] = low[lane];
+                    extremes[3] = time;
+                  }
               }
           }
         displacement.zero_out_ghost_values();
       }
 
-      /** Visits the extremes of each cell that is looked at [Pa]. */
+      /** Visits each cell that is looked at. */
       void
       for_each_cell(const std::function<void(const Discretization::Cell &,
-                                             std::array<double, 2> &)> &visit)
+                                             StressExtremes &)> &visit)
       {
         for (Batch &batch : batches)
-          for (unsigned int lane = 0; lane < n_lanes(batch.number); ++lane)
-            visit(matrix_free.get_cell_iterator(batch.number, lane),
-                  batch.extremes[lane]);
+          for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+            if (batch.watched[lane])
+              visit(matrix_free.get_cell_iterator(batch.number, lane),
+                    batch.extremes[lane]);
       }
 
     private:
       using Evaluation = FEEvaluation<3, -1, 0, 3, double>;
+      using LaneSet    = std::bitset<Lanes::size()>;
 
       struct Batch
       {
         Batch()
         {
           extremes.fill({{-std::numeric_limits<double>::max(),
-                          std::numeric_limits<double>::max()}});
+                          std::numeric_limits<double>::max(),
+                          0.,
+                          0.}});
         }
 
-        unsigned int            number = 0;
-        Tensor<2, 3, Lanes>     inverse_jacobian;
-        SymmetricTensor3<Lanes> initial_strain;
-        Lanes                   temperature = 0.; // change [K]
-        std::vector<LawStress>  laws;             // of each cell
+        unsigned int                       number = 0;
+        LaneSet                            watched;
+        std::array<Tensor<1, 3, Lanes>, 8> vertices;
 
-        // largest and smallest of each cell
-        std::array<std::array<double, 2>, Lanes::size()> extremes;
+        // of the law where it is elastic [Pa]
+        bool  isotropic   = true;
+        Lanes lame_lambda = 0., shear_modulus = 0.;
+
+        // of each point: what the law's strain is more than the total one, if
+        // there is a static stage
+        AlignedVector<SymmetricTensor3<Lanes>> offsets;
+
+        std::vector<LawStress> laws; // of each watched lane and point
+
+        std::array<StressExtremes, Lanes::size()> extremes;
       };
 
-      bool
-      any_cell_in(const unsigned int              batch,
-                  const std::vector<std::string> &sets) const
+      LaneSet
+      lanes_in(const unsigned int              batch,
+               const std::vector<std::string> &sets) const
       {
-        for (unsigned int lane = 0; lane < n_lanes(batch); ++lane)
-          for (const std::string &set : sets)
-            if (model.discretization.grid.in_cell_set(
-                  matrix_free.get_cell_iterator(batch, lane), set))
-              return true;
-        return false;
+        LaneSet found;
+        for (unsigned int lane = 0;
+             lane < matrix_free.n_active_entries_per_cell_batch(batch);
+             ++lane)
+          found[lane] =
+            sets.empty() ||
+            std::any_of(sets.begin(), sets.end(), [&](const auto &set) {
+              return model.discretization.grid.in_cell_set(
+                matrix_free.get_cell_iterator(batch, lane), set);
+            });
+        return found;
       }
 
       Batch
       make_batch(const unsigned int number,
+                 const LaneSet     &watched,
                  const bool         is_static,
                  Evaluation        &cells) const
       {
         Batch batch;
-        batch.number = number;
-        for (unsigned int lane = 0; lane < n_lanes(number); ++lane)
+        batch.number          = number;
+        batch.watched         = watched;
+        unsigned int material = 0;
+        for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
           {
-            const auto cell = matrix_free.get_cell_iterator(number, lane);
-            const Tensor<2, 3> inverse = inverse_jacobian(cell, centre);
-            batch.laws.emplace_back(model, cell, centre);
-            for (unsigned int i = 0; i < 3; ++i)
-              for (unsigned int k = 0; k < 3; ++k)
-                batch.inverse_jacobian[i][k][lane] = inverse[i][k];
+            const bool exists =
+              lane < matrix_free.n_active_entries_per_cell_batch(number);
+            const auto cell =
+              matrix_free.get_cell_iterator(number, exists ? lane : 0);
+            material = model.material_of_cell(cell);
+            for (unsigned int v = 0; v < 8; ++v)
+              for (unsigned int d = 0; d < 3; ++d)
+                batch.vertices[v][d][lane] = cell->vertex(v)[d];
+            if (watched[lane])
+              for (const Point<3> &point : points.get_points())
+                batch.laws.emplace_back(model, cell, point);
           }
-        if (is_static)
+        const ElasticConstants elastic =
+          model.materials[material]->elastic_constants();
+        batch.isotropic     = model.materials[material]->isotropic();
+        batch.lame_lambda   = elastic.lame_lambda();
+        batch.shear_modulus = elastic.shear_modulus();
+        if (!is_static)
+          return batch;
+        cells.reinit(number);
+        for (unsigned int p = 0; p < points.size(); ++p)
           {
-            batch.initial_strain =
-              strain(cells, batch, model.initial.displacement);
+            cells.read_dof_values(model.initial.displacement);
+            const SymmetricTensor3<Lanes> initial = strain(cells, batch, p);
             cells.read_dof_values(model.initial.temperature);
-            for (unsigned int j = 0; j < shape_values.size(); ++j)
-              batch.temperature +=
-                shape_values[j] * cells.begin_dof_values()[j];
+            Lanes temperature = 0.;
+            for (unsigned int j = 0; j < shape_values[p].size(); ++j)
+              temperature += shape_values[p][j] * cells.begin_dof_values()[j];
+            SymmetricTensor3<Lanes> offset;
+            for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+              set_lane(offset,
+                       lane,
+                       model.materials[material]->strain_of_law(
+                         {}, lane_of(initial, lane), temperature[lane]));
+            batch.offsets.push_back(offset);
           }
         return batch;
       }
 
-      unsigned int
-      n_lanes(const unsigned int batch) const
+      static SymmetricTensor<2, 3>
+      lane_of(const SymmetricTensor3<Lanes> &tensor, const unsigned int lane)
       {
-        return matrix_free.n_active_entries_per_cell_batch(batch);
+        SymmetricTensor<2, 3> one;
+        for (unsigned int c = 0; c < 6; ++c)
+          one.access_raw_entry(c) = tensor.access_raw_entry(c)[lane];
+        return one;
       }
 
-      SymmetricTensor3<Lanes>
-      strain(Evaluation   &cells,
-             const Batch  &batch,
-             const Vector &displacement) const
+      static void
+      set_lane(SymmetricTensor3<Lanes>     &tensor,
+               const unsigned int           lane,
+               const SymmetricTensor<2, 3> &one)
       {
-        cells.reinit(batch.number);
-        cells.read_dof_values(displacement);
+        for (unsigned int c = 0; c < 6; ++c)
+          tensor.access_raw_entry(c)[lane] = one.access_raw_entry(c);
+      }
+
+      /** Stress of the law under its strain at a point. */
+      SymmetricTensor3<Lanes>
+      stress(const Batch                   &batch,
+             const unsigned int             point,
+             const SymmetricTensor3<Lanes> &strain) const
+      {
+        SymmetricTensor3<Lanes> result = 2. * batch.shear_modulus * strain;
+        const Lanes             mean   = batch.lame_lambda * trace(strain);
+        for (unsigned int d = 0; d < 3; ++d)
+          result[d][d] += mean;
+        unsigned int first = 0;
+        for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+          if (batch.watched[lane])
+            {
+              const LawStress &law = batch.laws[first + point];
+              if (!batch.isotropic || !law.is_elastic(lane_of(result, lane)))
+                set_lane(result, lane, law(lane_of(strain, lane), {}, 0.));
+              first += points.size();
+            }
+        return result;
+      }
+
+      /** Of the values that @p cells has read. */
+      SymmetricTensor3<Lanes>
+      strain(const Evaluation  &cells,
+             const Batch       &batch,
+             const unsigned int point) const
+      {
+        Tensor<2, 3, Lanes> jacobian;
+        for (unsigned int v = 0; v < 8; ++v)
+          for (unsigned int d = 0; d < 3; ++d)
+            for (unsigned int k = 0; k < 3; ++k)
+              jacobian[d][k] +=
+                vertex_gradients[point][v][k] * batch.vertices[v][d];
         const Lanes        *values = cells.begin_dof_values();
         Tensor<2, 3, Lanes> unit_gradient;
         for (unsigned int d = 0; d < 3; ++d)
-          for (unsigned int j = 0; j < shape_gradients.size(); ++j, ++values)
-            for (unsigned int k = 0; k < 3; ++k)
-              unit_gradient[d][k] += shape_gradients[j][k] * *values;
-        return symmetrize(unit_gradient * batch.inverse_jacobian);
+          for (const Tensor<1, 3> &gradient : shape_gradients[point])
+            {
+              for (unsigned int k = 0; k < 3; ++k)
+                unit_gradient[d][k] += gradient[k] * *values;
+              ++values;
+            }
+        return symmetrize(unit_gradient * invert(jacobian));
       }
 
-      const Point<3>                    centre{0.5, 0.5, 0.5};
       const ObservedModel               model;
       const Discretization::MatrixFree &matrix_free;
-      std::vector<double>               shape_values;    // in the centre
-      std::vector<Tensor<1, 3>>         shape_gradients; // by unit coordinate
-      AlignedVector<Batch>              batches;
+      const QIterated<3>                points;
+
+      // of each point, in the order of an evaluation, by unit coordinate
+      std::vector<std::vector<double>>         shape_values;
+      std::vector<std::vector<Tensor<1, 3>>>   shape_gradients;
+      std::vector<std::array<Tensor<1, 3>, 8>> vertex_gradients;
+
+      AlignedVector<Batch> batches;
     };
+
+
+    /** The largest tension of the cells of a material, for the summary. */
+    class TensionSummary
+    {
+    public:
+      void
+      add(const StressExtremes &extremes,
+          const Point<3>       &where,
+          const double          volume,
+          const bool            beside_another)
+      {
+        if (extremes[0] > most.stress)
+          most = {extremes[0], extremes[2], where};
+        if (!beside_another)
+          away = std::max(away, extremes[0]);
+        cells.push_back(extremes[0]);
+        cells.push_back(volume);
+      }
+
+      /** All ranks must call this together. */
+      nlohmann::json
+      json(const MPI_Comm communicator) const
+      {
+        Cell                largest = most;
+        std::vector<double> all;
+        for (const Cell &one : Utilities::MPI::all_gather(communicator, most))
+          if (one.stress > largest.stress)
+            largest = one;
+        for (const auto &part : Utilities::MPI::all_gather(communicator, cells))
+          all.insert(all.end(), part.begin(), part.end());
+        nlohmann::json result{
+          {"largest principal stress [MPa]", 1e-6 * largest.stress},
+          {"at the time [s]", largest.time},
+          {"in the cell at [m]",
+           {largest.where[0], largest.where[1], largest.where[2]}},
+          {"not exceeded in 95 % of the volume [MPa]", 1e-6 * percentile(all)}};
+        const double elsewhere = Utilities::MPI::max(away, communicator);
+        if (elsewhere > nothing)
+          result["in cells that touch no other material [MPa]"] =
+            1e-6 * elsewhere;
+        return result;
+      }
+
+    private:
+      static constexpr double nothing = -std::numeric_limits<double>::max();
+
+      struct Cell
+      {
+        double   stress = nothing, time = 0.;
+        Point<3> where;
+
+        template <class Archive>
+        void
+        serialize(Archive &archive, const unsigned int)
+        {
+          archive &stress &time &where;
+        }
+      };
+
+      static double
+      percentile(const std::vector<double> &stress_and_volume)
+      {
+        std::vector<std::pair<double, double>> sorted;
+        double                                 volume = 0.;
+        for (std::size_t i = 0; i < stress_and_volume.size(); i += 2)
+          {
+            sorted.emplace_back(stress_and_volume[i], stress_and_volume[i + 1]);
+            volume += sorted.back().second;
+          }
+        std::sort(sorted.begin(), sorted.end());
+        double below = 0.;
+        for (const auto &[stress, own] : sorted)
+          {
+            below += own;
+            if (below >= 0.95 * volume)
+              return stress;
+          }
+        return nothing;
+      }
+
+      Cell                most;
+      double              away = nothing; // [Pa]
+      std::vector<double> cells;          // stress [Pa] and volume [m3] of each
+    };
+
+
+    /** Vertices at which cells of different materials meet. */
+    std::vector<bool>
+    vertices_between_materials(const ObservedModel &model)
+    {
+      const auto &triangulation = model.discretization.grid.triangulation();
+      constexpr unsigned int    none = numbers::invalid_unsigned_int;
+      std::vector<unsigned int> first(triangulation.n_vertices(), none);
+      std::vector<bool>         between(triangulation.n_vertices(), false);
+      for (const auto &cell :
+           model.discretization.dof_handler.active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const unsigned int material = model.material_of_cell(cell);
+              unsigned int      &known    = first[cell->vertex_index(v)];
+              if (known == none)
+                known = material;
+              else if (known != material)
+                between[cell->vertex_index(v)] = true;
+            }
+      return between;
+    }
 
 
     /** Largest motion of each node and stress of each cell over the run. */
@@ -197,12 +415,16 @@ namespace Voussoir
       {
         prm.add_parameter("Interval",
                           interval,
-                          "Time between two looks at the motion [s].",
+                          "Time between two looks at the motion [s]; the "
+                          "acceleration is the mean over it, which leaves out "
+                          "what is above 0.44 over this time, and that of "
+                          "single steps at the looks.",
                           Patterns::Double(1e-6));
         prm.add_parameter("Stress interval",
                           stress_interval,
                           "Time between two looks at the principal stresses "
-                          "in the centres of the cells [s]; 0 for none.",
+                          "at the nodes of each cell, the points that pictures "
+                          "show [s]; 0 for none.",
                           Patterns::Double(0.));
         prm.add_parameter("Stress in",
                           stress_sets,
@@ -223,9 +445,10 @@ namespace Voussoir
       {
         model    = std::make_unique<ObservedModel>(observed);
         schedule = Schedule(interval, model->time_step);
-        // the three components of a node hold its three largest amounts
-        largest  = model->discretization.create_vector();
-        previous = largest;
+        // the three components of a node hold three numbers each
+        largest       = model->discretization.create_vector();
+        accelerations = previous = last_look = largest;
+        last_step                            = 0;
         stress.reset();
         if (stress_interval > 0.)
           {
@@ -238,53 +461,77 @@ namespace Voussoir
       void
       observe(const State &state) override
       {
-        if (state.step > 0 && schedule.due(state.step))
+        if (state.step > last_step && schedule.due(state.step))
           update(state);
         // the acceleration needs the velocity of two steps in a row
         if (schedule.due(state.step + 1))
           previous = state.velocity;
         if (stress && stress_schedule.due(state.step))
-          stress->update(state.displacement);
+          stress->update(state.displacement, state.time);
       }
 
       void
-      finish(const State &state, nlohmann::json &) override
+      finish(const State &state, nlohmann::json &summary) override
       {
-        dealii::Vector<float>  high, low;
-        std::vector<CellField> cell_fields;
+        std::array<dealii::Vector<float>, 4> values;
+        std::vector<CellField>               cell_fields;
         if (stress)
           {
             const auto n =
               model->discretization.grid.triangulation().n_active_cells();
-            high.reinit(n);
-            low.reinit(n);
             // cells that are not looked at
-            std::fill(high.begin(),
-                      high.end(),
-                      std::numeric_limits<float>::quiet_NaN());
-            low = high;
+            for (auto &field : values)
+              {
+                field.reinit(n);
+                std::fill(field.begin(),
+                          field.end(),
+                          std::numeric_limits<float>::quiet_NaN());
+              }
             stress->for_each_cell([&](const auto &cell, const auto &extremes) {
-              high[cell->active_cell_index()] = 1e-6 * extremes[0];
-              low[cell->active_cell_index()]  = 1e-6 * extremes[1];
+              for (unsigned int c = 0; c < 4; ++c)
+                values[c][cell->active_cell_index()] =
+                  (c < 2 ? 1e-6 : 1.) * extremes[c];
             });
-            cell_fields = {{&high, "largest_principal_stress_MPa"},
-                           {&low, "smallest_principal_stress_MPa"}};
+            cell_fields = {{&values[0], "largest_principal_stress_MPa"},
+                           {&values[1], "smallest_principal_stress_MPa"},
+                           {&values[2], "time_of_largest_s"},
+                           {&values[3], "time_of_smallest_s"}};
+            summarise_stress(summary["envelopes"]);
           }
         write_fields(*model,
                      {{&largest,
                        {"largest_displacement_m",
                         "largest_velocity_m_per_s",
-                        "largest_acceleration_m_per_s2"}}},
+                        "largest_acceleration_m_per_s2"}},
+                      {&accelerations,
+                       {"largest_acceleration_of_a_single_step_m_per_s2",
+                        "time_of_largest_displacement_s",
+                        "time_of_largest_acceleration_s"}}},
                      nullptr,
                      "envelopes",
                      state.time,
                      cell_fields);
       }
 
+      nlohmann::json
+      save() override
+      {
+        return last_step;
+      }
+
+      void
+      load(const nlohmann::json &saved) override
+      {
+        saved.get_to(last_step);
+      }
+
       std::map<std::string, Vector *>
       checkpoint_vectors() override
       {
-        return {{"envelope", &largest}, {"envelope velocity", &previous}};
+        return {{"envelope", &largest},
+                {"envelope accelerations", &accelerations},
+                {"envelope velocity", &previous},
+                {"envelope velocity of the last look", &last_look}};
       }
 
       std::map<std::string, KeyedValues>
@@ -292,7 +539,7 @@ namespace Voussoir
       {
         if (!stress)
           return {};
-        KeyedValues values{2, {}};
+        KeyedValues values{4, {}};
         stress->for_each_cell([&](const auto &cell, auto &extremes) {
           values.items.emplace_back(Grid::global_key(cell), extremes.data());
         });
@@ -301,32 +548,70 @@ namespace Voussoir
 
     private:
       void
+      summarise_stress(nlohmann::json &summary)
+      {
+        const auto between = vertices_between_materials(*model);
+        std::vector<TensionSummary> materials(model->materials.size());
+        stress->for_each_cell([&](const auto &cell, const auto &extremes) {
+          bool beside = false;
+          for (const unsigned int v : cell->vertex_indices())
+            beside = beside || between[cell->vertex_index(v)];
+          materials[model->material_of_cell(cell)].add(extremes,
+                                                       cell->center(),
+                                                       cell->measure(),
+                                                       beside);
+        });
+        for (unsigned int m = 0; m < materials.size(); ++m)
+          {
+            const auto found =
+              materials[m].json(model->discretization.grid.communicator());
+            if (found.at("largest principal stress [MPa]").get<double>() >
+                -1e300)
+              summary[model->names.materials[m]] = found;
+          }
+      }
+
+      void
       update(const State &state)
       {
-        const auto norm = [](const double *x) {
+        const double looked = (state.step - last_step) * model->time_step;
+        const auto   norm   = [](const double *x) {
           return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
         };
         for (unsigned int i = 0; i < largest.locally_owned_size(); i += 3)
           {
-            const double *v = state.velocity.begin() + i;
-            const double *p = previous.begin() + i;
-            const double  a[3]{(v[0] - p[0]) / model->time_step,
-                               (v[1] - p[1]) / model->time_step,
-                               (v[2] - p[2]) / model->time_step};
-            double       *m = largest.begin() + i;
-            m[0] = std::max(m[0], norm(state.displacement.begin() + i));
+            const double *v    = state.velocity.begin() + i;
+            const auto    mean = [&](const double *before, const double time) {
+              const double change[3]{v[0] - before[0],
+                                     v[1] - before[1],
+                                     v[2] - before[2]};
+              return norm(change) / time;
+            };
+            const double displacement = norm(state.displacement.begin() + i),
+                         acceleration = mean(last_look.begin() + i, looked);
+            double *m = largest.begin() + i, *a = accelerations.begin() + i;
+            if (displacement > m[0])
+              a[1] = state.time;
+            if (acceleration > m[2])
+              a[2] = state.time;
+            m[0] = std::max(m[0], displacement);
             m[1] = std::max(m[1], norm(v));
-            m[2] = std::max(m[2], norm(a));
+            m[2] = std::max(m[2], acceleration);
+            a[0] = std::max(a[0], mean(previous.begin() + i, model->time_step));
           }
+        last_look = state.velocity;
+        last_step = state.step;
       }
 
       double      interval = 0.01, stress_interval = 0.02;
       std::string stress_sets;
 
-      std::unique_ptr<ObservedModel>  model;
-      Schedule                        schedule, stress_schedule;
-      Vector                          largest, previous;
-      std::unique_ptr<StressEnvelope> stress; // null: not wanted
+      std::unique_ptr<ObservedModel> model;
+      Schedule                       schedule, stress_schedule;
+      Vector                         largest, accelerations;
+      Vector previous, last_look; // velocities of a step and of a look before
+      unsigned long long              last_step = 0; // of that look
+      std::unique_ptr<StressEnvelope> stress;        // null: not wanted
     };
 
     const Registry<Observer>::Add<Envelopes> registered(

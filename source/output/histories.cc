@@ -12,8 +12,12 @@ namespace Voussoir
     {
       const char *name, *unit;
     };
-    const std::array<Quantity, 3> all_quantities{
-      {{"displacement", "m"}, {"velocity", "m/s"}, {"acceleration", "m/s2"}}};
+    constexpr unsigned int                   n_quantities = 4;
+    const std::array<Quantity, n_quantities> all_quantities{
+      {{"displacement", "m"},
+       {"velocity", "m/s"},
+       {"acceleration", "m/s2"},
+       {"filtered acceleration", "m/s2"}}};
 
 
     /** Displacement, velocity and acceleration of named points, as columns of
@@ -31,13 +35,29 @@ namespace Voussoir
         prm.add_parameter("Quantities",
                           quantities,
                           "What to write: displacement [m], velocity [m/s], "
-                          "acceleration [m/s2].",
+                          "acceleration [m/s2], in which cracks and joints "
+                          "that clap show as single steps, and that without "
+                          "what is above the filter frequency.",
                           Patterns::MultipleSelection(
-                            "displacement|velocity|acceleration"));
+                            "displacement|velocity|acceleration|filtered "
+                            "acceleration"));
+        prm.add_parameter("Filter frequency",
+                          filter_frequency,
+                          "Of the filtered acceleration, which is the mean "
+                          "over 0.443 of its period: what has this frequency "
+                          "passes by 0.71 [Hz]; 0 for the highest that the "
+                          "mesh carries with eight nodes per wavelength.",
+                          Patterns::Double(0.));
         prm.add_parameter("Interval",
                           interval,
                           "Time between two lines [s].",
                           Patterns::Double(1e-6));
+      }
+
+      double
+      record_interval() const override
+      {
+        return interval;
       }
 
       void
@@ -51,8 +71,10 @@ namespace Voussoir
               const double         start_time,
               const bool           restarted) override
       {
-        recorder.prepare(model, interval);
-        largest.assign(recorder.points().size(), {{0., 0., 0.}});
+        filtered_at =
+          filter_frequency > 0. ? filter_frequency : model.carried_frequency;
+        recorder.prepare(model, interval, 0.443 / filtered_at);
+        largest.assign(recorder.points().size(), {});
         const std::string relative =
           recorder.reference() < 0 ?
             "" :
@@ -60,7 +82,7 @@ namespace Voussoir
         std::vector<std::string> columns;
         for (const NamedPoint &point : recorder.points())
           for (unsigned int d = 0; d < 3; ++d)
-            for (unsigned int k = 0; k < 3; ++k)
+            for (unsigned int k = 0; k < n_quantities; ++k)
               if (wanted(k))
                 columns.push_back(point.name + ' ' + all_quantities[k].name +
                                   ' ' + "xyz"[d] + relative + " [" +
@@ -93,9 +115,12 @@ namespace Voussoir
         for (unsigned int p = 0; p < recorder.points().size(); ++p)
           {
             auto &point = result[recorder.points()[p].name];
-            point["largest displacement [m]"]    = largest[p][0];
-            point["largest velocity [m/s]"]      = largest[p][1];
-            point["largest acceleration [m/s2]"] = largest[p][2];
+            point["largest displacement [m]"] = largest[p][0];
+            point["largest velocity [m/s]"]   = largest[p][1];
+            point["largest acceleration of a single step [m/s2]"] =
+              largest[p][2];
+            point["largest filtered acceleration [m/s2]"] = largest[p][3];
+            point["filtered at [Hz]"]                     = filtered_at;
             if (recorder.reference() >= 0)
               point["relative to"] =
                 recorder.points()[recorder.reference()].name;
@@ -106,14 +131,16 @@ namespace Voussoir
       save() override
       {
         flush();
-        return largest;
+        return {{"largest", largest}, {"window", recorder.save()}};
       }
 
       void
       load(const nlohmann::json &saved) override
       {
-        if (saved.size() == largest.size())
-          saved.get_to(largest);
+        if (saved.at("largest").size() != largest.size())
+          return;
+        saved.at("largest").get_to(largest);
+        recorder.load(saved.at("window"));
       }
 
     private:
@@ -136,14 +163,14 @@ namespace Voussoir
             for (unsigned int p = 0; p < line.points.size(); ++p)
               {
                 PointMotion motion = line.points[p];
-                for (unsigned int k = 0; k < 3; ++k)
+                for (unsigned int k = 0; k < n_quantities; ++k)
                   {
                     if (reference >= 0)
                       motion[k] -= line.points[reference][k];
                     largest[p][k] = std::max(largest[p][k], motion[k].norm());
                   }
                 for (unsigned int d = 0; d < 3; ++d)
-                  for (unsigned int k = 0; k < 3; ++k)
+                  for (unsigned int k = 0; k < n_quantities; ++k)
                     if (wanted(k))
                       values.push_back(motion[k][d]);
               }
@@ -152,14 +179,17 @@ namespace Voussoir
         table.flush();
       }
 
-      std::string quantities = "displacement, velocity, acceleration";
-      double      interval   = 0.01;
+      std::string quantities =
+        "displacement, velocity, acceleration, filtered acceleration";
+      double interval = 0.01, filter_frequency = 0.;
 
       PointRecorder recorder{"Output/histories", "Relative to"};
       TimeTable     table;
 
-      // of each point: displacement, velocity, acceleration [m, m/s, m/s2]
-      std::vector<std::array<double, 3>> largest;
+      double filtered_at = 0.; // [Hz]
+
+      // of each point: amounts of its motion
+      std::vector<std::array<double, n_quantities>> largest;
     };
 
     const Registry<Observer>::Add<Histories>

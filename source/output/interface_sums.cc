@@ -36,11 +36,15 @@ namespace Voussoir
         sum[shear_x + d] += global[d] - F[0] * point.frame[0][d];
         sum[force_x + d] += global[d];
       }
-    // without keys
     ContactLimits limits = point.limits;
-    limits.locked        = false;
-    sum[resistance] += limits.shear(open, F[0]);
-    sum[shear_of_points] += std::hypot(F[1], F[2]);
+    if (limits.locked)
+      sum[locked_area] += point.area;
+    else
+      {
+        sum[resistance] += limits.shear(open, F[0]);
+        sum[shear_of_points] += std::hypot(F[1], F[2]);
+      }
+    limits.locked = false;
     sum[cohesion] += limits.shear(open, 0.);
     sum[friction] += open ? 0. : limits.friction * point.area;
   }
@@ -49,8 +53,8 @@ namespace Voussoir
   std::array<double, n_surface_columns>
   surface_values(const double *sum, const double *largest, const double area)
   {
-    // infinite without shear, as in an open joint without keys, or with as good
-    // as none
+    // infinite without shear, as in an open joint without keys or one that keys
+    // hold, or with as good as none
     const double       safety = sum[shear_of_points] > 1e-6 * sum[resistance] ?
                                   sum[resistance] / sum[shear_of_points] :
                                   std::numeric_limits<double>::infinity();
@@ -78,6 +82,9 @@ namespace Voussoir
       {
         const double *sum  = sums + n_quantities * plane.surface;
         const double  area = areas[plane.surface];
+        // it cannot slide as long as keys hold it
+        if (sum[locked_area] > 0.)
+          return std::numeric_limits<double>::infinity();
         for (unsigned int d = 0; d < 3; ++d)
           force[d] += plane.side * sum[force_x + d];
         const double closed_area = area - sum[open_area];

@@ -30,10 +30,24 @@ namespace Voussoir
   {
     const auto strain_of_law =
       material->strain_of_law(strain, initial_strain, temperature);
-    const double band = history == nullptr ? 0. : history->band(place, q);
-    if (band == 0.)
-      return material->stress(strain_of_law);
+    const auto elastic = material->stress(strain_of_law);
+    if (is_elastic(elastic))
+      return elastic;
+    const double band = history->band(place, q);
+    const double width =
+      band > 0. ? band : history->bands(place.batch).widest[place.lane];
     std::vector<double> memory = history->read(place, q);
-    return material->respond(strain_of_law, memory.data(), {band, 0.}).stress;
+    return material->respond(strain_of_law, memory.data(), {width, 0.}).stress;
+  }
+
+
+  bool
+  LawStress::is_elastic(const SymmetricTensor<2, 3> &elastic_stress) const
+  {
+    return history == nullptr ||
+           (history->band(place, q) == 0. &&
+            material->load_level(
+              elastic_stress, history->bands(place.batch).widest[place.lane]) <=
+              1.);
   }
 } // namespace Voussoir

@@ -3,18 +3,13 @@
 namespace Voussoir
 {
   Schedule::Schedule(const double interval, const double time_step)
-    : interval(interval)
-    , time_step(time_step)
+    : steps(std::max(1LL, std::llround(std::min(interval / time_step, 1e15))))
   {}
 
 
   bool
   Schedule::due(const unsigned long long step) const
   {
-    // the steps nearest to the multiples of the interval
-    const auto tick = [&](const double s) {
-      return std::floor(s * time_step / interval + 0.5 * time_step / interval);
-    };
-    return step == 0 || tick(double(step)) != tick(double(step) - 1.);
+    return step % steps == 0;
   }
 } // namespace Voussoir

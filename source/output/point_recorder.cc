@@ -55,9 +55,12 @@ namespace Voussoir
 
 
   void
-  PointRecorder::prepare(const ObservedModel &model, const double interval)
+  PointRecorder::prepare(const ObservedModel &model,
+                         const double         interval,
+                         const double         window)
   {
     record          = Record();
+    record.window   = std::max(1LL, std::llround(window / model.time_step));
     record.model    = std::make_unique<ObservedModel>(model);
     record.schedule = Schedule(interval, model.time_step);
     std::tie(record.points, record.reference) = parse();
@@ -85,23 +88,65 @@ namespace Voussoir
   PointRecorder::observe(const State &state)
   {
     const double time_step = record.model->time_step;
-    auto         velocity  = record.weights->share(state.velocity);
+    // after a restart the last one comes once more
+    if (!record.velocities.empty() && !record.has_last)
+      record.velocities.pop_back();
+    record.velocities.push_back(record.weights->share(state.velocity));
+    if (record.velocities.size() > record.window + 1)
+      record.velocities.pop_front();
     if (record.has_last && record.schedule.due(state.step - 1))
       {
+        const auto &velocities = record.velocities;
         for (unsigned int p = 0; p < record.points.size(); ++p)
           for (unsigned int d = 0; d < 3; ++d)
             {
-              const double before = record.last_velocity[p][d],
-                           after  = velocity[p][d];
+              const double before = velocities.rbegin()[1][p][d],
+                           after  = velocities.back()[p][d];
               record.shares.push_back(record.last_displacement[p][d]);
               record.shares.push_back(0.5 * (before + after));
               record.shares.push_back((after - before) / time_step);
+              record.shares.push_back(after);
+              record.shares.push_back(velocities.size() > record.window ?
+                                        velocities.front()[p][d] :
+                                        0.);
             }
         record.times.push_back(double(state.step - 1) * time_step);
       }
     record.last_displacement = record.weights->share(state.displacement);
-    record.last_velocity     = std::move(velocity);
     record.has_last          = true;
+  }
+
+
+  nlohmann::json
+  PointRecorder::save() const
+  {
+    std::vector<double> values;
+    for (const auto &velocity : record.velocities)
+      for (const Tensor<1, 3> &v : velocity)
+        values.insert(values.end(), v.begin_raw(), v.end_raw());
+    return sum_over_ranks(values,
+                          record.model->discretization.grid.communicator());
+  }
+
+
+  void
+  PointRecorder::load(const nlohmann::json &saved)
+  {
+    const std::vector<double> values = saved;
+    const std::size_t         n      = record.points.size();
+    if (n == 0 || values.size() % (3 * n) != 0)
+      return;
+    // the first rank has all of them
+    const bool mine = Utilities::MPI::this_mpi_process(
+                        record.model->discretization.grid.communicator()) == 0;
+    record.velocities.assign(values.size() / (3 * n),
+                             std::vector<Tensor<1, 3>>(n));
+    auto value = values.begin();
+    for (auto &velocity : record.velocities)
+      for (Tensor<1, 3> &v : velocity)
+        for (unsigned int d = 0; d < 3; ++d, ++value)
+          if (mine)
+            v[d] = *value;
   }
 
 
@@ -123,14 +168,24 @@ namespace Voussoir
     for (const double time : record.times)
       {
         lines.push_back({time, std::vector<PointMotion>(record.points.size())});
-        const RigidBase                  &ground = record.model->base;
-        const std::array<Tensor<1, 3>, 3> base{{ground.displacement(time),
-                                                ground.velocity(time),
-                                                ground.acceleration(time)}};
+        const RigidBase &ground    = record.model->base;
+        const double     time_step = record.model->time_step,
+                     window        = double(record.window) * time_step,
+                     end           = time + 0.5 * time_step;
+        const PointMotion base{{ground.displacement(time),
+                                ground.velocity(time),
+                                ground.acceleration(time),
+                                (ground.velocity(end) -
+                                 ground.velocity(std::max(0., end - window))) /
+                                  window}};
         for (PointMotion &motion : lines.back().points)
           for (unsigned int d = 0; d < 3; ++d)
-            for (unsigned int k = 0; k < 3; ++k)
-              motion[k][d] = *value++ + base[k][d];
+            {
+              for (unsigned int k = 0; k < 3; ++k)
+                motion[k][d] = *value++ + base[k][d];
+              const double after = *value++, before_window = *value++;
+              motion[3][d] = (after - before_window) / window + base[3][d];
+            }
       }
     record.shares.clear();
     record.times.clear();

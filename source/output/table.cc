@@ -1,5 +1,6 @@
 #include <voussoir/output/table.h>
 
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -28,7 +29,12 @@ namespace Voussoir
     std::ostringstream line;
     line << std::setprecision(9);
     for (std::size_t i = 0; i < values.size(); ++i)
-      line << (i > 0 ? "," : "") << values[i];
+      {
+        line << (i > 0 ? "," : "");
+        // there is no such number, as the safety of what bears no shear
+        if (!std::isinf(values[i]))
+          line << values[i];
+      }
     return line.str();
   }
 

@@ -47,8 +47,8 @@ namespace Voussoir
                                               [ReferenceCells::Hexahedron
                                                  .face_to_cell_vertices(
                                                    face.face, v, 1)]][2];
-                    lowest  = std::min(lowest, z);
-                    highest = std::max(highest, z);
+                    lowest = std::min(lowest, z);
+                    keep_largest(highest, z);
                   }
             const std::string at = std::to_string(elevation) + " m: ";
             // feet of the coarse columns are up to 90 m apart

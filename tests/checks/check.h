@@ -44,6 +44,39 @@ namespace Voussoir
     const bool speaks;
   };
 
+  /** Takes the value if it is larger; a NaN stays. */
+  template <typename Number>
+  void
+  keep_largest(Number &largest, const std::remove_reference_t<Number> &value)
+  {
+    if (!(value <= largest) && !std::isnan(largest))
+      largest = value;
+  }
+
+
+  /** Takes the value if it is smaller; a NaN stays. */
+  template <typename Number>
+  void
+  keep_smallest(Number &smallest, const std::remove_reference_t<Number> &value)
+  {
+    if (!(value >= smallest) && !std::isnan(smallest))
+      smallest = value;
+  }
+
+
+  /** Zero for what is below; a NaN stays. */
+  inline double
+  positive_part(const double value)
+  {
+    return value <= 0. ? 0. : value;
+  }
+
+
+  /** Largest amount of an entry on all ranks, or NaN if there is one: the norms
+   *  of deal.II drop it. */
+  double
+  largest_entry(const Vector &vector);
+
   /**
    * A test: a parameter file in tests/ names it in its section "Check" and the
    * rest of that file is the case it looks at.

@@ -143,7 +143,7 @@ namespace Voussoir
         for (unsigned int i = 0; i < 10000; ++i)
           {
             p -= r * (gap + C * p);
-            p[0]               = std::max(p[0], 0.);
+            keep_largest(p[0], 0.);
             const double shear = std::hypot(p[1], p[2]),
                          limit = friction * p[0];
             if (shear > limit)
@@ -191,8 +191,8 @@ namespace Voussoir
             const Tensor<1, 3>  gap = R * (displacement_at(free, second) -
                                           displacement_at(free, first));
             const Tensor<1, 3>  p   = dense_force(dt * dt * C, gap, friction);
-            force_error   = std::max(force_error, (p - point.force).norm());
-            largest_force = std::max(largest_force, p.norm());
+            keep_largest(force_error, (p - point.force).norm());
+            keep_largest(largest_force, p.norm());
 
             const Tensor<1, 3> global = p * R;
             for (const bool on_second : {false, true})
@@ -200,14 +200,14 @@ namespace Voussoir
                 const unsigned int node = on_second ? second : first;
                 const Tensor<1, 3> move = (on_second ? dt * dt : -dt * dt) *
                                           ((on_second ? H2 : H1) * global);
-                motion_error   = std::max(motion_error,
-                                        (displacement_at(free, node) + move -
-                                         displacement_at(joined, node))
-                                          .norm());
-                largest_motion = std::max(largest_motion, move.norm());
+                keep_largest(motion_error,
+                             (displacement_at(free, node) + move -
+                              displacement_at(joined, node))
+                               .norm());
+                keep_largest(largest_motion, move.norm());
               }
             const double across = std::hypot(C[1][0], C[2][0]) / C[0][0];
-            coupling            = std::max(coupling, across);
+            keep_largest(coupling, across);
             with_water += across > 1e-6 ? 1 : 0;
           }
         verdicts.above(name + ": slip by normal force over its closing",

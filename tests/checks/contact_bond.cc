@@ -28,7 +28,7 @@ namespace Voussoir
         double largest = 0.;
         for (const Sample &sample : samples)
           if (sample.time >= from)
-            largest = std::max(largest, -sample.pressure);
+            keep_largest(largest, -sample.pressure);
         return largest;
       }
 
@@ -37,7 +37,7 @@ namespace Voussoir
       {
         double largest = 0.;
         for (const Sample &sample : samples)
-          largest = std::max(largest, sample.shear);
+          keep_largest(largest, sample.shear);
         return largest;
       }
 
@@ -224,7 +224,7 @@ namespace Voussoir
                 [&](const ContactPoint &point) {
                   const double slip = std::hypot(point.gap[1], point.gap[2]);
                   if (point.history.opening < depth)
-                    early_slip = std::max(early_slip, slip);
+                    keep_largest(early_slip, slip);
                   else if (slip > 0.01 * way)
                     first = std::min(first, point.history.opening);
                 });
@@ -283,21 +283,20 @@ namespace Voussoir
             plastic =
               std::max(now.opening - strength / slope,
                        std::min(now.opening + strength / slope, plastic));
-            difference =
-              std::max(difference,
-                       std::abs(now.bars - slope * (now.opening - plastic)));
-            widest   = std::max(widest, now.opening);
-            largest  = std::max(largest, now.bars);
-            smallest = std::min(smallest, now.bars);
+            keep_largest(difference,
+                         std::abs(now.bars - slope * (now.opening - plastic)));
+            keep_largest(widest, now.opening);
+            keep_largest(largest, now.bars);
+            keep_smallest(smallest, now.bars);
             if (at_half_yield == 0. && now.opening > 0.5 * strength / slope)
               at_half_yield = now.bars;
             // what the bars bear stretches the layer
             const double base =
               0.5 * way * (1. - std::cos(2. * numbers::PI * now.time / end));
             if (now.pressure == 0.)
-              unbalanced =
-                std::max(unbalanced,
-                         std::abs(stiffness * (base - now.opening) - now.bars));
+              keep_largest(unbalanced,
+                           std::abs(stiffness * (base - now.opening) -
+                                    now.bars));
           }
         verdicts.near("stress at half the opening of yield [MPa]",
                       1e-6 * at_half_yield,

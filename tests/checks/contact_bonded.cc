@@ -68,9 +68,9 @@ namespace Voussoir
         const Histories result =
           run_and_record(*simulation, parse_points(points, "Points"));
         if (simulation->run.contact)
-          penetration = std::max(penetration,
-                                 simulation->run.contact->effort().penetration /
-                                   simulation->run.contact->cell_size);
+          keep_largest(penetration,
+                       simulation->run.contact->effort().penetration /
+                         simulation->run.contact->cell_size);
         return result;
       }
 

@@ -64,9 +64,9 @@ namespace Voussoir
         if (a[c].nodes.size() != b[c].nodes.size() ||
             a[c].pairs.size() != b[c].pairs.size())
           return 1.;
-        result = std::max(result,
-                          a[c].position.distance(b[c].position) /
-                            (1. + a[c].position.norm()));
+        keep_largest(result,
+                     a[c].position.distance(b[c].position) /
+                       (1. + a[c].position.norm()));
         for (unsigned int i = 0; i < a[c].pairs.size(); ++i)
           {
             const ContactPair &p = a[c].pairs[i], &q = b[c].pairs[i];

@@ -82,9 +82,8 @@ namespace Voussoir
                 for (unsigned int i = 0; i < n; ++i)
                   {
                     same = same && n_pairs(clusters, i) == pairs;
-                    error =
-                      std::max(error,
-                               std::abs(total_area(clusters, i) / 16. - 1.));
+                    keep_largest(error,
+                                 std::abs(total_area(clusters, i) / 16. - 1.));
                   }
                 for (const auto &cluster : clusters)
                   {
@@ -93,7 +92,7 @@ namespace Voussoir
                       {
                         Tensor<1, 3> normal;
                         normal[pair.interface] = 1.;
-                        error = std::max(error, (pair.normal - normal).norm());
+                        keep_largest(error, (pair.normal - normal).norm());
                       }
                   }
                 verdicts.near(of + "pairs", n_pairs(clusters, 0), pairs, 0.);
@@ -169,7 +168,7 @@ namespace Voussoir
         double error = 0.;
         for (const auto &cluster :
              all_clusters(mesh, GridParameters(), 1, {"x"}, communicator))
-          error = std::max(error, std::abs(cluster.pairs[0].normal[0] - 1.));
+          keep_largest(error, std::abs(cluster.pairs[0].normal[0] - 1.));
         verdicts.below("  normals, error", error, 1e-12);
       }
 

@@ -57,7 +57,7 @@ namespace Voussoir
               {
                 simulation->run.scheme.step(state);
                 const double now = slip(*simulation);
-                largest          = std::max(largest, std::abs(now));
+                keep_largest(largest, std::abs(now));
                 if (first_millimetre == 0. && std::abs(now) > 1e-3)
                   first_millimetre = state.time - rest;
                 advance(mass, state.time - rest);
@@ -72,10 +72,11 @@ namespace Voussoir
                           1e3 * largest,
                           1e3 * mass.largest,
                           0.005);
-            verdicts.near(name + "slip at the end over the largest, plus one",
-                          1. + slip(*simulation) / mass.largest,
-                          1. + mass.x / mass.largest,
-                          0.005);
+            // the block is elastic, the mass is not
+            verdicts.near(name + "slip at the end [mm]",
+                          1e3 * slip(*simulation),
+                          1e3 * mass.x,
+                          0.025);
           }
         verdicts.below("penetration over cell size",
                        simulation->run.contact->effort().penetration /
@@ -111,7 +112,7 @@ namespace Voussoir
         while (simulation->run.state.time < rest + 1.)
           {
             simulation->run.scheme.step(simulation->run.state);
-            largest = std::max(largest, std::abs(slip(*simulation)));
+            keep_largest(largest, std::abs(slip(*simulation)));
           }
         return largest;
       }
@@ -143,8 +144,8 @@ namespace Voussoir
             if (mass.v * next < 0.)
               next = 0.; // it stops within the step
             mass.x += 0.5 * dt * (mass.v + next);
-            mass.v       = next;
-            mass.largest = std::max(mass.largest, std::abs(mass.x));
+            mass.v = next;
+            keep_largest(mass.largest, std::abs(mass.x));
             if (mass.first_millimetre == 0. && mass.largest > 1e-3)
               mass.first_millimetre = mass.t;
           }

@@ -132,14 +132,14 @@ namespace Voussoir
                ++s)
             {
               const ContactSums sums = contact_sums(*simulation, s);
-              largest                = std::max(largest, sums.pressure);
-              smallest               = std::min(smallest, sums.pressure);
+              keep_largest(largest, sums.pressure);
+              keep_smallest(smallest, sums.pressure);
             }
           for (const ContactPoint &point : simulation->run.contact->points())
             {
-              opening = std::max(opening, std::abs(point.gap[0]));
+              keep_largest(opening, std::abs(point.gap[0]));
               if (point.surface < 2) // between blocks
-                slip = std::max(slip, std::hypot(point.gap[1], point.gap[2]));
+                keep_largest(slip, std::hypot(point.gap[1], point.gap[2]));
             }
           opening = Utilities::MPI::max(opening, communicator);
           slip    = Utilities::MPI::max(slip, communicator);
@@ -172,7 +172,7 @@ namespace Voussoir
                   simulation->run.contact->points()[k];
                 std::abs(simulation->run.contact->positions()[k][2] - 0.5 * H) <
                 1e-6)
-              overlap = std::max(overlap, point.initial_gap[0]);
+              keep_largest(overlap, point.initial_gap[0]);
           return Utilities::MPI::max(overlap, communicator);
         };
 

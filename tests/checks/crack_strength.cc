@@ -85,7 +85,7 @@ namespace Voussoir
               if (simulation->model.discretization.node_positions[node][2] ==
                   0.)
                 pull -= node_value(force, node)[2];
-            largest = std::max(largest, pull); // of one square metre
+            keep_largest(largest, pull); // of one square metre
             run.scheme.step(run.state);
           }
         return largest;

@@ -39,9 +39,9 @@ namespace Voussoir
                   simulation->run.energy.evaluate(state);
                 if (step == 0)
                   first = terms.stored();
-                smallest = std::min(smallest, terms.stored());
-                largest  = std::max(largest, terms.stored());
-                swing    = std::max(swing, terms.strain / first);
+                keep_smallest(smallest, terms.stored());
+                keep_largest(largest, terms.stored());
+                keep_largest(swing, terms.strain / first);
               }
           }
         verdicts.above("largest share of strain energy", swing, 0.05);

@@ -13,6 +13,12 @@ namespace Voussoir
     {
     public:
       void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Limit", limit, "Of the share from nowhere.");
+      }
+
+      void
       run(const ParameterFile &file,
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
@@ -43,12 +49,14 @@ namespace Voussoir
             100. * double(summary["lost to cracks and plastic flow [J]"]) /
               input,
             1.);
-        verdicts.below("largest unaccounted share of the input",
-                       summary["largest unaccounted share"],
-                       1e-6);
+        verdicts.below("largest share of the input from nowhere",
+                       summary["largest share from nowhere"],
+                       limit);
       }
 
     private:
+      double limit = 1e-6;
+
       /** What the dampers of the cells and of the mass lose per time [W]. */
       static double
       loss_rate(const Simulation &simulation)

@@ -23,7 +23,7 @@ namespace Voussoir
     for (const auto &history : displacement)
       for (const Tensor<1, 3> &u : history)
         for (unsigned int d = 0; d < 3; ++d)
-          result = std::max(result, std::abs(u[d]));
+          keep_largest(result, std::abs(u[d]));
     return result;
   }
 

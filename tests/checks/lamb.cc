@@ -118,10 +118,9 @@ namespace Voussoir
                       pekeris_integral(
                         cs * (histories.times[i] - s * rise_time) / r);
                   }
-                error =
-                  std::max(error,
-                           std::abs(-histories.displacement[p][i][2] / unit -
-                                    expected));
+                keep_largest(error,
+                             std::abs(-histories.displacement[p][i][2] / unit -
+                                      expected));
               }
             result.push_back(error / 0.375);
           }

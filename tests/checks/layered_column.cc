@@ -75,10 +75,9 @@ namespace Voussoir
         for (std::size_t i = 0; i + 1 < of_column.size(); ++i)
           {
             const Tensor<1, 3> &u = histories.displacement[0][i];
-            peak                  = std::max(peak, of_column[i].norm());
-            spread =
-              std::max(spread, (u - histories.displacement[1][i]).norm());
-            difference = std::max(difference, (u - of_column[i + 1]).norm());
+            keep_largest(peak, of_column[i].norm());
+            keep_largest(spread, (u - histories.displacement[1][i]).norm());
+            keep_largest(difference, (u - of_column[i + 1]).norm());
           }
         verdicts.below("surface, corner against middle: difference over peak",
                        spread / peak,

@@ -74,6 +74,22 @@ namespace Voussoir
   }
 
 
+  double
+  largest_entry(const Vector &vector)
+  {
+    double largest = 0., sum = 0.;
+    for (const double entry : vector)
+      {
+        largest = std::max(largest, std::abs(entry));
+        sum += entry;
+      }
+    const MPI_Comm communicator = vector.get_mpi_communicator();
+    largest                     = Utilities::MPI::max(largest, communicator);
+    sum                         = Utilities::MPI::sum(sum, communicator);
+    return std::isnan(sum) ? sum : largest;
+  }
+
+
   namespace
   {
     std::unique_ptr<Check>

@@ -16,7 +16,8 @@ namespace Voussoir
     while (run.state.time < parameters.time.end_time)
       {
         run.scheme.step(run.state);
-        const bool evaluated = schedule.due(run.state.step);
+        const bool evaluated = schedule.due(run.state.step) ||
+                               run.state.time >= parameters.time.end_time;
         if (evaluated)
           run.energy.evaluate(run.state);
         look(evaluated);

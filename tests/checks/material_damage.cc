@@ -18,7 +18,7 @@ namespace Voussoir
       advance(test, {{side, side, side}}, 5);
       double largest = 0.;
       advance(test, {{side, side, {true, strain}}}, steps, [&] {
-        largest = std::max(largest, -test.stress[2][2]);
+        keep_largest(largest, -test.stress[2][2]);
       });
       return largest;
     }

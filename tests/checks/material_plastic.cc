@@ -180,7 +180,7 @@ namespace Voussoir
             const double        trial = excess(material.stress(strain));
             const double        now   = excess(
               material.respond(strain, history.data(), {1., 1e-3}).stress);
-            worst = std::max(worst, trial > 0. ? std::abs(now) : now);
+            keep_largest(worst, trial > 0. ? std::abs(now) : now);
           }
         verdicts.below("distance to the yield surface after 20000 returns",
                        worst,

@@ -21,7 +21,7 @@ namespace Voussoir
       PointTest test(material, 1., 1e-3);
       double    largest = 0.;
       advance(test, target, 4000, [&] {
-        largest = std::max(largest, -test.stress[0][0]);
+        keep_largest(largest, -test.stress[0][0]);
       });
       return largest;
     }

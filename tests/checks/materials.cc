@@ -127,20 +127,19 @@ namespace Voussoir
               const auto response =
                 material.respond(strain, history.data(), situation);
               plastic += response.plastic_increment;
-              flowed =
-                std::max(flowed,
-                         (strain - response.elastic_strain - plastic).norm());
+              keep_largest(flowed,
+                           (strain - response.elastic_strain - plastic).norm());
               const auto turned_response =
                 material.respond(rotated(strain, rotation),
                                  other.data(),
                                  situation);
-              turned   = std::max(turned,
-                                (rotated(response.stress, rotation) -
-                                 turned_response.stress)
-                                    .norm() /
-                                  (1e-4 * modulus));
-              lost     = std::min(lost, response.dissipation);
-              turnover = std::max(turnover, stored(response));
+              keep_largest(turned,
+                           (rotated(response.stress, rotation) -
+                            turned_response.stress)
+                               .norm() /
+                             (1e-4 * modulus));
+              keep_smallest(lost, response.dissipation);
+              keep_largest(turnover, stored(response));
             });
           }
         if (material.isotropic())
@@ -166,10 +165,9 @@ namespace Voussoir
                 0.5 * (response.stress + last_stress) * (strain - last_strain);
               dissipated += response.dissipation;
               largest = std::max({largest, stored(response), dissipated});
-              unaccounted =
-                std::max(unaccounted,
-                         std::abs(work - dissipated - stored(response)) /
-                           largest);
+              keep_largest(unaccounted,
+                           std::abs(work - dissipated - stored(response)) /
+                             largest);
               last_strain = strain;
               last_stress = response.stress;
             });
@@ -191,12 +189,12 @@ namespace Voussoir
               }
             const Tensor2 strain =
               symmetrize(outer_product(direction, polarisation));
-            fastest = std::max(fastest, material.stress(strain) * strain);
+            keep_largest(fastest, material.stress(strain) * strain);
           }
         const ElasticConstants c = material.elastic_constants();
         verdicts.below(
           name + ": speed of waves over that of the P wave, less 1",
-          std::max(0., std::sqrt(fastest / c.density) / c.p_wave_speed() - 1.),
+          positive_part(std::sqrt(fastest / c.density) / c.p_wave_speed() - 1.),
           1e-9);
       }
 
@@ -233,7 +231,7 @@ namespace Voussoir
             internal.respond(force, u, memory);
             respond_plainly(*simulation, u, plain, histories, bands);
             plain -= force;
-            worst = std::max(worst, plain.linfty_norm() / force.linfty_norm());
+            keep_largest(worst, largest_entry(plain) / largest_entry(force));
           }
         verdicts.below(name + ": force in SIMD lanes against point by point",
                        worst,
@@ -257,8 +255,8 @@ namespace Voussoir
             internal.respond(again, u, memory);
             again -= after;
             verdicts.below(name + ": force from saved memory",
-                           again.linfty_norm(),
-                           1e-12 * after.linfty_norm());
+                           largest_entry(again),
+                           1e-12 * largest_entry(after));
           }
       }
 
@@ -295,11 +293,11 @@ namespace Voussoir
             for (unsigned int d = 0; d < 3; ++d)
               inner = inner && x[d] > 1e-6 && x[d] < 1. - 1e-6;
             if (inner)
-              inside = std::max(inside, node_value(force, node).norm());
+              keep_largest(inside, node_value(force, node).norm());
           }
         verdicts.below(name + ": patch test",
                        Utilities::MPI::max(inside, communicator) /
-                         force.linfty_norm(),
+                         largest_entry(force),
                        1e-10);
       }
 
@@ -308,7 +306,7 @@ namespace Voussoir
        *  written, over the corner functions at the centre. */
       static double
       width_across(const Triangulation<3>::active_cell_iterator &cell,
-                   const unsigned int                            degree,
+                   const double                                  share,
                    const Tensor<1, 3>                           &normal)
       {
         const FE_Q<3>      corners(1);
@@ -318,7 +316,7 @@ namespace Voussoir
         double sum = 0.;
         for (const unsigned int a : values.dof_indices())
           sum += std::abs(normal * values.shape_grad(a, 0));
-        return 2. / (sum * degree);
+        return 2. / sum * share;
       }
 
 
@@ -380,7 +378,7 @@ namespace Voussoir
                                 }))
                   band =
                     width_across(cell,
-                                 discretization.degree,
+                                 discretization.crack_share,
                                  crack_normal(material.stress(strains[q])));
                 Tensor2 stress =
                   material.respond(strains[q], history.data(), {band, 1e300})

@@ -23,13 +23,11 @@ namespace Voussoir
             {
               const double size = std::sqrt(a.mass * b.mass);
               const double unit = &a == &b ? 1. : 0.;
-              error.first =
-                std::max(error.first,
-                         std::abs(momentum * b.shape / size - unit));
-              error.second =
-                std::max(error.second,
-                         std::abs(force * b.shape / (size * omega * omega) -
-                                  unit));
+              keep_largest(error.first,
+                           std::abs(momentum * b.shape / size - unit));
+              keep_largest(error.second,
+                           std::abs(force * b.shape / (size * omega * omega) -
+                                    unit));
             }
         }
       return error;
@@ -85,7 +83,7 @@ namespace Voussoir
                             expected[j],
                             tolerance,
                             "rad/s");
-            residual = std::max(residual, modes.list[j].residual);
+            keep_largest(residual, modes.list[j].residual);
           }
         verdicts.below("largest residual",
                        residual,

@@ -125,23 +125,22 @@ namespace Voussoir
       for (double t = -0.1 * end + 1e-5; t < 1.1 * end; t += end / 4001.)
         {
           const double v = signal.velocity(t), a = signal.acceleration(t);
-          velocity           = std::max(velocity, std::abs(v));
-          velocity_error     = std::max(velocity_error,
-                                    std::abs((signal.displacement(t + h) -
-                                              signal.displacement(t - h)) /
-                                               (2. * h) -
-                                             v));
-          acceleration_error = std::max(acceleration_error,
-                                        std::abs((signal.velocity(t + h) -
-                                                  signal.velocity(t - h)) /
-                                                   (2. * h) -
-                                                 a));
+          keep_largest(velocity, std::abs(v));
+          keep_largest(velocity_error,
+                       std::abs((signal.displacement(t + h) -
+                                 signal.displacement(t - h)) /
+                                  (2. * h) -
+                                v));
+          keep_largest(acceleration_error,
+                       std::abs(
+                         (signal.velocity(t + h) - signal.velocity(t - h)) /
+                           (2. * h) -
+                         a));
         }
       // at steps that meet the samples of a table, where its peak is
       for (unsigned int i = 0; i <= 15500; ++i)
-        acceleration =
-          std::max(acceleration,
-                   std::abs(signal.acceleration(end * i / 15500.)));
+        keep_largest(acceleration,
+                     std::abs(signal.acceleration(end * i / 15500.)));
       verdicts.below(name + ": d' = v", velocity_error / velocity, 1e-5);
       verdicts.below("  v' = a", acceleration_error / acceleration, 1e-3);
       verdicts.near("  peak acceleration",
@@ -265,7 +264,7 @@ namespace Voussoir
         deconvolve(response, excitation, {dt, layer(input)}, 20.);
       double error = 0.;
       for (std::size_t i = 0; i < found.size(); ++i)
-        error = std::max(error, std::abs(found[i] - input[i]));
+        keep_largest(error, std::abs(found[i] - input[i]));
       verdicts.below("deconvolution: error over the peak",
                      error / peak(input),
                      2e-5);
@@ -313,8 +312,7 @@ namespace Voussoir
       const auto signals = motion.build(".");
       double     largest = 0.;
       for (unsigned int i = 0; i <= 20000; ++i)
-        largest =
-          std::max(largest, std::abs(signals[1]->acceleration(0.001 * i)));
+        keep_largest(largest, std::abs(signals[1]->acceleration(0.001 * i)));
       verdicts.near("record scaled to 0.2 g, 1.5 times",
                     largest / standard_gravity,
                     0.3,

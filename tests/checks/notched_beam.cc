@@ -123,7 +123,7 @@ namespace Voussoir
             // the ligament is 0.3 m high, and its upper end hardly opens
             verdicts.below("energy over that of the whole ligament, less 1" +
                              name.str(),
-                           std::max(0., energy / (0.3 * 100.) - 1.),
+                           positive_part(energy / (0.3 * 100.) - 1.),
                            0.1);
           }
       }
@@ -159,7 +159,7 @@ namespace Voussoir
             sum += loads.back();
             if (loads.size() > window / 10)
               sum -= loads[loads.size() - 1 - window / 10];
-            largest = std::max(largest, sum / (window / 10));
+            keep_largest(largest, sum / (window / 10));
           }
         return {largest,
                 simulation.run.state.material_memory.losses().material /

@@ -93,10 +93,9 @@ namespace Voussoir
                   exact.displacement(*motion[0],
                                      places[p].position,
                                      histories.times[i]);
-                peak = std::max(peak, expected.norm());
-                error =
-                  std::max(error,
-                           (histories.displacement[p][i] - expected).norm());
+                keep_largest(peak, expected.norm());
+                keep_largest(error,
+                             (histories.displacement[p][i] - expected).norm());
               }
             verdicts.below(places[p].name + ": error over peak",
                            error / peak,

@@ -39,10 +39,10 @@ namespace Voussoir
               }
         simulation->model.internal_force.apply(wide, u);
         Vector       narrow = reference(*simulation, u);
-        const double size   = narrow.linfty_norm();
+        const double size   = largest_entry(narrow);
         narrow -= wide;
         verdicts.below("vectorised against plain operator, relative",
-                       narrow.linfty_norm() / size,
+                       largest_entry(narrow) / size,
                        1e-12);
 
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
@@ -67,12 +67,12 @@ namespace Voussoir
               inner = inner && p[d] > 1e-6 && p[d] < 1. - 1e-6;
             if (inner)
               for (unsigned int d = 0; d < 3; ++d)
-                inside =
-                  std::max(inside, std::abs(wide.local_element(3 * node + d)));
+                keep_largest(inside,
+                             std::abs(wide.local_element(3 * node + d)));
           }
         verdicts.below("patch test: force inside over force on the surface",
                        Utilities::MPI::max(inside, communicator) /
-                         wide.linfty_norm(),
+                         largest_entry(wide),
                        1e-12);
       }
 

@@ -34,10 +34,10 @@ namespace Voussoir
               {
                 const double wanted =
                   given[d]->displacement(at_surface.times[i] - delay);
-                peak = std::max(peak, std::abs(wanted));
-                error =
-                  std::max(error,
-                           std::abs(at_surface.displacement[0][i][d] - wanted));
+                keep_largest(peak, std::abs(wanted));
+                keep_largest(error,
+                             std::abs(at_surface.displacement[0][i][d] -
+                                      wanted));
               }
             verdicts.below(std::string("free surface ") + "xyz"[d] +
                              ": error over peak",
@@ -58,9 +58,8 @@ namespace Voussoir
         for (std::size_t i = 0; i < outcrop.times.size(); ++i)
           {
             const Tensor<1, 3> &u = outcrop.displacement[0][i];
-            peak                  = std::max(peak, u.norm());
-            difference =
-              std::max(difference, (u - incident.displacement[0][i]).norm());
+            keep_largest(peak, u.norm());
+            keep_largest(difference, (u - incident.displacement[0][i]).norm());
           }
         verdicts.below("outcrop against half the incident wave",
                        difference / peak,

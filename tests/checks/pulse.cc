@@ -62,7 +62,7 @@ namespace Voussoir
                   s > 0. && s < 1. ?
                     factor * 0.25 * duration * std::pow(s * (1. - s), 4) :
                     0.;
-                difference = std::max(difference, std::abs(u[i] - exact));
+                keep_largest(difference, std::abs(u[i] - exact));
                 weighted += u[i] * histories.times[i];
                 sum += u[i];
               }

@@ -1,3 +1,5 @@
+#include <voussoir/output/stress_points.h>
+
 #include "check.h"
 #include "histories.h"
 
@@ -18,6 +20,13 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Points", points, "Points to compare.");
+        prm.add_parameter("Tolerance",
+                          tolerance,
+                          "Of the motion, over the largest.");
+        prm.add_parameter("Stress tolerance",
+                          stress_tolerance,
+                          "Of the largest principal stress in the centre of "
+                          "any cell at the end [Pa]; 0: not compared.");
       }
 
       void
@@ -25,22 +34,43 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const auto alone = history(file, "p4est", MPI_COMM_SELF);
+        const auto alone = look_at(file, "p4est", MPI_COMM_SELF);
         for (const std::string partition : {"p4est", "METIS"})
           {
             verdicts.above("largest displacement [mm]",
-                           1e3 * alone.largest(),
+                           1e3 * alone.motion.largest(),
                            0.1);
+            const Result together = look_at(file, partition, communicator);
             verdicts.below("difference to one rank, by " + partition,
-                           relative_difference(
-                             history(file, partition, communicator), alone),
-                           1e-9);
+                           relative_difference(together.motion, alone.motion),
+                           tolerance);
+            if (stress_tolerance > 0.)
+              {
+                double largest = 0., difference = 0.;
+                for (const auto &[cell, stress] : alone.stress)
+                  keep_largest(largest, stress);
+                for (const auto &[cell, stress] : together.stress)
+                  keep_largest(difference,
+                               std::abs(stress - alone.stress.at(cell)));
+                verdicts.above("largest principal stress [MPa]",
+                               1e-6 * largest,
+                               0.1);
+                verdicts.below("difference of stresses [Pa], by " + partition,
+                               Utilities::MPI::max(difference, communicator),
+                               stress_tolerance);
+              }
           }
       }
 
     private:
-      Histories
-      history(const ParameterFile &file,
+      struct Result
+      {
+        Histories                       motion;
+        std::map<std::uint64_t, double> stress; // of own cells [Pa]
+      };
+
+      Result
+      look_at(const ParameterFile &file,
               const std::string   &partition,
               const MPI_Comm       communicator) const
       {
@@ -48,10 +78,26 @@ namespace Voussoir
         const auto parameters =
           make_case(file.with({"Mesh/Partition=" + partition}));
         const auto simulation = make_simulation(*parameters, communicator);
-        return run_and_record(*simulation, parse_points(points, "Points"));
+        Result     result{run_and_record(*simulation,
+                                     parse_points(points, "Points")),
+                      {}};
+
+        std::vector<StressPoints::Place> places;
+        for (const auto &cell : simulation->model.discretization.dof_handler
+                                  .active_cell_iterators())
+          if (cell->is_locally_owned())
+            places.push_back({cell, Point<3>(0.5, 0.5, 0.5)});
+        StressPoints centres(simulation->run.observed, places);
+        const auto  &stress =
+          centres.evaluate(simulation->run.state.displacement);
+        for (unsigned int i = 0; i < places.size(); ++i)
+          result.stress[Grid::global_key(places[i].cell)] =
+            eigenvalues(stress[i])[0];
+        return result;
       }
 
       std::string points;
+      double      tolerance = 1e-9, stress_tolerance = 0.;
     };
 
     const Registry<Check>::Add<Ranks>

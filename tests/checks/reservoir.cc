@@ -39,8 +39,8 @@ namespace Voussoir
         double     velocity = 0., half = 0., height = 0., width = 0.;
         for (const auto &x : tank.water_mesh.vertices)
           {
-            half   = std::max(half, x[0]);
-            height = std::max(height, x[2]);
+            keep_largest(half, x[0]);
+            keep_largest(height, x[2]);
           }
         width = 2. * half;
         while (tank.time < parameters->time.end_time)
@@ -93,8 +93,8 @@ namespace Voussoir
         double     height = 0.;
         for (const auto &x : tank.water_mesh.vertices)
           {
-            corner[0] = std::max(corner[0], x[0]);
-            height    = std::max(height, x[2]);
+            keep_largest(corner[0], x[0]);
+            keep_largest(height, x[2]);
           }
         const double expected =
           parameters->reservoir.sound_speed / (4. * height);
@@ -174,8 +174,8 @@ namespace Voussoir
         Point<3>   middle;
         for (const auto &x : tank.water_mesh.vertices)
           {
-            middle[0] = std::max(middle[0], x[0]);
-            middle[1] = std::max(middle[1], 0.5 * x[1]);
+            keep_largest(middle[0], x[0]);
+            keep_largest(middle[1], 0.5 * x[1]);
           }
         const double passage =
           2. * middle[1] / parameters->reservoir.sound_speed;
@@ -186,7 +186,7 @@ namespace Voussoir
               along_y(pulse(tank.time + 0.5 * tank.time_step, duration)));
             double &peak =
               result[std::min(2, static_cast<int>(tank.time / passage))];
-            peak = std::max(peak, std::abs(tank.pressure(middle)));
+            keep_largest(peak, std::abs(tank.pressure(middle)));
           }
         return result;
       }
@@ -218,8 +218,8 @@ namespace Voussoir
               if (tank.time > duration + tank.time_step)
                 {
                   const double energy = tank.water.stored_energy();
-                  least               = std::min(least, energy);
-                  most                = std::max(most, energy);
+                  keep_smallest(least, energy);
+                  keep_largest(most, energy);
                 }
             }
           verdicts.above("closed tank: energy [kJ]", 1e-3 * most, 0.1);
@@ -242,9 +242,8 @@ namespace Voussoir
             Utilities::MPI::sum(sums, communicator, sums);
             lost                = sums[0];
             const double stored = water.stored_energy();
-            most                = std::max(most, stored);
-            worst =
-              std::max(worst, std::abs(stored + sums[0] + sums[1] + sums[2]));
+            keep_largest(most, stored);
+            keep_largest(worst, std::abs(stored + sums[0] + sums[1] + sums[2]));
           }
         verdicts.above("open tank: lost over largest stored energy",
                        lost / most,
@@ -274,10 +273,9 @@ namespace Voussoir
                 double difference = 0., size = 0.;
                 for (unsigned int i = 0; i < alone[kind].size(); ++i)
                   {
-                    size = std::max(size, std::abs(alone[kind][i]));
-                    difference =
-                      std::max(difference,
-                               std::abs(alone[kind][i] - together[kind][i]));
+                    keep_largest(size, std::abs(alone[kind][i]));
+                    keep_largest(difference,
+                                 std::abs(alone[kind][i] - together[kind][i]));
                   }
                 const std::string name =
                   std::vector<std::string>{"thrust [MN]",

@@ -88,8 +88,8 @@ namespace Voussoir
                   stored + water.work_ahead(state.velocity);
                 if (step == 0)
                   initial = total;
-                worst    = std::max(worst, std::abs(total - initial));
-                in_water = std::max(in_water, stored);
+                keep_largest(worst, std::abs(total - initial));
+                keep_largest(in_water, stored);
               }
             scheme.step(state);
           }

@@ -44,10 +44,10 @@ namespace Voussoir
         for (unsigned int i = 0; i < relative.times.size(); ++i)
           {
             const double u = relative.displacement[0][i][0];
-            size           = std::max(size, std::abs(u));
-            difference     = std::max(difference,
-                                  std::abs(u + ground(relative.times[i]) -
-                                           moved.displacement[0][i][0]));
+            keep_largest(size, std::abs(u));
+            keep_largest(difference,
+                         std::abs(u + ground(relative.times[i]) -
+                                  moved.displacement[0][i][0]));
           }
         verdicts.above("largest relative displacement [mm]", 1e3 * size, 1.);
         verdicts.below("absolute motion: difference over relative motion",

@@ -40,8 +40,8 @@ namespace Voussoir
         double smallest = 1., largest = 0.;
         for (unsigned int i = 6; i < one.size(); ++i)
           {
-            smallest = std::min(smallest, one[i] / full[i]);
-            largest  = std::max(largest, one[i] / full[i]);
+            keep_smallest(smallest, one[i] / full[i]);
+            keep_largest(largest, one[i] / full[i]);
           }
         verdicts.above("smallest ratio of the others to full integration",
                        smallest,
@@ -71,8 +71,8 @@ namespace Voussoir
               {
                 matrix(i, j) = force[i];
                 if (i < j)
-                  asymmetry =
-                    std::max(asymmetry, std::abs(matrix(i, j) - matrix(j, i)));
+                  keep_largest(asymmetry,
+                               std::abs(matrix(i, j) - matrix(j, i)));
               }
           }
         const double size = matrix.linfty_norm();

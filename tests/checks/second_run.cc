@@ -46,7 +46,7 @@ namespace Voussoir
                          first.energy.latest().material > 1e3);
         double opening = 0.;
         for (const ContactPoint &point : first.contact->points())
-          opening = std::max(opening, point.history.opening);
+          keep_largest(opening, point.history.opening);
         verdicts.is_true("joints opened by more than a tenth of a millimetre",
                          Utilities::MPI::max(opening, communicator) > 1e-4);
 

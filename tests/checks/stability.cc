@@ -26,9 +26,10 @@ namespace Voussoir
       {
         const double below = growth(file, 0.99, communicator);
         const double above = growth(file, 1.02, communicator);
-        verdicts.is_true("velocity at 0.99 of the limit stays below ten times "
-                         "the first",
-                         below < 10.);
+        verdicts.below("velocity at 0.99 of the limit over the first",
+                       below,
+                       10.);
+        // what has overflown has grown too
         verdicts.is_true("velocity at 1.02 of the limit grows over a thousand "
                          "times",
                          !(above < 1e3));
@@ -41,8 +42,9 @@ namespace Voussoir
              const double         factor,
              const MPI_Comm       communicator) const
       {
-        const auto parameters = make_case(
-          file.with({"Time/Safety factor=" + std::to_string(factor)}));
+        const auto parameters = make_case(file);
+        // a file may not ask for more than one
+        parameters->time.safety_factor = factor;
         const auto simulation = make_simulation(*parameters, communicator);
         State     &state      = simulation->run.state;
         for (unsigned int node = 0;
@@ -56,13 +58,13 @@ namespace Voussoir
                 state.velocity.local_element(3 * node + d) =
                   std::sin(700. * p[0] + 1300. * p[1] + 1900. * p[2] + 2.1 * d);
               }
-        const double first   = state.velocity.linfty_norm();
+        const double first   = largest_entry(state.velocity);
         double       largest = 0.;
         for (unsigned int step = 0; step < steps; ++step)
           {
             simulation->run.scheme.step(state);
             if (10 * step > 9 * steps)
-              largest = std::max(largest, state.velocity.linfty_norm());
+              keep_largest(largest, largest_entry(state.velocity));
             if (!(largest < 1e6 * first))
               return largest / first;
           }

@@ -43,10 +43,9 @@ namespace Voussoir
             moment = Utilities::MPI::sum(moment, communicator);
             // the face looks to x
             const double thrust = -0.5 * gradient * level * level * width;
-            worst_force =
-              std::max(worst_force, std::abs(force[0] / thrust - 1));
-            worst_moment =
-              std::max(worst_moment, std::abs(3 * moment / thrust / level - 1));
+            keep_largest(worst_force, std::abs(force[0] / thrust - 1));
+            keep_largest(worst_moment,
+                         std::abs(3 * moment / thrust / level - 1));
             crosswise = std::max({crosswise,
                                   std::abs(force[1] / thrust),
                                   std::abs(force[2] / thrust)});

@@ -27,9 +27,8 @@ namespace Voussoir
               {
                 simulation->run.scheme.step(simulation->run.state);
                 if (simulation->run.state.step % 10 == 0)
-                  fastest =
-                    std::max(fastest,
-                             simulation->run.state.velocity.linfty_norm());
+                  keep_largest(fastest,
+                               largest_entry(simulation->run.state.velocity));
               }
             Vector drift = simulation->run.state.displacement;
             drift -= before;
@@ -39,7 +38,7 @@ namespace Voussoir
               1e3 * stages.back().at("largest displacement [m]").get<double>(),
               1.);
             verdicts.below("largest velocity [m/s]", fastest, 1e-6);
-            verdicts.below("drift [m]", drift.linfty_norm(), 1e-6);
+            verdicts.below("drift [m]", largest_entry(drift), 1e-6);
           }
       }
     };

@@ -124,13 +124,13 @@ namespace Voussoir
             u[1] -= shift;
             if (body == "clamped bar")
               {
-                difference = std::max(difference, std::abs(u[0]));
-                size       = std::max(size, strain * x.norm());
+                keep_largest(difference, std::abs(u[0]));
+                keep_largest(size, strain * x.norm());
               }
             else
               {
-                difference = std::max(difference, (u - e).norm());
-                size       = std::max(size, e.norm());
+                keep_largest(difference, (u - e).norm());
+                keep_largest(size, e.norm());
               }
           }
         const MPI_Comm communicator = simulation.model.grid.communicator();
@@ -188,8 +188,8 @@ namespace Voussoir
                        ++i)
                     {
                       const double s = stress.access_raw_entry(i);
-                      smallest       = std::min(smallest, s);
-                      largest        = std::max(largest, s);
+                      keep_smallest(smallest, s);
+                      keep_largest(largest, s);
                     }
                 }
             }

@@ -42,7 +42,7 @@ namespace Voussoir
         const Discretization &discretization = simulation->model.discretization;
         double                top            = -1e300;
         for (const Point<3> &p : discretization.node_positions)
-          top = std::max(top, p[2]);
+          keep_largest(top, p[2]);
         top = Utilities::MPI::max(top, communicator);
 
         Tensor<1, 3> incident, incident_velocity, surface;
@@ -71,10 +71,10 @@ namespace Voussoir
                     const double u =
                       simulation->run.state.displacement.local_element(
                         3 * node + d);
-                    extremes[d]     = std::min(extremes[d], u);
-                    extremes[3 + d] = std::max(extremes[3 + d], u);
+                    extremes[d] = std::min(extremes[d], u);
+                    keep_largest(extremes[3 + d], u);
                     if (z > top - 1e-6)
-                      surface[d] = std::max(surface[d], std::abs(u));
+                      keep_largest(surface[d], std::abs(u));
                   }
               }
             if (look)
@@ -87,24 +87,22 @@ namespace Voussoir
                       auto &sum = merged.emplace(level, extremes).first->second;
                       for (unsigned int d = 0; d < 3; ++d)
                         {
-                          sum[d]     = std::min(sum[d], extremes[d]);
-                          sum[3 + d] = std::max(sum[3 + d], extremes[3 + d]);
+                          sum[d] = std::min(sum[d], extremes[d]);
+                          keep_largest(sum[3 + d], extremes[3 + d]);
                         }
                     }
                 for (const auto &level : merged)
                   for (unsigned int d = 0; d < 3; ++d)
-                    spread =
-                      std::max(spread, level.second[3 + d] - level.second[d]);
+                    keep_largest(spread, level.second[3 + d] - level.second[d]);
               }
             for (unsigned int d = 0; d < 3; ++d)
               if (motion[d])
                 {
                   const double t = simulation->run.state.time;
-                  incident[d] =
-                    std::max(incident[d], std::abs(motion[d]->displacement(t)));
-                  incident_velocity[d] =
-                    std::max(incident_velocity[d],
-                             std::abs(motion[d]->velocity(t)));
+                  keep_largest(incident[d],
+                               std::abs(motion[d]->displacement(t)));
+                  keep_largest(incident_velocity[d],
+                               std::abs(motion[d]->velocity(t)));
                 }
           }
 
@@ -119,7 +117,7 @@ namespace Voussoir
                        spread / incident.norm(),
                        uniformity);
         verdicts.below("velocity left over incident",
-                       simulation->run.state.velocity.linfty_norm() /
+                       largest_entry(simulation->run.state.velocity) /
                          incident_velocity.norm(),
                        residual);
         simulation->run.energy.evaluate(simulation->run.state);

@@ -59,8 +59,8 @@ namespace Voussoir
   {
     std::vector<Mode> list; // from the lowest frequency upwards
 
-    /** Mass of the structure that can move in each direction, the water that
-     *  moves with it not included [kg]. */
+    /** Mass that can move in each direction, with the water that moves along:
+     *  what the effective masses of all modes add up to [kg]. */
     dealii::Tensor<1, 3> moving_mass;
 
     /** [Hz] */

@@ -62,6 +62,7 @@ namespace Voussoir
     std::string folder;
     std::string observers           = "histories, envelopes, fields";
     double      energy_interval     = 0.02;
+    double      energy_limit        = 0.1;
     double      checkpoint_interval = 10.;
 
     void

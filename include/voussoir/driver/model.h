@@ -30,6 +30,11 @@ namespace Voussoir
     std::function<unsigned int(const Grid::Cell &)>
     material_of_cell() const;
 
+    /** Highest frequency that the cells of some material carry well; all ranks
+     *  must call this together [Hz]. */
+    double
+    carried_frequency() const;
+
     /** Whether an earthquake enters as inertia on a rigid base. */
     bool
     rigid_base() const;
@@ -83,6 +88,15 @@ namespace Voussoir
 
     void
     report_materials(Log &log) const;
+
+    /** Longest edge of the cells of each material [m]. */
+    std::vector<double>
+    longest_edges() const;
+
+    /** Of S waves with eight nodes per wavelength in cells of this edge [Hz].
+     */
+    double
+    carried_frequency(const unsigned int material, const double edge) const;
   };
 } // namespace Voussoir
 

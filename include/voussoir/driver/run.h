@@ -111,6 +111,9 @@ namespace Voussoir
     void
     finish();
 
+    void
+    write_summary(const nlohmann::json &result) const;
+
     std::string
     timer_table() const;
 
@@ -123,6 +126,8 @@ namespace Voussoir
     dealii::Timer       clock, since_report, since_checkpoint;
     unsigned long long  first_step   = 0;
     double              loop_seconds = 0.;
+
+    std::vector<std::string> warnings; // that the results need
   };
 } // namespace Voussoir
 

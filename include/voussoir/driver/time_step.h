@@ -16,10 +16,13 @@ namespace Voussoir
      * Where materials have a memory the damping gets its mesh viscosity.
      *
      * @param kept step of a checkpoint, which is taken instead [s]
+     * @param interval of a record, of which the step becomes a whole part if it
+     *   grows shorter by a tenth at most [s]; 0: none
      */
     TimeStep(const Model                 &model,
              Damping                     &damping,
              const std::optional<double> &kept,
+             const double                 interval,
              Log                         &log);
 
     /** Steps to this time [s]. */

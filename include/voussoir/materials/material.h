@@ -76,6 +76,11 @@ namespace Voussoir
             double                         *history,
             const PointSituation<double>   &situation) const = 0;
 
+    /** See LawDefaults::load_level; 0 for a law without memory. */
+    virtual double
+    load_level(const SymmetricTensor3<double> &elastic_stress,
+               const double                    element_length) const = 0;
+
     /**
      * Strain e of the law from the total strain, of which @p initial_strain and
      * the change of temperature [K] were there before the earthquake.

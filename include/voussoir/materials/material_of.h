@@ -61,6 +61,16 @@ namespace Voussoir
       return Law::output_names();
     }
 
+    double
+    load_level(const SymmetricTensor3<double> &elastic_stress,
+               const double                    element_length) const override
+    {
+      if constexpr (Law::n_history > 0)
+        return law.load_level(elastic_stress, element_length);
+      else
+        return 0.;
+    }
+
     std::vector<double>
     outputs(const double *history, const double element_length) const override
     {

@@ -69,14 +69,25 @@ namespace Voussoir
     const EnergyTerms &
     latest() const;
 
-    /** Unaccounted energy over the largest input (or initial) energy so far. */
+    /** Energy from nowhere [J]: what no account explains, what damping has
+     * given back, and what cracks made when they closed. */
+    double
+    made() const;
+
+    /** That over the largest energy that came in and did not go out through the
+     *  boundary at once, so far. */
     double
     relative_error() const;
 
-    /** Why the run must stop: not finite, or growing without input; else an
-     *  empty text. */
+    /** That over what damping, cracks, friction and impacts took; zero as long
+     *  as they took next to nothing. */
+    double
+    error_of_losses() const;
+
+    /** Why the run must stop: not finite, growing without bound, or more energy
+     *  from nowhere than this share of what came in; else an empty text. */
     std::string
-    alarm() const;
+    alarm(const double limit) const;
 
     nlohmann::json
     summary() const;
@@ -97,10 +108,10 @@ namespace Voussoir
     const double           time_step;
 
     EnergyTerms terms_now;
-    double      initial = 0., largest_turnover = 0., largest_error = 0.;
+    double      initial = 0., came_in = 0., largest_error = 0.;
     double      initial_in_cells = 0., most_damping = 0.; // [J]
-    double      round_off = 0.;
-    bool        first     = true;
+    double      static_work = 0.; // of the loads of the static state [J]
+    bool        first       = true;
     Vector      moved, moved_before; // at the step and the one before
     Vector      force_at_rest;       // on the cells beside F_0; empty: none
     TimeTable   table;

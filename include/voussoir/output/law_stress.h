@@ -6,7 +6,9 @@
 namespace Voussoir
 {
   /** Stress of a material's law at a point of a cell for output, with the
-   *  memory of the nearest integration point; it is left as it is. */
+   *  memory of the nearest integration point, which is left as it is. Where the
+   *  strain of the point is beyond the limit, although none was at the nearest
+   *  one, it is that of a crack which opens there. */
   class LawStress
   {
   public:
@@ -23,6 +25,10 @@ namespace Voussoir
     operator()(const dealii::SymmetricTensor<2, 3> &strain,
                const dealii::SymmetricTensor<2, 3> &initial_strain,
                const double                         temperature) const;
+
+    /** Whether it is this one, that of an elastic point. */
+    bool
+    is_elastic(const dealii::SymmetricTensor<2, 3> &elastic_stress) const;
 
   private:
     const Material     *material;

@@ -29,6 +29,7 @@ namespace Voussoir
     std::string                                     folder;
     double                                          time_step; // [s]
     double                                          end_time;  // [s]
+    double carried_frequency; // highest that the mesh carries well [Hz]
 
     /** The ground, to which the state is relative where it moves. */
     const RigidBase &base;
@@ -47,6 +48,14 @@ namespace Voussoir
 
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
+
+    /** Between two lines of its record [s], which the time step is fitted to if
+     *  it costs little; 0: any step will do. */
+    virtual double
+    record_interval() const
+    {
+      return 0.;
+    }
 
     /** Refuses entries that do not fit the model with a UserError. */
     virtual void
@@ -104,7 +113,8 @@ namespace Voussoir
     }
   };
 
-  /** Steps at which something with this interval [s] is due. */
+  /** Steps at which something with this interval [s] is due: every n-th, so
+   * that a record has equal intervals, the nearest to the one asked for. */
   class Schedule
   {
   public:
@@ -115,7 +125,7 @@ namespace Voussoir
     due(const unsigned long long step) const;
 
   private:
-    double interval = 0., time_step = 1.;
+    unsigned long long steps = 1;
   };
 } // namespace Voussoir
 

@@ -4,10 +4,13 @@
 #include <voussoir/fem/point_weights.h>
 #include <voussoir/output/observer.h>
 
+#include <deque>
+
 namespace Voussoir
 {
-  /** Displacement, velocity and acceleration of a point [m, m/s, m/s2]. */
-  using PointMotion = std::array<dealii::Tensor<1, 3>, 3>;
+  /** Displacement, velocity, acceleration of a point, and the mean of the
+   *  acceleration over the window before [m, m/s, m/s2]. */
+  using PointMotion = std::array<dealii::Tensor<1, 3>, 4>;
 
   /**
    * What observers of points have in common: the entries that name the points,
@@ -35,9 +38,24 @@ namespace Voussoir
     std::size_t
     check(const ObservedModel &model) const;
 
-    /** Starts a new record. @p interval between two lines [s]. */
+    /**
+     * Starts a new record.
+     *
+     * @param interval between two lines [s]
+     * @param window   of the mean acceleration [s]
+     */
     void
-    prepare(const ObservedModel &model, const double interval);
+    prepare(const ObservedModel &model,
+            const double         interval,
+            const double         window = 0.);
+
+    /** The velocities of the window for a checkpoint; all ranks must call this
+     *  together. */
+    nlohmann::json
+    save() const;
+
+    void
+    load(const nlohmann::json &saved);
 
     /** In the order of the entry. */
     const std::vector<NamedPoint> &
@@ -84,8 +102,13 @@ namespace Voussoir
       int                                  reference = -1; // none
 
       bool                              has_last = false;
-      std::vector<dealii::Tensor<1, 3>> last_displacement, last_velocity;
+      std::vector<dealii::Tensor<1, 3>> last_displacement;
       std::vector<double>               shares, times;
+
+      // of the half steps of the window and the one before, the latest last;
+      // at rest before the first
+      std::size_t                                   window = 1; // [steps]
+      std::deque<std::vector<dealii::Tensor<1, 3>>> velocities;
     };
     Record record;
   };

@@ -15,7 +15,7 @@ namespace Voussoir
   std::string
   csv_heading(const std::vector<std::string> &titles);
 
-  /** A line of such a file, with nine digits. */
+  /** A line of such a file, with nine digits; infinite values are empty. */
   std::string
   csv_line(const std::vector<double> &values);
 

@@ -1,0 +1,147 @@
+#include <filesystem>
+
+#include "contact_sums.h"
+#include "csv_table.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Keys hold a block on an incline on which it would slide: the interface
+     * bears more shear than friction could, and has no sliding safety. Without
+     * keys it has one, on a slope that it stands on.
+     */
+    class KeyedSafety : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Weight", weight, "Of the block [N].");
+        prm.add_parameter("Slopes",
+                          slopes,
+                          "Tangent over the friction coefficient, with keys "
+                          "and without.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto keyed = on_slope(file, slopes[0]);
+        verdicts.is_true("without keys the block slides",
+                         !stands(keyed.with({"Interfaces/plane/Key depth=0"}),
+                                 communicator));
+        const Observed held = observe(keyed, communicator);
+        verdicts.near("with keys: shear over what friction could bear",
+                      held.shear / (friction * held.pressure),
+                      slopes[0],
+                      1e-3);
+        verdicts.near("normal force over the block's",
+                      held.pressure,
+                      weight * std::cos(std::atan(slopes[0] * friction)),
+                      1e-3,
+                      "N");
+        verdicts.is_true("no safety of the surface in interfaces.csv",
+                         held.safety.empty());
+        verdicts.is_true("none of the block", held.block_safety.empty());
+        verdicts.is_true("none in the summary, and none below one",
+                         held.surface.at("smallest sliding safety").is_null() &&
+                           held.surface.at("time at safety one or below [s]") ==
+                             0.);
+        verdicts.is_true("none of the block in the summary",
+                         held.block.at("safety at the start").is_null() &&
+                           held.block.at("smallest safety").is_null() &&
+                           held.block.at("time at safety one or below [s]") ==
+                             0.);
+
+        const Observed bare = observe(
+          on_slope(file, slopes[1]).with({"Interfaces/plane/Key depth=0"}),
+          communicator);
+        verdicts.near("without keys: safety in interfaces.csv",
+                      std::stod(bare.safety),
+                      1. / slopes[1],
+                      1e-3);
+        verdicts.near("of the block",
+                      std::stod(bare.block_safety),
+                      1. / slopes[1],
+                      1e-3);
+        verdicts.near("in the summary",
+                      bare.surface.at("smallest sliding safety"),
+                      1. / slopes[1],
+                      1e-3);
+      }
+
+    private:
+      /** What the observer says of the block at rest. */
+      struct Observed
+      {
+        double         pressure, shear;      // [N]
+        std::string    safety, block_safety; // in interfaces.csv
+        nlohmann::json surface, block;       // in summary.json
+      };
+
+
+      ParameterFile
+      on_slope(const ParameterFile &file, const double slope)
+      {
+        friction =
+          std::stod(file.given("Interfaces/plane/Friction coefficient"));
+        const double angle = std::atan(slope * friction);
+        return file.with({vector_entry(
+          "Loads/weight/Acceleration",
+          9.81 * Tensor<1, 3>({std::sin(angle), 0., -std::cos(angle)}))});
+      }
+
+
+      static Observed
+      observe(const ParameterFile &file, const MPI_Comm communicator)
+      {
+        const std::string folder     = "keyed";
+        const auto        parameters = make_case(file);
+        const auto    simulation = make_simulation(*parameters, communicator);
+        ObservedModel model      = simulation->run.observed;
+        model.folder             = folder;
+        std::filesystem::create_directories(folder);
+
+        const auto observer =
+          Registry<Observer>::create("interfaces", "the check");
+        ParameterHandler prm;
+        observer->declare_parameters(prm);
+        prm.set("Blocks", "block: plane");
+        observer->check(model);
+        observer->prepare(model, 0., false);
+        // two looks, so that time could pass at a safety below one
+        observer->observe(simulation->run.state);
+        State later = simulation->run.state;
+        later.time  = 1.;
+        observer->observe(later);
+        nlohmann::json summary;
+        observer->finish(later, summary);
+        // as it is written
+        summary = nlohmann::json::parse(summary.dump()).at("interfaces");
+
+        const CsvTable table(folder + "/interfaces.csv");
+        const auto     last = [&](const std::string &title) {
+          return table.texts(title).back();
+        };
+        return {1e6 * std::stod(last("plane normal force [MN]")),
+                1e6 * std::stod(last("plane shear force [MN]")),
+                last("plane sliding safety [-]"),
+                last("block block safety [-]"),
+                summary.at("surfaces").at("plane"),
+                summary.at("blocks").at("block")};
+      }
+
+      double              weight = 1., friction = 0.;
+      std::vector<double> slopes{1., 1.};
+    };
+
+    const Registry<Check>::Add<KeyedSafety>
+      registered("keyed safety", "No sliding safety of what keys hold.");
+  } // namespace
+} // namespace Voussoir

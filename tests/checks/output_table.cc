@@ -1,0 +1,37 @@
+#include <voussoir/output/table.h>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  namespace
+  {
+    /** Lines of comma-separated values: infinite numbers are empty cells. */
+    class InfiniteNumbers : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &, Verdicts &verdicts, const MPI_Comm) override
+      {
+        const double none = std::numeric_limits<double>::infinity();
+        const auto   line = [&](const std::vector<double> &values,
+                              const std::string         &expected) {
+          verdicts.is_true('"' + expected + '"', csv_line(values) == expected);
+        };
+        line({1., none, 0.5}, "1,,0.5");
+        line({none, 1., -none}, ",1,");
+        line({0.25, none, none}, "0.25,,");
+        line({none}, "");
+        line({1e300, 0., -1e-300}, "1e+300,0,-1e-300");
+        line({1. / 3., 123456789.4, 1234567894.},
+             "0.333333333,123456789,1.23456789e+09");
+        verdicts.is_true("what is no number shows",
+                         csv_line({std::nan("")}).find("nan") !=
+                           std::string::npos);
+      }
+    };
+
+    const Registry<Check>::Add<InfiniteNumbers>
+      registered("infinite numbers", "In tables of comma-separated values.");
+  } // namespace
+} // namespace Voussoir

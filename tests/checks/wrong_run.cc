@@ -1,0 +1,111 @@
+#include <voussoir/base/error.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * A run whose energy is wrong says so: a blow in the middle brings energy
+     * that no account explains, or the time step is above the stable one.
+     */
+    class WrongRun : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        march(file, "a sound run", 1., 0.9, communicator, verdicts);
+        verdicts.is_true("a sound run: no stop", stop.empty());
+        verdicts.is_true("a sound run: no warning",
+                         summary["warnings"].empty() &&
+                           summary["verdict"] == "no objection");
+
+        march(file, "a small blow", 1.02, 0.9, communicator, verdicts);
+        verdicts.is_true("a small blow: no stop", stop.empty());
+        verdicts.is_true("a small blow: one warning, in the verdict",
+                         summary["warnings"].size() == 1 &&
+                           summary["verdict"] == "with warnings, see there");
+        verdicts.near("a small blow: energy from nowhere over input",
+                      summary["energy balance"]["largest share from nowhere"],
+                      expected,
+                      0.01);
+
+        march(file, "a large blow", 1.3, 0.9, communicator, verdicts);
+        stopped("a large blow", "from nowhere", verdicts);
+        march(file, "a step too large", 1., 1.05, communicator, verdicts);
+        stopped("a step too large", "a hundred times", verdicts);
+      }
+
+    private:
+      /** @param blow factor on the velocity in the middle of the run */
+      void
+      march(const ParameterFile &file,
+            const std::string   &name,
+            const double         blow,
+            const double         safety_factor,
+            const MPI_Comm       communicator,
+            Verdicts            &verdicts)
+      {
+        const auto parameters =
+          make_case(file.with({"Output/Folder=" + folder}));
+        parameters->time.safety_factor = safety_factor;
+        RunOptions options;
+        options.quiet     = true;
+        options.overwrite = true;
+        stop.clear();
+        try
+          {
+            Simulation simulation(*parameters, options, communicator);
+            Run       &run = simulation.run;
+            while (2 * run.state.step < run.n_steps() && blow != 1.)
+              run.scheme.step(run.state);
+            const double kinetic = run.energy.evaluate(run.state).kinetic;
+            run.state.velocity *= blow;
+            const double input = run.energy.evaluate(run.state).input;
+            expected           = (blow * blow - 1.) * kinetic / input;
+            run.march();
+          }
+        catch (const UserError &error)
+          {
+            stop = error.what();
+          }
+        std::ifstream written(folder + "/summary.json");
+        summary = nlohmann::json();
+        if (written)
+          written >> summary;
+        verdicts.is_true(name + ": there is a summary", !summary.is_null());
+      }
+
+      void
+      stopped(const std::string &name,
+              const std::string &reason,
+              Verdicts          &verdicts) const
+      {
+        verdicts.is_true(name + ": stops, \"" + reason + "\"",
+                         stop.find(reason) != std::string::npos);
+        verdicts.is_true(name + ": said in the verdict",
+                         std::string(summary["verdict"]).find(reason) !=
+                           std::string::npos);
+        verdicts.is_true(name + ": the last good state is there",
+                         std::filesystem::exists(folder + "/last_good.vtu"));
+      }
+
+      const std::string folder = "wrong_run_output";
+      std::string       stop;
+      nlohmann::json    summary;
+      double            expected = 0.;
+    };
+
+    const Registry<Check>::Add<WrongRun>
+      registered("wrong run", "Energy from nowhere is said, or stops the run.");
+  } // namespace
+} // namespace Voussoir

@@ -16,13 +16,28 @@ namespace Voussoir
     {
     public:
       void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter(
+          "Uniform",
+          uniform,
+          "One undamped material: the surface then moves as the "
+          "outcrop, later by the travel time.");
+      }
+
+      void
       run(const ParameterFile &file,
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
         const auto given = make_case(file)->ground_motion.build(file.folder());
 
-        double     delay = 0.;
+        double delay = 0.;
+        if (uniform)
+          {
+            look_at_uniform(file, given, verdicts, communicator);
+            return;
+          }
         const auto at_surface =
           surface(file.with({"Ground motion/Given at=free surface"}),
                   delay,
@@ -67,6 +82,44 @@ namespace Voussoir
       }
 
     private:
+      template <typename Given>
+      static void
+      look_at_uniform(const ParameterFile &file,
+                      const Given         &given,
+                      Verdicts            &verdicts,
+                      const MPI_Comm       communicator)
+      {
+        double     delay = 0.;
+        const auto motion =
+          surface(file.with({"Ground motion/Given at=outcrop"}),
+                  delay,
+                  communicator);
+        const auto parameters      = make_case(file);
+        const auto simulation      = make_simulation(*parameters, communicator);
+        const auto &[lower, upper] = simulation->model.boundary.extent();
+        const ElasticConstants rock =
+          simulation->model.materials[0]->elastic_constants();
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            const double travel =
+              (upper[2] - lower[2]) /
+              (d == 2 ? rock.p_wave_speed() : rock.s_wave_speed());
+            double error = 0., peak = 0.;
+            for (std::size_t i = 0; i < motion.times.size(); ++i)
+              {
+                const double wanted =
+                  given[d]->displacement(motion.times[i] - travel);
+                keep_largest(peak, std::abs(wanted));
+                keep_largest(error,
+                             std::abs(motion.displacement[0][i][d] - wanted));
+              }
+            verdicts.below(std::string("uniform rock ") + "xyz"[d] +
+                             ": error over peak",
+                           error / peak,
+                           0.01);
+          }
+      }
+
       /** Motion of the surface, and the delay of a motion given there. */
       static Histories
       surface(const ParameterFile &file,
@@ -91,6 +144,8 @@ namespace Voussoir
                 simulation->run.time_step.length;
         return run_and_record(*simulation, {{"surface", upper}});
       }
+
+      bool uniform = false;
     };
 
     const Registry<Check>::Add<Outcrop>

@@ -171,12 +171,30 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    /** What damping, which must not fall, has given back [J]. */
+    double
+    given_back(const EnergyTerms &terms, const double most_damping)
+    {
+      return std::max(most_damping - terms.damping, 0.);
+    }
+
+
+    /** What cracks made when they closed [J]. */
+    double
+    made_by_closing(const EnergyTerms &terms)
+    {
+      return std::max(-terms.closing, 0.);
+    }
+  } // namespace
+
+
   double
   EnergyBalance::made() const
   {
     return std::abs(terms_now.error(initial)) +
-           std::max(most_damping - terms_now.damping, 0.) +
-           std::max(-terms_now.closing, 0.);
+           given_back(terms_now, most_damping) + made_by_closing(terms_now);
   }
 
 
@@ -213,8 +231,8 @@ namespace Voussoir
         text << std::setprecision(3) << 100. * relative_error()
              << " % of the energy that came in has come from nowhere ("
              << terms_now.error(initial) << " J unaccounted for, "
-             << std::max(most_damping - terms_now.damping, 0.)
-             << " J given back by damping, " << std::max(-terms_now.closing, 0.)
+             << given_back(terms_now, most_damping)
+             << " J given back by damping, " << made_by_closing(terms_now)
              << " J made by cracks that close)";
         return text.str();
       }

@@ -1,7 +1,7 @@
 #include <numeric>
 
 #include "check.h"
-#include "histories.h"
+#include "reflected_shares.h"
 
 namespace Voussoir
 {
@@ -205,18 +205,10 @@ namespace Voussoir
           run_and_record(*simulation,
                          {{"middle", Point<3>(0., 0., -0.5 * height)}});
 
-        // velocities, which fade faster than displacements: down after 1/2, up
-        // after 3/2, from the surface after 5/2 passages
+        // velocities, which fade faster than displacements
         auto v = histories.component(0, 2);
         std::adjacent_difference(v.begin(), v.end(), v.begin());
-        const double             passage = height / c;
-        std::map<double, double> result;
-        for (const double f : frequencies)
-          result[f] =
-            std::abs(
-              fourier_sum(histories.times, v, f, passage, 2.5 * passage)) /
-            std::abs(fourier_sum(histories.times, v, f, 0., passage));
-        return result;
+        return reflected_shares(histories.times, v, frequencies, height / c);
       }
 
       std::vector<double> frequencies{2., 4.};

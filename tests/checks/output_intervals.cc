@@ -1,6 +1,6 @@
-#include "check.h"
 #include "csv_table.h"
 #include "histories.h"
+#include "with_files.h"
 
 namespace Voussoir
 {
@@ -25,11 +25,7 @@ namespace Voussoir
     std::unique_ptr<Simulation>
     run_with_files(Case &parameters, const MPI_Comm communicator)
     {
-      RunOptions options;
-      options.quiet     = true;
-      options.overwrite = true;
-      auto simulation =
-        std::make_unique<Simulation>(parameters, options, communicator);
+      auto simulation = make_simulation_with_files(parameters, communicator);
       simulation->run.march();
       return simulation;
     }
@@ -63,7 +59,7 @@ namespace Voussoir
                interval,
                communicator,
                verdicts);
-        // a fit would cost more than a twentieth: every second step, each step
+        // a fit would cost more than a tenth: every second step, each step
         for (const auto &[wanted, lines] :
              std::vector<std::array<double, 2>>{{{1.6, 2.}}, {{0.8, 1.}}})
           look(file.with({automatic(wanted)}),

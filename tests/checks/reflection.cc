@@ -1,5 +1,5 @@
 #include "check.h"
-#include "histories.h"
+#include "reflected_shares.h"
 
 namespace Voussoir
 {
@@ -99,16 +99,10 @@ namespace Voussoir
                 }
           });
 
-        // down after 1/2, up after 3/2, from the surface after 5/2 passages
-        const auto   u       = histories.component(0, wave == "S" ? 0 : 2);
-        const double passage = height / c;
-        std::map<double, double> result;
-        for (const double f : frequencies)
-          result[f] =
-            std::abs(
-              fourier_sum(histories.times, u, f, passage, 2.5 * passage)) /
-            std::abs(fourier_sum(histories.times, u, f, 0., passage));
-        return result;
+        return reflected_shares(histories.times,
+                                histories.component(0, wave == "S" ? 0 : 2),
+                                frequencies,
+                                height / c);
       }
 
       std::string         wave = "S";

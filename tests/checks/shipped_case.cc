@@ -1,8 +1,8 @@
 #include <voussoir/base/parameter_file.h>
 
-#include <fstream>
+#include <filesystem>
 
-#include "check.h"
+#include "with_files.h"
 
 namespace Voussoir
 {
@@ -42,17 +42,11 @@ namespace Voussoir
                                       ".prm",
                                     list);
         Case                parameters(shipped);
-        RunOptions          options;
-        options.quiet     = true;
-        options.overwrite = true;
-        Simulation simulation(parameters, options, communicator);
-        simulation.run.march();
+        make_simulation_with_files(parameters, communicator)->run.march();
 
-        std::ifstream  written(folder + "/summary.json");
-        nlohmann::json summary;
-        written >> summary;
+        const nlohmann::json summary = read_summary(folder);
         verdicts.is_true("no objection to the run",
-                         summary["verdict"] == "no objection");
+                         summary.at("verdict") == "no objection");
         for (const std::string &result : split_list(results, ';'))
           {
             const auto   parts = split_list(result, ':');

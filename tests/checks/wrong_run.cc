@@ -1,9 +1,8 @@
 #include <voussoir/base/error.h>
 
 #include <filesystem>
-#include <fstream>
 
-#include "check.h"
+#include "with_files.h"
 
 namespace Voussoir
 {
@@ -58,14 +57,12 @@ namespace Voussoir
         const auto parameters =
           make_case(file.with({"Output/Folder=" + folder}));
         parameters->time.safety_factor = safety_factor;
-        RunOptions options;
-        options.quiet     = true;
-        options.overwrite = true;
         stop.clear();
         try
           {
-            Simulation simulation(*parameters, options, communicator);
-            Run       &run = simulation.run;
+            const auto simulation =
+              make_simulation_with_files(*parameters, communicator);
+            Run &run = simulation->run;
             while (2 * run.state.step < run.n_steps() && blow != 1.)
               run.scheme.step(run.state);
             const double kinetic = run.energy.evaluate(run.state).kinetic;
@@ -78,10 +75,7 @@ namespace Voussoir
           {
             stop = error.what();
           }
-        std::ifstream written(folder + "/summary.json");
-        summary = nlohmann::json();
-        if (written)
-          written >> summary;
+        summary = read_summary(folder);
         verdicts.is_true(name + ": there is a summary", !summary.is_null());
       }
 

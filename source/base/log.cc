@@ -1,5 +1,6 @@
 #include <voussoir/base/log.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 
@@ -33,6 +34,26 @@ namespace Voussoir
       file << text << std::flush;
     else
       said_before_open += text;
+  }
+
+
+  void
+  Log::add_warning(const std::string &text)
+  {
+    if (std::find(all_warnings.begin(), all_warnings.end(), text) !=
+        all_warnings.end())
+      return;
+    all_warnings.push_back(text);
+    line("Warning: ", text);
+    if (speaks && quiet)
+      std::cout << "Warning: " << text << std::endl;
+  }
+
+
+  const std::vector<std::string> &
+  Log::warnings() const
+  {
+    return all_warnings;
   }
 
 

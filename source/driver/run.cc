@@ -205,7 +205,7 @@ namespace Voussoir
       abort(reason);
     const double error =
       std::max(energy.relative_error(), energy.error_of_losses());
-    if (error > 0.01 && warnings.empty())
+    if (error > 0.01 && !warned_of_energy)
       {
         std::ostringstream text;
         text << std::setprecision(3) << "from t = " << state.time
@@ -213,8 +213,8 @@ namespace Voussoir
              << 100. * energy.relative_error() << " % of what came in, "
              << 100. * energy.error_of_losses()
              << " % of what damping, cracks, friction and impacts took";
-        warnings.push_back(text.str());
-        log.line("Warning: ", text.str());
+        warned_of_energy = true;
+        log.warn(text.str());
       }
   }
 

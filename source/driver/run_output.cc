@@ -129,8 +129,8 @@ namespace Voussoir
         memory_summary(observed, model.parameters.material_names());
     result["energy balance"] = energy.summary();
     result["verdict"] =
-      warnings.empty() ? "no objection" : "with warnings, see there";
-    result["warnings"] = warnings;
+      log.warnings().empty() ? "no objection" : "with warnings, see there";
+    result["warnings"] = log.warnings();
     result["names"]    = observed.names.json();
     return result;
   }
@@ -158,7 +158,7 @@ namespace Voussoir
       text << "Contact: "
            << 100. * result.at("contact share of the loop").get<double>()
            << " % of the loop\n";
-    for (const std::string &warning : warnings)
+    for (const std::string &warning : log.warnings())
       text << "Warning: " << warning << '\n';
     log(text.str());
     log(timer_table());

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace Voussoir
 {
@@ -34,14 +35,34 @@ namespace Voussoir
       (*this)(text.str());
     }
 
+    /** Says what the results must not be read without: also if the log is
+     *  quiet, and again at the end and in the summary of a run. Warnings that
+     *  were said before are not repeated. */
+    template <typename... Parts>
+    void
+    warn(const Parts &...parts)
+    {
+      std::ostringstream text;
+      (text << ... << parts);
+      add_warning(text.str());
+    }
+
+    const std::vector<std::string> &
+    warnings() const;
+
     MPI_Comm
     communicator() const;
 
   private:
+    void
+    add_warning(const std::string &text);
+
     MPI_Comm      mpi_communicator;
     const bool    speaks, quiet;
     std::ofstream file;
     std::string   said_before_open;
+
+    std::vector<std::string> all_warnings;
   };
 
   /** "1 h 05 min", "3 min 20 s", "12 s". */

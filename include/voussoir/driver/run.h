@@ -124,10 +124,9 @@ namespace Voussoir
     State               last_good; // displacement, velocity and time alone
     dealii::TimerOutput timer;
     dealii::Timer       clock, since_report, since_checkpoint;
-    unsigned long long  first_step   = 0;
-    double              loop_seconds = 0.;
-
-    std::vector<std::string> warnings; // that the results need
+    unsigned long long  first_step       = 0;
+    double              loop_seconds     = 0.;
+    bool                warned_of_energy = false;
   };
 } // namespace Voussoir
 

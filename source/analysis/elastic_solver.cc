@@ -1,5 +1,6 @@
 #include <voussoir/analysis/elastic_solver.h>
 #include <voussoir/base/error.h>
+#include <voussoir/base/interruption.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_q.h>
@@ -251,6 +252,7 @@ namespace Voussoir
   void
   ElasticSolver::apply(Vector &force, const Vector &displacement) const
   {
+    stop_if_requested(discretization.grid.communicator());
     internal_force.apply(force, displacement);
     if (springs != nullptr)
       springs->add_to(force, displacement, 0.);

@@ -1,5 +1,6 @@
 #include <voussoir/analysis/relaxation.h>
 #include <voussoir/base/error.h>
+#include <voussoir/base/interruption.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/fem/nodal_values.h>
 #include <voussoir/fem/stable_step.h>
@@ -124,6 +125,7 @@ namespace Voussoir
         if (to_look > 0)
           continue;
 
+        stop_if_requested(discretization.grid.communicator());
         const double speed = largest_amount(state.velocity);
         if (!std::isfinite(speed))
           break;

@@ -34,6 +34,24 @@ namespace Voussoir
   }
 
 
+  std::vector<double *>
+  Contact::energies()
+  {
+    std::vector<double *> list;
+    for (ContactSurface &surface : solver->surfaces)
+      {
+        ContactEnergy &energy = surface.energy;
+        list.insert(list.end(),
+                    {&energy.impact,
+                     &energy.friction,
+                     &energy.bond,
+                     &energy.bars,
+                     &energy.uplift});
+      }
+    return list;
+  }
+
+
   nlohmann::json
   Contact::save() const
   {
@@ -61,6 +79,9 @@ namespace Voussoir
   void
   Contact::load(const nlohmann::json &saved)
   {
+    // where the static state has been grouted bars and uplift act
+    for (unsigned int i = 0; i < interfaces.list.size(); ++i)
+      join(i);
     for (unsigned int k = 0; k < solver->points.size(); ++k)
       {
         ContactPoint      &point  = solver->points[k];

@@ -142,8 +142,15 @@ namespace Voussoir
       "Checkpoint interval",
       checkpoint_interval,
       "Minutes on the clock between two checkpoints, from which "
-      "--restart goes on; 0 for none.",
+      "--restart goes on; 0 for none by the clock. SIGUSR1 asks for one more; "
+      "SIGTERM and the like, or a file named stop in the output folder, for "
+      "one and the end.",
       Patterns::Double(0.));
+    prm.add_parameter("Checkpoint time",
+                      checkpoint_time,
+                      "Simulated time between two checkpoints [s]; 0 for none "
+                      "by it.",
+                      Patterns::Double(0.));
   }
 
 

@@ -1,13 +1,18 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/interruption.h>
 #include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/command_line.h>
 #include <voussoir/driver/simulation.h>
 
+#include <deal.II/base/timer.h>
+
 #include <CLI/CLI.hpp>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 namespace Voussoir
 {
@@ -115,9 +120,33 @@ namespace Voussoir
   } // namespace
 
 
+  namespace
+  {
+    /** Whether all ranks come here within a few seconds. */
+    bool
+    all_arrive(const MPI_Comm communicator)
+    {
+      MPI_Request request;
+      MPI_Ibarrier(communicator, &request);
+      const Timer clock(MPI_COMM_SELF);
+      int         arrived = 0;
+      while (!arrived && clock.wall_time() < 5.)
+        {
+          MPI_Test(&request, &arrived, MPI_STATUS_IGNORE);
+          std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+      return arrived != 0;
+    }
+  } // namespace
+
+
   int
   guarded(const std::function<void()> &action, const MPI_Comm communicator)
   {
+    const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
+    // to meet after an error: on the other one ranks may wait for each other
+    MPI_Comm meeting;
+    MPI_Comm_dup(communicator, &meeting);
     std::string message;
     try
       {
@@ -127,6 +156,13 @@ namespace Voussoir
     catch (const UserError &error)
       {
         message = error.what();
+      }
+    catch (const Stopped &stopped)
+      {
+        // all ranks stop together
+        if (first)
+          std::cout << stopped.what() << std::endl;
+        return exit_code_stopped;
       }
     catch (const std::bad_alloc &)
       {
@@ -138,18 +174,12 @@ namespace Voussoir
         message =
           std::string("Unexpected error, please report it: ") + error.what();
       }
-    // An error that all ranks see is said by the first; one rank's own error
-    // cannot be agreed upon with the others, who wait, so it ends the run.
-    const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
-    if (first)
+    // An error that all ranks see is said by the first. One rank's own error
+    // cannot be agreed upon with the others, who wait for something else.
+    const bool all = all_arrive(meeting);
+    if (first || !all)
       std::cerr << "Error: " << message << std::endl;
-    else
-      {
-        // leave the first rank a moment to say it
-        std::this_thread::sleep_for(std::chrono::seconds(2));
-        std::cerr << "Error: " << message << std::endl;
-      }
-    if (Utilities::MPI::n_mpi_processes(communicator) > 1)
+    if (!all)
       MPI_Abort(communicator, 1);
     return 1;
   }
@@ -247,6 +277,7 @@ namespace Voussoir
         validate(parameters, communicator);
       else
         {
+          listen_to_signals();
           Simulation simulation(parameters, arguments.options, communicator);
           simulation.run.march();
         }

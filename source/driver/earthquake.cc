@@ -19,6 +19,10 @@ namespace Voussoir
         base = RigidBase(std::move(motion));
         return;
       }
+    if (ground_motion.given_at == "free surface")
+      for (const auto &component : motion)
+        if (component && std::isinf(component->end()))
+          followed_to = end_time;
     auto field = make_free_field(model.boundary,
                                  model.discretization,
                                  model.materials,

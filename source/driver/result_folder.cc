@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
+#include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/result_folder.h>
 #include <voussoir/output/checkpoint.h>
 
@@ -12,17 +13,39 @@ namespace Voussoir
 
   namespace
   {
-    std::string
-    choose_folder(const Case       &parameters,
-                  const RunOptions &options,
-                  const MPI_Comm    communicator)
+    /** The folder that the case names and those with a number added, the newest
+     *  first. */
+    std::vector<std::string>
+    earlier_folders(const std::string &wanted, const MPI_Comm communicator)
     {
-      if (options.no_output)
-        return "";
-      const std::string wanted = parameters.output.folder.empty() ?
-                                   "output/" + parameters.file.name() :
-                                   parameters.output.folder;
-      if (options.overwrite && !options.restart)
+      std::vector<std::string> folders;
+      std::string              next = wanted;
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        for (unsigned int n = 2; fs::exists(next); ++n)
+          {
+            folders.insert(folders.begin(), next);
+            next = wanted + "-" + std::to_string(n);
+          }
+      return Utilities::MPI::broadcast(communicator, folders);
+    }
+
+
+    std::string
+    wanted_folder(const Case &parameters)
+    {
+      return parameters.output.folder.empty() ?
+               "output/" + parameters.file.name() :
+               parameters.output.folder;
+    }
+
+
+    std::string
+    new_folder(const Case       &parameters,
+               const RunOptions &options,
+               const MPI_Comm    communicator)
+    {
+      const std::string wanted = wanted_folder(parameters);
+      if (options.overwrite)
         {
           if (fs::exists(wanted) && !fs::exists(wanted + "/parameters.prm"))
             throw UserError("--overwrite does not remove \"" + wanted +
@@ -31,20 +54,8 @@ namespace Voussoir
                             "\"Output\".");
           return wanted;
         }
-      std::string next = wanted, last = wanted;
-      if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        for (unsigned int n = 2; fs::exists(next); ++n)
-          {
-            last = next;
-            next = wanted + "-" + std::to_string(n);
-          }
-      const std::string chosen =
-        Utilities::MPI::broadcast(communicator, options.restart ? last : next);
-      if (options.restart && !Checkpoint::exists(chosen + "/checkpoint"))
-        throw UserError("There is no checkpoint in \"" + chosen +
-                        "\" to restart from; run the case without "
-                        "--restart.");
-      return chosen;
+      const std::size_t n = earlier_folders(wanted, communicator).size();
+      return n == 0 ? wanted : wanted + "-" + std::to_string(n + 1);
     }
   } // namespace
 
@@ -54,15 +65,47 @@ namespace Voussoir
                              Log              &log)
     : parameters(parameters)
     , options(options)
-    , chosen(choose_folder(parameters, options, log.communicator()))
   {
-    if (exists())
-      log.line("Results go to ", chosen);
-    if (restarts())
+    if (options.no_output)
+      return;
+    if (options.restart)
+      find_checkpoint(log);
+    else
+      chosen = new_folder(parameters, options, log.communicator());
+    log.line("Results go to ", chosen);
+  }
+
+
+  void
+  ResultFolder::find_checkpoint(Log &log)
+  {
+    const std::string        wanted = wanted_folder(parameters);
+    std::vector<std::string> damaged;
+    for (const std::string &folder :
+         earlier_folders(wanted, log.communicator()))
       {
-        header = Checkpoint::read_header(chosen + "/checkpoint");
-        check_checkpoint();
+        chosen = folder;
+        from   = Checkpoint(checkpoints(), log.communicator()).newest(damaged);
+        if (!from.empty())
+          break;
       }
+    if (from.empty())
+      throw UserError(
+        "There is no checkpoint in \"" + wanted + "\" to restart from" +
+        (damaged.empty() ? "" : " (" + join(damaged, "; ") + ")") +
+        "; run the case without --restart.");
+    for (const std::string &file : damaged)
+      log.line("Not used: the checkpoint ", file);
+    header = read_state_header(from, log.communicator());
+    check_identity(parameters, header.at("identity"), from);
+    const double reached = header.at("time");
+    if (reached < parameters.time.end_time)
+      return;
+    std::ostringstream text;
+    text << "The checkpoint \"" << from << "\" is of " << reached
+         << " s, but \"End time\" in section \"Time\" is "
+         << parameters.time.end_time << " s; set a later one.";
+    throw UserError(text.str());
   }
 
 
@@ -113,6 +156,13 @@ namespace Voussoir
   }
 
 
+  std::string
+  ResultFolder::checkpoints() const
+  {
+    return chosen + "/checkpoint";
+  }
+
+
   const nlohmann::json &
   ResultFolder::checkpoint() const
   {
@@ -120,67 +170,16 @@ namespace Voussoir
   }
 
 
+  const std::string &
+  ResultFolder::checkpoint_file() const
+  {
+    return from;
+  }
+
+
   double
   ResultFolder::start_time() const
   {
     return restarts() ? header.at("time").get<double>() : 0.;
-  }
-
-
-  nlohmann::json
-  ResultFolder::physics() const
-  {
-    const std::set<std::string> free{"Title",
-                                     "Mesh/Partition",
-                                     "Time/End time"};
-    std::ostringstream          text;
-    parameters.prm.print_parameters(text, ParameterHandler::ShortText);
-    nlohmann::json           result = nlohmann::json::array();
-    std::istringstream       in(text.str());
-    std::vector<std::string> sections;
-    for (std::string line; std::getline(in, line);)
-      {
-        line              = Utilities::trim(line);
-        const auto equals = line.find('=');
-        if (line.rfind("subsection ", 0) == 0)
-          sections.push_back(line.substr(11) + "/");
-        else if (line == "end")
-          sections.pop_back();
-        else if (line.rfind("set ", 0) == 0)
-          {
-            const std::string entry =
-              join(sections, "") + Utilities::trim(line.substr(4, equals - 4));
-            if (free.count(entry) == 0 && entry.rfind("Output/", 0) != 0)
-              result.push_back(entry + " =" + line.substr(equals + 1));
-          }
-      }
-    return result;
-  }
-
-
-  void
-  ResultFolder::check_checkpoint() const
-  {
-    const nlohmann::json mine = physics(), theirs = header.at("physics");
-    const auto           line = [](const nlohmann::json &lines, std::size_t i) {
-      return i < lines.size() ? Utilities::trim(lines[i].get<std::string>()) :
-                                          std::string("nothing");
-    };
-    for (std::size_t i = 0; i < std::max(mine.size(), theirs.size()); ++i)
-      if (line(mine, i) != line(theirs, i))
-        throw UserError("The checkpoint in \"" + chosen +
-                        "\" was written with \"" + line(theirs, i) +
-                        "\", the case now has \"" + line(mine, i) +
-                        "\"; restart with the same physics, or start "
-                        "afresh.");
-    const double reached = header.at("time");
-    if (reached >= parameters.time.end_time)
-      {
-        std::ostringstream text;
-        text << "The checkpoint in \"" << chosen << "\" is of " << reached
-             << " s, but \"End time\" in section \"Time\" is "
-             << parameters.time.end_time << " s; set a later one.";
-        throw UserError(text.str());
-      }
   }
 } // namespace Voussoir

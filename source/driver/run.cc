@@ -1,8 +1,9 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/interruption.h>
 #include <voussoir/driver/run.h>
 #include <voussoir/output/field_writer.h>
 
-#include <csignal>
+#include <filesystem>
 #include <iomanip>
 
 namespace Voussoir
@@ -11,14 +12,9 @@ namespace Voussoir
 
   namespace
   {
-    // set by SIGINT and SIGTERM: finish the step, write a checkpoint, stop
-    volatile std::sig_atomic_t stop_requested = 0;
-
-    void
-    request_stop(int)
-    {
-      stop_requested = 1;
-    }
+    // Between two looks at the clock and at what is asked from outside [s]:
+    // those who ask may kill a second later.
+    constexpr double look_interval = 0.05;
 
 
     Damping
@@ -102,7 +98,7 @@ namespace Voussoir
     , state(scheme.state_at_rest())
     , observed(what_is_observed())
     , energy(equation, time_step.length)
-    , checkpoint(model.discretization, folder.path() + "/checkpoint")
+    , checkpoint(folder.checkpoints(), log.communicator())
     , timer(std::cout, TimerOutput::never, TimerOutput::wall_times)
   {
     for (const auto &observer : model.parameters.observers)
@@ -114,7 +110,9 @@ namespace Voussoir
       read_checkpoint();
     for (Projection *projection : equation.projections)
       projection->start(state);
-    energy.evaluate(state);
+    // the table has its line of a checkpoint between two
+    if (!folder.restarts() || energy_schedule().due(state.step))
+      energy.evaluate(state);
     keep_last_good();
   }
 
@@ -144,6 +142,13 @@ namespace Voussoir
   }
 
 
+  Schedule
+  Run::energy_schedule() const
+  {
+    return {model.parameters.output.energy_interval, time_step.length};
+  }
+
+
   unsigned long long
   Run::n_steps() const
   {
@@ -154,15 +159,18 @@ namespace Voussoir
   void
   Run::march()
   {
-    stop_requested = 0;
-    std::signal(SIGINT, request_stop);
-    std::signal(SIGTERM, request_stop);
-    const Schedule energy_schedule(model.parameters.output.energy_interval,
-                                   time_step.length);
-    first_step = state.step;
+    const OutputParameters &output       = model.parameters.output;
+    const Schedule          energy_lines = energy_schedule(),
+                   checkpoints(output.checkpoint_time, time_step.length);
+    first_step = last_look = next_look = state.step;
     clock.restart();
     since_report.restart();
     since_checkpoint.restart();
+    since_look.restart();
+    const bool has_intervals =
+      output.checkpoint_interval > 0. || output.checkpoint_time > 0.;
+    if (folder.exists() && has_intervals && !folder.restarts())
+      write_first_checkpoint();
     observe(); // after a restart what they saw last, once more
 
     while (state.step < n_steps())
@@ -172,12 +180,16 @@ namespace Voussoir
           scheme.step(state);
         }
         observe();
-        if (energy_schedule.due(state.step) || state.step == n_steps())
+        if (energy_lines.due(state.step) || state.step == n_steps())
           {
             check_energy();
             keep_last_good();
-            attend();
           }
+        if (folder.exists() && output.checkpoint_time > 0. &&
+            checkpoints.due(state.step))
+          write_checkpoint();
+        if (state.step >= next_look)
+          attend();
       }
     finish();
   }
@@ -231,27 +243,57 @@ namespace Voussoir
   void
   Run::attend()
   {
-    // all ranks go by the clock of the first
-    const double checkpoint_interval =
-      60. * model.parameters.output.checkpoint_interval;
-    std::array<int, 3> due{
-      {since_report.wall_time() > 5. ? 1 : 0,
-       checkpoint_interval > 0. &&
-           since_checkpoint.wall_time() > checkpoint_interval ?
-         1 :
-         0,
-       stop_requested != 0 ? 1 : 0}};
-    due = Utilities::MPI::broadcast(log.communicator(), due);
-    if (due[0])
+    const OutputParameters &output = model.parameters.output;
+    const bool              first =
+      Utilities::MPI::this_mpi_process(log.communicator()) == 0;
+    const std::string stop_file = folder.path() + "/stop";
+
+    // the first rank looks at the clock and the folder; anybody may have got a
+    // signal
+    enum
+    {
+      report,
+      save,
+      stop_now,
+      steps,
+      n_wishes
+    };
+    std::vector<double> mine(n_wishes), wanted(n_wishes);
+    mine[stop_now] = stop_requested();
+    mine[save]     = take_checkpoint_request();
+    if (first)
+      {
+        mine[report] = since_report.wall_time() > 5.;
+        if (output.checkpoint_interval > 0. &&
+            since_checkpoint.wall_time() > 60. * output.checkpoint_interval)
+          mine[save] = 1.;
+        if (folder.exists() && std::filesystem::remove(stop_file))
+          mine[stop_now] = 1.;
+        const double of_step =
+          since_look.wall_time() / std::max<double>(state.step - last_look, 1.);
+        mine[steps] = std::min(look_interval / std::max(of_step, 1e-9), 1e6);
+      }
+    Utilities::MPI::max(mine, log.communicator(), wanted);
+    last_look = state.step;
+    next_look = state.step + 1 + static_cast<unsigned long long>(wanted[steps]);
+    since_look.restart();
+
+    if (wanted[report] > 0.)
       {
         report_progress();
         since_report.restart();
       }
-    if (folder.exists() && (due[1] || due[2]))
-      write_checkpoint();
-    if (due[2])
-      throw UserError("Stopped on request at " + std::to_string(state.time) +
-                      " s; \"--restart\" goes on from here.");
+    const bool stops = wanted[stop_now] > 0.;
+    const bool saved =
+      folder.exists() && (stops || wanted[save] > 0.) && write_checkpoint();
+    if (stops)
+      {
+        std::ostringstream text;
+        text << "Stopped on request at t = " << state.time << " s"
+             << (saved ? "; \"--restart\" goes on from here." :
+                         ", without a checkpoint of this time.");
+        stop(text.str());
+      }
   }
 
 

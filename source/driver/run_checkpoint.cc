@@ -1,7 +1,14 @@
 // Checkpoints of a run and the way back from them.
 
+#include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
+#include <voussoir/base/version.h>
+#include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/run.h>
+#include <voussoir/driver/stored_rest.h>
+#include <voussoir/fem/nodal_values.h>
+
+#include <filesystem>
 
 namespace Voussoir
 {
@@ -9,47 +16,65 @@ namespace Voussoir
 
   namespace
   {
-    /** The sums of energy that a run has made so far, each rank its own; a
-     *  checkpoint holds those of all ranks together. */
-    std::vector<double *>
-    sums_of(State &state, WaterMotion *water)
+    /** The same for all partitions of a mesh. */
+    nlohmann::json
+    mesh_identity(const Model &model)
     {
-      EnergyAccounts       &a = state.accounts;
-      std::vector<double *> sums{&a.work_of_forces,
-                                 &a.loss_in_dashpots,
-                                 &a.work_of_base,
-                                 &a.work_of_projections,
-                                 &a.loss_by_mass,
-                                 &a.work_on_cells};
-      if (water != nullptr)
-        sums.push_back(&water->loss);
-      return sums;
+      const Discretization &discretization = model.discretization;
+      double                sum            = 0.;
+      for (const auto &cell :
+           discretization.dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          sum += static_cast<double>(Grid::global_key(cell) % 1000003);
+      return {{"unknowns", discretization.dof_handler.n_dofs()},
+              {"sum of cells",
+               Utilities::MPI::sum(sum, model.grid.communicator())}};
     }
   } // namespace
 
 
-  std::map<std::string, Vector *>
-  Run::checkpoint_vectors()
+  // Energies summed up so far, each rank its own part.
+  std::vector<double *>
+  Run::sums_of_rank()
   {
-    std::map<std::string, Vector *> vectors{{"displacement",
-                                             &state.displacement},
-                                            {"velocity", &state.velocity}};
-    for (unsigned int i = 0; i < state.memory.size(); ++i)
-      vectors["damping memory " + std::to_string(i)] = &state.memory[i];
-    for (const auto &[name, observer] : model.parameters.observers)
-      for (const auto &[vector_name, vector] : observer->checkpoint_vectors())
-        vectors[name + "/" + vector_name] = vector;
-    return vectors;
+    EnergyAccounts       &a = state.accounts;
+    std::vector<double *> sums{&a.work_of_forces,
+                               &a.loss_in_dashpots,
+                               &a.work_of_base,
+                               &a.work_of_projections,
+                               &a.loss_by_mass,
+                               &a.work_on_cells};
+    for (unsigned int m = 0; m < model.materials.size(); ++m)
+      if (PointHistory *history = state.material_memory.of(m))
+        sums.insert(sums.end(),
+                    {&history->losses.material, &history->losses.closing});
+    if (water)
+      sums.push_back(&water->loss);
+    if (contact)
+      for (double *energy : contact->energies())
+        sums.push_back(energy);
+    return sums;
   }
 
 
-  std::map<std::string, KeyedValues>
-  Run::checkpoint_values()
+  StateContent
+  Run::checkpoint_content()
   {
-    std::map<std::string, KeyedValues> values;
+    const NodalKeys nodes(model.discretization);
+    StateContent    content;
+    auto           &values = content.values;
+    values["displacement"] = nodes.values(state.displacement);
+    values["velocity"]     = nodes.values(state.velocity);
+    for (unsigned int i = 0; i < state.memory.size(); ++i)
+      values["damping memory " + std::to_string(i)] =
+        nodes.values(state.memory[i]);
     for (const auto &[name, observer] : model.parameters.observers)
-      for (auto &[group_name, group] : observer->checkpoint_values())
-        values[name + "/" + group_name] = std::move(group);
+      {
+        for (const auto &[own_name, vector] : observer->checkpoint_vectors())
+          values[name + "/" + own_name] = nodes.values(*vector);
+        for (auto &[own_name, group] : observer->checkpoint_values())
+          values[name + "/" + own_name] = std::move(group);
+      }
     for (unsigned int m = 0; m < model.materials.size(); ++m)
       if (PointHistory *history = state.material_memory.of(m))
         values["material " + model.parameters.materials.objects[m].first] =
@@ -70,34 +95,76 @@ namespace Voussoir
               group.items.emplace_back(keys[i], vector->begin() + i);
           }
       }
-    return values;
+    content.documents = {{"observers", nullptr},
+                         {"free field", nullptr},
+                         {"sums of ranks", nullptr}};
+    return content;
   }
 
 
   void
+  Run::write_first_checkpoint()
+  {
+    try
+      {
+        std::error_code problem; // shows when the files are written
+        if (Utilities::MPI::this_mpi_process(log.communicator()) == 0)
+          std::filesystem::create_directories(folder.checkpoints(), problem);
+        const std::string place = folder.checkpoints() + "/";
+        if (rest.initial.displacement.size() > 0)
+          store_rest(model, rest, place + rest_file);
+        if (!modes.list.empty())
+          store_modes(model, modes, place + modes_file);
+      }
+    catch (const UserError &error)
+      {
+        log.warn("a restart will have to find the state at rest again: ",
+                 error.what());
+      }
+    write_checkpoint();
+  }
+
+
+  bool
   Run::write_checkpoint()
   {
     TimerOutput::Scope scope(timer, "checkpoint");
-    nlohmann::json     seen;
-    for (const auto &[name, observer] : model.parameters.observers)
-      seen[name] = observer->save();
-    std::vector<double> work;
-    for (const double *sum : sums_of(state, water.get()))
-      work.push_back(*sum);
-    const PointLosses losses = state.material_memory.losses();
-    work.insert(work.end(), {losses.material, losses.closing});
-    checkpoint.write(checkpoint_vectors(),
-                     checkpoint_values(),
-                     {{"time", state.time},
-                      {"step", state.step},
-                      {"time step", time_step.length},
-                      {"energy", energy.save()},
-                      {"work", sum_over_ranks(work, log.communicator())},
-                      {"contact", contact ? contact->save() : nlohmann::json()},
-                      {"observers", seen},
-                      {"physics", folder.physics()}});
-    log.line("Checkpoint written at t = ", state.time, " s");
     since_checkpoint.restart();
+    if (!std::isfinite(largest_amount(state.velocity)))
+      return false; // the next line of the energy balance ends such a run
+    StateContent content = checkpoint_content();
+    for (const auto &[name, observer] : model.parameters.observers)
+      content.documents["observers"][name] = observer->save();
+    if (earthquake.wave)
+      content.documents["free field"] = earthquake.wave->save();
+    std::vector<double> sums;
+    for (const double *sum : sums_of_rank())
+      sums.push_back(*sum);
+    content.documents["sums of ranks"] =
+      Utilities::MPI::all_gather(log.communicator(), sums);
+    try
+      {
+        checkpoint.write(state.step,
+                         {{"version", version()},
+                          {"identity", identity_of(model.parameters)},
+                          {"mesh", mesh_identity(model)},
+                          {"time", state.time},
+                          {"step", state.step},
+                          {"time step", time_step.length},
+                          {"earthquake followed to", earthquake.followed_to},
+                          {"energy", energy.save()},
+                          {"contact",
+                           contact ? contact->save() : nlohmann::json()},
+                          {"warnings", log.warnings()}},
+                         content);
+      }
+    catch (const UserError &error)
+      {
+        log.warn("no checkpoint at t = ", state.time, " s: ", error.what());
+        return false;
+      }
+    log.line("Checkpoint written at t = ", state.time, " s");
+    return true;
   }
 
 
@@ -105,7 +172,32 @@ namespace Voussoir
   Run::read_checkpoint()
   {
     const nlohmann::json &header = folder.checkpoint();
-    checkpoint.read(checkpoint_vectors(), checkpoint_values());
+    if (header.at("mesh") != mesh_identity(model))
+      throw UserError("The checkpoint \"" + folder.checkpoint_file() +
+                      "\" belongs to another mesh; restart with the mesh, "
+                      "degree and refinement of the run that wrote it.");
+    if (const double followed_to = header.at("earthquake followed to");
+        followed_to != earthquake.followed_to)
+      {
+        std::ostringstream text;
+        text << "The checkpoint \"" << folder.checkpoint_file()
+             << "\" is of a motion without end, given at the free surface and "
+                "followed down to the base for "
+             << followed_to
+             << " s; keep this \"End time\" in section \"Time\", or start "
+                "afresh.";
+        throw UserError(text.str());
+      }
+    if (header.at("version") != version())
+      log.warn("the run until t = ",
+               header.at("time").get<double>(),
+               " s was made by another version, ",
+               header.at("version").get<std::string>());
+    for (const nlohmann::json &warning : header.at("warnings"))
+      log.warn(warning.get<std::string>());
+
+    StateContent content = checkpoint_content();
+    read_state(folder.checkpoint_file(), content, log.communicator());
     state.time = header.at("time");
     state.step = header.at("step");
     energy.load(header.at("energy"));
@@ -114,25 +206,32 @@ namespace Voussoir
         history->load();
     if (contact)
       contact->load(header.at("contact"));
+    const nlohmann::json &seen = content.documents["observers"];
     for (const auto &[name, observer] : model.parameters.observers)
-      if (header.at("observers").contains(name))
-        observer->load(header.at("observers").at(name));
-
-    // sums are taken over the ranks: the first one gets all
-    const std::vector<double> work = header.at("work");
-    const bool                first =
-      Utilities::MPI::this_mpi_process(log.communicator()) == 0;
-    const auto sums = sums_of(state, water.get());
-    for (unsigned int i = 0; i < sums.size(); ++i)
-      *sums[i] = first ? work[i] : 0.;
-    const unsigned int n = sums.size();
-    state.material_memory.set_losses(first ? PointLosses{work[n], work[n + 1]} :
-                                             PointLosses());
-
-    // the free field has no checkpoint: it is marched again, which is cheap
+      observer->load(seen.at(name));
     if (earthquake.wave)
-      for (unsigned long long step = 0; step < state.step; ++step)
-        earthquake.wave->replay(step * time_step.length);
-    log.line("Going on from the checkpoint at t = ", state.time, " s");
+      earthquake.wave->load(content.documents["free field"]);
+
+    // on as many ranks each takes its own, so that nothing rounds differently;
+    // else the first one takes all
+    const std::vector<std::vector<double>> of_ranks =
+      content.documents["sums of ranks"];
+    const unsigned int rank =
+      Utilities::MPI::this_mpi_process(log.communicator());
+    const bool same_ranks =
+      of_ranks.size() == Utilities::MPI::n_mpi_processes(log.communicator());
+    const auto sums = sums_of_rank();
+    for (unsigned int i = 0; i < sums.size(); ++i)
+      {
+        *sums[i] = 0.;
+        for (unsigned int r = 0; r < of_ranks.size(); ++r)
+          if (same_ranks ? r == rank : rank == 0)
+            *sums[i] += of_ranks[r].at(i);
+      }
+    log.line("Going on from the checkpoint \"",
+             folder.checkpoint_file(),
+             "\" at t = ",
+             state.time,
+             " s");
   }
 } // namespace Voussoir

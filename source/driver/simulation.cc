@@ -1,5 +1,6 @@
 #include <voussoir/base/version.h>
 #include <voussoir/driver/simulation.h>
+#include <voussoir/driver/stored_rest.h>
 
 namespace Voussoir
 {
@@ -29,6 +30,26 @@ namespace Voussoir
         log.line(parameters.title);
       return log;
     }
+
+
+    /** Reads what the run that goes on from its checkpoint has stored, or else
+     *  finds it. */
+    template <typename Result>
+    Result
+    stored_or_found(const Model        &model,
+                    const ResultFolder &folder,
+                    const std::string  &name,
+                    Result (*read)(const Model &, const std::string &),
+                    Result (*find)(const Model &, Log &),
+                    Log &log)
+    {
+      const std::string file = folder.checkpoints() + "/" + name;
+      if (!folder.restarts() ||
+          !damage_of_state(file, log.communicator()).empty())
+        return find(model, log);
+      log.line("Taken from ", file);
+      return read(model, file);
+    }
   } // namespace
 
 
@@ -38,8 +59,17 @@ namespace Voussoir
     : log(opened_log(parameters, options, communicator))
     , folder(parameters, options, log)
     , model(parameters, log)
-    , rest(options.validate ? RestState(model) : find_rest(model, log))
-    , modes(options.validate ? Modes() : find_modes(model, log))
+    , rest(
+        options.validate ?
+          RestState(model) :
+          stored_or_found(model, folder, rest_file, read_rest, find_rest, log))
+    , modes(options.validate ? Modes() :
+                               stored_or_found(model,
+                                               folder,
+                                               modes_file,
+                                               read_modes,
+                                               find_modes,
+                                               log))
     , run(model, rest, modes, folder, log)
   {}
 } // namespace Voussoir

@@ -121,15 +121,21 @@ namespace Voussoir
           trade_one(tensor->access_raw_entry(i));
       return n;
     }
+
+
+    unsigned int
+    n_of_active_point()
+    {
+      ActivePoint point;
+      return for_each_number(point, [](const Lanes &) {});
+    }
   } // namespace
 
 
   KeyedValues
   PointHistory::checkpoint_values()
   {
-    ActivePoint        none;
-    const unsigned int of_cell =
-      n_points() * (n_numbers + for_each_number(none, [](const Lanes &) {}));
+    const unsigned int of_cell = n_points() * (n_numbers + n_of_active_point());
     packed.assign(points->cells.size() * of_cell, 0.);
     exchange(false);
     KeyedValues values{of_cell, {}};
@@ -166,12 +172,23 @@ namespace Voussoir
           lane                     = place.second.lane;
           for (unsigned int i = 0; i < n_numbers; ++i)
             trade(values(batch, q)[i]);
-          const bool  is_known = is_active(batch, q);
+          // points of batches that are elastic leave zeros
+          const bool is_known = is_active(batch, q);
+          const bool has_numbers =
+            load ? std::any_of(item,
+                               item + n_of_active_point(),
+                               [](const double x) { return x != 0.; }) :
+                   is_known;
+          if (!has_numbers)
+            {
+              item += n_of_active_point();
+              continue;
+            }
           ActivePoint point = is_known ? active_point(batch, q) : ActivePoint();
           for_each_number(point, trade);
           if (load && is_known)
             active_point(batch, q) = point;
-          else if (load && point.band[lane] > 0.)
+          else if (load)
             activate(batch, q, point);
         }
   }

@@ -163,21 +163,28 @@ namespace Voussoir
   }
 
 
-  void
-  ColumnField::replay(const double time)
+  std::vector<double>
+  ColumnField::save() const
   {
-    Tensor<1, 3> incident_velocity;
-    for (unsigned int d = 0; d < 3; ++d)
-      if (incident[d])
-        incident_velocity[d] = incident[d]->velocity(time);
-    column.advance(incident_velocity);
+    return column.save();
+  }
+
+
+  void
+  ColumnField::load(const std::vector<double> &numbers)
+  {
+    column.load(numbers);
   }
 
 
   void
   ColumnField::advance(const double time)
   {
-    replay(time);
+    Tensor<1, 3> incident_velocity;
+    for (unsigned int d = 0; d < 3; ++d)
+      if (incident[d])
+        incident_velocity[d] = incident[d]->velocity(time);
+    column.advance(incident_velocity);
 
     std::vector<Tensor<1, 3>> level_displacement, level_velocity;
     for (const auto &level : levels)
@@ -220,9 +227,18 @@ namespace Voussoir
   incident_for_surface(const WaveColumn          &column,
                        const GroundMotionSignals &surface,
                        const double               time_step,
-                       const double               duration,
+                       const double               longest,
                        const double               maximum_frequency)
   {
+    // not only as long as this run: one that goes on from it needs the same
+    double duration = 0.;
+    for (const auto &component : surface)
+      if (component)
+        duration = std::max(duration,
+                            std::isfinite(component->end()) ?
+                              component->end() + 4. * column.travel_time() :
+                              longest);
+
     // the column's response to a short pulse, until it has died out over a
     // period (four travel times) of its slowest layer
     WaveColumn         trial = column;

@@ -17,9 +17,16 @@ namespace Voussoir
   }
 
 
-  void
-  IncomingWave::replay(const double time)
+  std::vector<double>
+  IncomingWave::save() const
   {
-    field->replay(time);
+    return field->save();
+  }
+
+
+  void
+  IncomingWave::load(const std::vector<double> &numbers)
+  {
+    field->load(numbers);
   }
 } // namespace Voussoir

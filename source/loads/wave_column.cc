@@ -130,6 +130,43 @@ namespace Voussoir
   }
 
 
+  std::vector<double>
+  WaveColumn::save() const
+  {
+    std::vector<double> numbers;
+    const auto          add = [&](const std::vector<Tensor<1, 3>> &vectors) {
+      for (const Tensor<1, 3> &vector : vectors)
+        numbers.insert(numbers.end(), vector.begin_raw(), vector.end_raw());
+    };
+    add(next_u);
+    add(v);
+    for (const auto &branch : memory)
+      add(branch);
+    return numbers;
+  }
+
+
+  void
+  WaveColumn::load(const std::vector<double> &numbers)
+  {
+    AssertThrow(numbers.size() == 3 * (2 + memory.size()) * v.size(),
+                ExcDimensionMismatch(numbers.size(),
+                                     3 * (2 + memory.size()) * v.size()));
+    auto       number = numbers.begin();
+    const auto take   = [&](std::vector<Tensor<1, 3>> &vectors) {
+      for (Tensor<1, 3> &vector : vectors)
+        {
+          std::copy(number, number + 3, vector.begin_raw());
+          number += 3;
+        }
+    };
+    take(next_u);
+    take(v);
+    for (auto &branch : memory)
+      take(branch);
+  }
+
+
   unsigned int
   WaveColumn::element_at(const double z) const
   {

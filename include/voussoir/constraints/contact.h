@@ -51,6 +51,10 @@ namespace Voussoir
     KeyedValues
     checkpoint_values();
 
+    /** Energies of the surfaces of this rank, one after the other [J]. */
+    std::vector<double *>
+    energies();
+
     /** What else a checkpoint must hold. Called on all ranks. */
     nlohmann::json
     save() const;

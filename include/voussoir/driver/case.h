@@ -64,6 +64,7 @@ namespace Voussoir
     double      energy_interval     = 0.02;
     double      energy_limit        = 0.1;
     double      checkpoint_interval = 10.;
+    double      checkpoint_time     = 0.;
 
     void
     declare(dealii::ParameterHandler &prm);

@@ -13,7 +13,8 @@ namespace Voussoir
 
   /**
    * Calls @p action and turns what it throws into one sentence on the first
-   * rank that has one and exit code 1.
+   * rank that has one and exit code 1, or for a stop on request the one for
+   * that.
    */
   int
   guarded(const std::function<void()> &action, const MPI_Comm communicator);

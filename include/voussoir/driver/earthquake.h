@@ -22,6 +22,10 @@ namespace Voussoir
 
     /** What enters through the absorbing boundary, or null. */
     std::unique_ptr<IncomingWave> wave;
+
+    /** The time to which a motion that never ends was followed down from the
+     *  free surface, on which it depends a little [s]; 0 otherwise. */
+    double followed_to = 0.;
   };
 } // namespace Voussoir
 

@@ -29,9 +29,9 @@ namespace Voussoir
   public:
     /**
      * Chooses the folder: the one that the case names, with the next free
-     * number added if it exists; a restart goes on in the one that was written
-     * last. Throws UserError if it must not be overwritten, or if there is no
-     * checkpoint, or one of other physics.
+     * number added if it exists; a restart goes on in the one with the newest
+     * checkpoint. Throws UserError if it must not be overwritten, or if there
+     * is no checkpoint, or one of other physics.
      */
     ResultFolder(const Case &parameters, const RunOptions &options, Log &log);
 
@@ -50,7 +50,15 @@ namespace Voussoir
     bool
     restarts() const;
 
-    /** Header of the checkpoint that a restart goes on from. */
+    /** Where the checkpoints are. */
+    std::string
+    checkpoints() const;
+
+    /** The checkpoint that a restart goes on from. */
+    const std::string &
+    checkpoint_file() const;
+
+    /** Its header. */
     const nlohmann::json &
     checkpoint() const;
 
@@ -58,18 +66,16 @@ namespace Voussoir
     double
     start_time() const;
 
-    /** What must not change between a checkpoint and the run that goes on, each
-     *  as "Section/Entry = value". */
-    nlohmann::json
-    physics() const;
-
   private:
+    /** Takes the newest checkpoint that is whole, in an older folder if the
+     *  newest one has none. */
     void
-    check_checkpoint() const;
+    find_checkpoint(Log &log);
 
     const Case      &parameters;
     const RunOptions options;
     std::string      chosen;
+    std::string      from; // file of the checkpoint
     nlohmann::json   header;
   };
 } // namespace Voussoir

@@ -74,6 +74,10 @@ namespace Voussoir
     void
     write_modes() const;
 
+    /** Steps with a line of the energy balance. */
+    Schedule
+    energy_schedule() const;
+
     void
     observe();
 
@@ -85,7 +89,7 @@ namespace Voussoir
     void
     keep_last_good();
 
-    /** What the clock asks for: progress, checkpoint, stop on request. */
+    /** What the clock and those outside ask for: progress, checkpoint, stop. */
     void
     attend();
 
@@ -96,13 +100,19 @@ namespace Voussoir
     double
     throughput(const double seconds) const;
 
-    std::map<std::string, Vector *>
-    checkpoint_vectors();
+    std::vector<double *>
+    sums_of_rank();
 
-    std::map<std::string, KeyedValues>
-    checkpoint_values();
+    /** The live numbers that a checkpoint holds; documents are empty. */
+    StateContent
+    checkpoint_content();
 
+    /** What no restart shall have to find again, and the state at t = 0. */
     void
+    write_first_checkpoint();
+
+    /** @return whether it was possible */
+    bool
     write_checkpoint();
 
     void
@@ -123,8 +133,9 @@ namespace Voussoir
     Checkpoint          checkpoint;
     State               last_good; // displacement, velocity and time alone
     dealii::TimerOutput timer;
-    dealii::Timer       clock, since_report, since_checkpoint;
-    unsigned long long  first_step       = 0;
+    dealii::Timer       clock, since_report, since_checkpoint, since_look;
+    unsigned long long  first_step = 0;
+    unsigned long long  last_look = 0, next_look = 0; // steps of `attend`
     double              loop_seconds     = 0.;
     bool                warned_of_energy = false;
   };

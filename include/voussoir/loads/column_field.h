@@ -29,8 +29,11 @@ namespace Voussoir
     void
     advance(const double time) override;
 
+    std::vector<double>
+    save() const override;
+
     void
-    replay(const double time) override;
+    load(const std::vector<double> &numbers) override;
 
   private:
     WaveColumn          column;
@@ -50,14 +53,15 @@ namespace Voussoir
   /**
    * The wave that must enter at the base for the surface of the column to move
    * as @p surface does, by Fourier transform of the column's response to a
-   * pulse. Frequencies above @p maximum_frequency [Hz] are removed. Throws
-   * UserError if the column's response does not die out.
+   * pulse. Frequencies above @p maximum_frequency [Hz] are removed. Motions
+   * that never end are followed to the time @p longest [s]. Throws UserError if
+   * the column's response does not die out.
    */
   GroundMotionSignals
   incident_for_surface(const WaveColumn          &column,
                        const GroundMotionSignals &surface,
                        const double               time_step,
-                       const double               duration,
+                       const double               longest,
                        const double               maximum_frequency);
 } // namespace Voussoir
 

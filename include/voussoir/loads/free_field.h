@@ -68,9 +68,16 @@ namespace Voussoir
     virtual void
     advance(const double time) = 0;
 
-    /** Brings the field past a step that nobody looks at. */
+    /** Numbers from which the next step goes on, the same on all ranks. */
+    virtual std::vector<double>
+    save() const
+    {
+      return {};
+    }
+
     virtual void
-    replay(const double time) = 0;
+    load(const std::vector<double> &)
+    {}
 
     /** Of each node: displacement [m], velocity [m/s], and the integral of the
      *  traction over its part of the boundary [N]. */

@@ -19,9 +19,12 @@ namespace Voussoir
     void
     add_forces(const double time, NodalForces &forces) override;
 
-    /** Brings the free field past a step whose forces are not wanted. */
+    /** See FreeField. */
+    std::vector<double>
+    save() const;
+
     void
-    replay(const double time);
+    load(const std::vector<double> &numbers);
 
   private:
     const AbsorbingBoundary   &boundary;

@@ -78,10 +78,6 @@ namespace Voussoir
     void
     advance(const double time) override;
 
-    void
-    replay(const double) override
-    {}
-
   private:
     ObliqueWave             wave;
     std::unique_ptr<Signal> motion;

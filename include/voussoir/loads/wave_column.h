@@ -38,6 +38,13 @@ namespace Voussoir
     void
     advance(const dealii::Tensor<1, 3> &incident_velocity);
 
+    /** The motion, from which the next step goes on. */
+    std::vector<double>
+    save() const;
+
+    void
+    load(const std::vector<double> &numbers);
+
     /** Where a level lies: interpolation weights of the nodes around it. */
     struct Interpolation
     {

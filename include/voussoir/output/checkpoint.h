@@ -1,48 +1,50 @@
 #ifndef voussoir_output_checkpoint_h
 #define voussoir_output_checkpoint_h
 
-#include <voussoir/output/observer.h>
-
-#include <nlohmann/json.hpp>
+#include <voussoir/fem/discretization.h>
+#include <voussoir/output/state_file.h>
 
 namespace Voussoir
 {
-  /**
-   * Writes and reads nodal vectors by a number of each node that does not
-   * depend on the ranks, and other values by keys of their own, so that a run
-   * can go on with another number of them. Two slots are written in turn; a
-   * pointer file names the last complete one.
-   */
+  /** The checkpoints of a run: files of its state at two moments, of which the
+   *  older one is replaced when the next is whole. */
   class Checkpoint
   {
   public:
-    Checkpoint(const Discretization &discretization, const std::string &folder);
+    Checkpoint(const std::string &folder, const MPI_Comm communicator);
 
-    /** Writes the vectors and values (by name) and @p header. */
+    /** Throws UserError if that fails; the ones before then stay. */
     void
-    write(const std::map<std::string, Vector *>    &vectors,
-          const std::map<std::string, KeyedValues> &values,
-          const nlohmann::json                     &header);
+    write(const unsigned long long step,
+          const nlohmann::json    &header,
+          const StateContent      &content) const;
 
-    /** Whether the folder holds a complete checkpoint. */
-    static bool
-    exists(const std::string &folder);
-
-    /** The header of the last complete checkpoint. */
-    static nlohmann::json
-    read_header(const std::string &folder);
-
-    /** Reads the vectors and values; refuses a checkpoint of another mesh or
-     *  with others. */
-    void
-    read(const std::map<std::string, Vector *>    &vectors,
-         const std::map<std::string, KeyedValues> &values) const;
+    /** The newest file that is whole, or an empty name; @p damaged gets those
+     *  that are newer and what is wrong with them. Called on all ranks. */
+    std::string
+    newest(std::vector<std::string> &damaged) const;
 
   private:
-    const Discretization      &discretization;
-    const std::string          folder;
+    /** The newest first. */
+    std::vector<std::string>
+    files() const;
+
+    const std::string folder;
+    const MPI_Comm    communicator;
+  };
+
+  /** The numbers of nodal vectors with a key for each owned node that does not
+   *  depend on the ranks. */
+  class NodalKeys
+  {
+  public:
+    explicit NodalKeys(const Discretization &discretization);
+
+    KeyedValues
+    values(Vector &vector) const;
+
+  private:
     std::vector<std::uint64_t> keys; // of the owned nodes
-    unsigned int               next_slot = 1;
   };
 } // namespace Voussoir
 

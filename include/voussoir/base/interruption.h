@@ -1,0 +1,48 @@
+#ifndef voussoir_base_interruption_h
+#define voussoir_base_interruption_h
+
+#include <deal.II/base/mpi.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace Voussoir
+{
+  /** Of a run that was stopped on request and can go on: that of temporary
+   *  failures in sysexits.h, for scripts that then start it again. */
+  constexpr int exit_code_stopped = 75;
+
+  /** The program ends because it was asked to, which is no error. */
+  class Stopped : public std::runtime_error
+  {
+  public:
+    using std::runtime_error::runtime_error;
+  };
+
+  /**
+   * From now on signals ask instead of killing: SIGUSR1 for a checkpoint;
+   * SIGINT, SIGTERM, SIGHUP, SIGXCPU and SIGUSR2 for a checkpoint and the end.
+   * A second SIGINT kills.
+   */
+  void
+  listen_to_signals();
+
+  /** Whether this rank has been asked to stop since the last `stop`. */
+  bool
+  stop_requested();
+
+  /** Whether this rank has been asked for a checkpoint since the last call. */
+  bool
+  take_checkpoint_request();
+
+  /** Throws Stopped. */
+  [[noreturn]] void
+  stop(const std::string &sentence);
+
+  /** Stops if any rank has been asked to, in set-up or static state, which
+   *  leave nothing to go on from. Called on all ranks. */
+  void
+  stop_if_requested(const MPI_Comm communicator);
+} // namespace Voussoir
+
+#endif

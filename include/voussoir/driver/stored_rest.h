@@ -1,0 +1,30 @@
+#ifndef voussoir_driver_stored_rest_h
+#define voussoir_driver_stored_rest_h
+
+#include <voussoir/driver/rest_state.h>
+
+namespace Voussoir
+{
+  /** Names of the files beside the checkpoints. */
+  constexpr char rest_file[] = "rest.h5", modes_file[] = "modes.h5";
+
+  /** Writes the state at rest into a file, so that it need not be found again;
+   *  throws UserError if that fails. */
+  void
+  store_rest(const Model       &model,
+             const RestState   &rest,
+             const std::string &file);
+
+  /** Reads it; throws UserError if the file is not whole or does not fit. */
+  RestState
+  read_rest(const Model &model, const std::string &file);
+
+  /** The same for the natural modes. */
+  void
+  store_modes(const Model &model, const Modes &modes, const std::string &file);
+
+  Modes
+  read_modes(const Model &model, const std::string &file);
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,116 @@
+#include <voussoir/base/error.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "check.h"
+#include "same.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * A run that goes on to a later end time is the one that had it from the
+     * beginning, bit for bit, also where the wave that enters is computed from
+     * a record at the free surface; one whose record has changed is refused.
+     */
+    class RestartLonger : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        if (Utilities::MPI::this_mpi_process(communicator) == 0)
+          for (const std::string folder : {"at_once", "in_two"})
+            std::filesystem::remove_all(folder);
+        write_record(0., communicator);
+
+        const double end = make_case(with(file, "at_once", 0.))->time.end_time;
+        const auto   at_once = make_case(with(file, "at_once", end));
+        Simulation   straight(*at_once, options(false), communicator);
+        straight.run.march();
+
+        const auto shorter = make_case(with(file, "in_two", 0.6 * end));
+        Simulation(*shorter, options(false), communicator).run.march();
+        const auto longer = make_case(with(file, "in_two", end));
+        Simulation going_on(*longer, options(true), communicator);
+        verdicts.is_true("goes on from between start and end",
+                         going_on.run.state.time > 0.3 * end &&
+                           going_on.run.state.time < 0.6 * end);
+        going_on.run.march();
+        verdicts.is_true("same displacement, bit for bit",
+                         same(straight.run.state.displacement,
+                              going_on.run.state.displacement));
+        verdicts.is_true("and the ground has moved",
+                         straight.run.state.displacement.linfty_norm() > 1e-4);
+
+        write_record(1e-3, communicator);
+        const auto  changed  = make_case(with(file, "in_two", 2. * end));
+        std::string sentence = "accepted";
+        try
+          {
+            Simulation(*changed, options(true), communicator);
+          }
+        catch (const UserError &error)
+          {
+            sentence = error.what();
+          }
+        verdicts.is_true("another record is refused by name",
+                         sentence.find("surface.txt") != std::string::npos);
+      }
+
+    private:
+      static ParameterFile
+      with(const ParameterFile &file,
+           const std::string   &folder,
+           const double         end_time)
+      {
+        std::vector<std::string> changes{
+          "Output/Folder=" + folder,
+          "Ground motion/Record/File x=" +
+            std::filesystem::absolute("surface.txt").string()};
+        if (end_time > 0.)
+          changes.push_back("Time/End time=" + std::to_string(end_time));
+        return file.with(changes);
+      }
+
+
+      static RunOptions
+      options(const bool restart)
+      {
+        RunOptions result;
+        result.restart = restart;
+        result.quiet   = true;
+        return result;
+      }
+
+
+      /** Two columns: a sine in a hump, and @p more of it. */
+      static void
+      write_record(const double more, const MPI_Comm communicator)
+      {
+        if (Utilities::MPI::this_mpi_process(communicator) == 0)
+          {
+            std::ofstream out("surface.txt");
+            for (unsigned int i = 0; i <= 200; ++i)
+              {
+                const double t = 0.005 * i, hump = std::sin(numbers::PI * t);
+                out << t << ' '
+                    << (1. + more) * hump * hump *
+                         std::sin(6. * numbers::PI * t)
+                    << '\n';
+              }
+          }
+        MPI_Barrier(communicator);
+      }
+    };
+
+    const Registry<Check>::Add<RestartLonger>
+      registered("restart longer", "Runs that go on to a later end time.");
+  } // namespace
+} // namespace Voussoir

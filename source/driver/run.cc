@@ -163,6 +163,12 @@ namespace Voussoir
     clock.restart();
     since_report.restart();
     since_checkpoint.restart();
+    if (state.step < n_steps() && !model.parameters.moves())
+      log.warn(
+        "nothing moves the model, neither an earthquake nor a constraint "
+        "nor a load outside the static stages: its time steps show it "
+        "at rest; give one of these, or \"End time = 0\" in section "
+        "\"Time\"");
     observe(); // after a restart what they saw last, once more
 
     while (state.step < n_steps())

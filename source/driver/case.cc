@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/driver/case.h>
 #include <voussoir/mesh/mesh_check.h>
 
@@ -170,7 +171,11 @@ namespace Voussoir
     file.parse(prm);
     if (!generator && !reader.file.empty())
       reader.file = file.resolve(reader.file);
+    warnings = unusual_values(prm);
     check();
+    // modes alone need no steps
+    if (modes.number > 0 && !moves())
+      time.end_time = 0.;
   }
 
 
@@ -375,5 +380,16 @@ namespace Voussoir
     for (const auto &[name, load] : loads.objects)
       list.emplace_back(name, load.get());
     return list;
+  }
+
+
+  bool
+  Case::moves() const
+  {
+    std::size_t n_staged = 0;
+    for (const auto &stage : static_state.stage_names())
+      n_staged += stage.size();
+    return ground_motion.type != "none" || !projections.objects.empty() ||
+           loads.objects.size() > n_staged;
   }
 } // namespace Voussoir

@@ -1,7 +1,131 @@
+#include <voussoir/base/error.h>
 #include <voussoir/driver/earthquake.h>
+
+#include <algorithm>
 
 namespace Voussoir
 {
+  using namespace dealii;
+
+  namespace
+  {
+    struct Peak
+    {
+      double acceleration = 0.; // [m/s2]
+      double time         = 0.;
+    };
+
+
+    Peak
+    find_peak(const Signal &motion, const double end)
+    {
+      constexpr double resolution = 1e-3;
+      Peak             peak;
+      for (std::size_t i = 0; i * resolution <= end; ++i)
+        if (const double now = std::abs(motion.acceleration(i * resolution));
+            !(now <= peak.acceleration))
+          peak = {now, i * resolution};
+      return peak;
+    }
+
+
+    // What hardly is the earthquake that was meant.
+    void
+    check_peaks(const GroundMotionSignals &motion,
+                const double               end_time,
+                Log                       &log)
+    {
+      const std::array<std::string, 3> axes{{"x", "y", "z"}};
+      for (unsigned int d = 0; d < 3; ++d)
+        if (motion[d])
+          {
+            const double end     = motion[d]->end();
+            const Peak   reached = find_peak(*motion[d], end_time);
+            const Peak   whole =
+              std::isfinite(end) ? find_peak(*motion[d], end) : reached;
+            const double       g = whole.acceleration / standard_gravity;
+            std::ostringstream text;
+            text << "the ground motion " << axes[d]
+                 << " has its peak acceleration of " << g
+                 << " g at t = " << whole.time << " s";
+            const std::string remedy =
+              "look at the file and its \"Unit\", at \"Peak acceleration " +
+              axes[d] +
+              "\" and at \"Overload factor\" in section \"Ground "
+              "motion\"";
+            if (!(g < 1e6))
+              throw UserError("Nothing can be computed, as " + text.str() +
+                              "; " + remedy + ".");
+            if (g > 5.)
+              log.warn(text.str(), ", more than was ever recorded; ", remedy);
+            if (g < 1e-3)
+              log.warn(text.str(), ", which nobody would feel; ", remedy);
+            if (end_time > 0. &&
+                reached.acceleration < 0.99 * whole.acceleration)
+              log.warn(text.str(),
+                       ", but reaches ",
+                       reached.acceleration / standard_gravity,
+                       " g only up to the \"End time\" of ",
+                       end_time,
+                       " s in section \"Time\"");
+          }
+    }
+
+
+    bool
+    alike(const Material &first, const Material &second)
+    {
+      const auto numbers = [](const Material &material) {
+        const ElasticConstants c = material.elastic_constants();
+        return std::array<double, 4>{{c.density,
+                                      c.young_modulus,
+                                      c.poisson_ratio,
+                                      material.damping_factor()}};
+      };
+      return numbers(first) == numbers(second);
+    }
+
+
+    // A vertical wave is that of one column of layers.
+    void
+    check_layers(const Model &model, Log &log)
+    {
+      std::vector<SideFace> faces = model.boundary.side_faces();
+      std::sort(faces.begin(), faces.end(), [](const auto &a, const auto &b) {
+        return a.lower < b.lower;
+      });
+      // of each material the face that reaches highest so far
+      std::vector<const SideFace *> highest(model.materials.size(), nullptr);
+      for (const SideFace &face : faces)
+        {
+          const double least = 1e-6 * (face.upper - face.lower);
+          for (unsigned int m = 0; m < highest.size(); ++m)
+            if (highest[m] != nullptr &&
+                highest[m]->upper > face.lower + least &&
+                !alike(*model.materials[m], *model.materials[face.material]))
+              {
+                const auto &names = model.parameters.materials.objects;
+                log.warn("the sides of the model are at the same height of \"",
+                         names[m].first,
+                         "\", at (",
+                         highest[m]->middle,
+                         ") m, and of \"",
+                         names[face.material].first,
+                         "\", at (",
+                         face.middle,
+                         ") m, but the earthquake rises as in one column of "
+                         "horizontal layers, which has the material of the "
+                         "larger area there");
+                return;
+              }
+          if (const SideFace *&top = highest[face.material];
+              top == nullptr || top->upper < face.upper)
+            top = &face;
+        }
+    }
+  } // namespace
+
+
   Earthquake::Earthquake(const Model    &model,
                          const Damping  &damping,
                          const TimeStep &time_step,
@@ -14,8 +138,18 @@ namespace Voussoir
     const double        end_time = parameters.time.end_time;
     GroundMotionSignals motion = ground_motion.build(parameters.file.folder());
     log(ground_motion.summary(motion, end_time));
+    check_peaks(motion, end_time, log);
     if (model.rigid_base())
       {
+        if (std::all_of(model.materials.begin(),
+                        model.materials.end(),
+                        [](const Material *material) {
+                          return material->inertia_factor < 1.;
+                        }))
+          throw UserError("The earthquake of section \"Ground motion\" moves "
+                          "nothing, because the \"Inertia factor\" of all "
+                          "materials is below one, as that of rock without "
+                          "inertial force; set it to 1 for the dam.");
         base = RigidBase(std::move(motion));
         return;
       }
@@ -23,6 +157,8 @@ namespace Voussoir
       for (const auto &component : motion)
         if (component && std::isinf(component->end()))
           followed_to = end_time;
+    if (parameters.wave.type == "vertical")
+      check_layers(model, log);
     auto field = make_free_field(model.boundary,
                                  model.discretization,
                                  model.materials,

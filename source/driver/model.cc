@@ -1,5 +1,5 @@
 #include <voussoir/driver/model.h>
-#include <voussoir/loads/added_mass.h>
+#include <voussoir/loads/water_level.h>
 #include <voussoir/mesh/reservoir_mesh.h>
 
 #include <iomanip>
@@ -71,13 +71,14 @@ namespace Voussoir
 
     // All loads know their nodes then; those in no static stage are returned.
     std::vector<NodalLoad *>
-    prepared_loads(const Model &model, NodalTerms &terms)
+    prepared_loads(const Model &model, NodalTerms &terms, Log &log)
     {
       const Case           &parameters = model.parameters;
       const LoadedModel     loaded{model.discretization,
                                model.materials,
                                model.material_of_cell(),
-                               parameters.file};
+                               parameters.file,
+                               log};
       std::set<std::string> staged;
       for (const auto &stage : parameters.static_state.stage_names())
         staged.insert(stage.begin(), stage.end());
@@ -92,17 +93,16 @@ namespace Voussoir
     }
 
 
-    double
+    AddedMass
     mass_added_to(NodalTerms                &terms,
                   const Discretization      &discretization,
-                  const ReservoirParameters &water)
+                  const ReservoirParameters &water,
+                  Log                       &log)
     {
       return water.model == "added mass" ?
-               add_westergaard_mass(discretization,
-                                    water.added_mass,
-                                    water.density,
-                                    terms) :
-               0.;
+               add_westergaard_mass(
+                 discretization, water.added_mass, water.density, terms, log) :
+               AddedMass();
     }
 
 
@@ -110,7 +110,8 @@ namespace Voussoir
     make_reservoir(const Case           &parameters,
                    const CoarseMesh     &water_mesh,
                    const Discretization &discretization,
-                   NodalTerms           &terms)
+                   NodalTerms           &terms,
+                   Log                  &log)
     {
       if (parameters.reservoir.model != "compressible")
         return nullptr;
@@ -118,7 +119,51 @@ namespace Voussoir
                                                parameters.grid,
                                                parameters.reservoir,
                                                discretization,
-                                               terms);
+                                               terms,
+                                               log);
+    }
+
+
+    // The loads and the mass of the same water stand in sections of their own.
+    void
+    check_levels(const Case &parameters, Log &log)
+    {
+      const AddedMassParameters &mass = parameters.reservoir.added_mass;
+      const std::string default_faces = AddedMassParameters().face_sets;
+      std::map<std::string, double> waters, silts; // by section
+      for (const auto &load : parameters.loads.objects)
+        {
+          const std::string section = "Loads/" + load.first;
+          const std::string type    = parameters.file.given(section + "/Class");
+          if (type != "water" && type != "silt")
+            continue;
+          const double level = Utilities::string_to_double(
+            parameters.file.given(section + "/Level"));
+          (type == "water" ? waters : silts)[section] = level;
+          if (type == "water" && parameters.reservoir.model == "added mass" &&
+              split_list(
+                parameters.file.given(section + "/Face sets", default_faces)) ==
+                split_list(mass.face_sets) &&
+              level != mass.level)
+            log.warn("the water on the same faces stands at ",
+                     level,
+                     " m by \"Level\" in section \"",
+                     section,
+                     "\", but at ",
+                     mass.level,
+                     " m by \"Level\" in section \"Reservoir/added mass\"");
+        }
+      for (const auto &[silt, top] : silts)
+        if (!waters.empty() &&
+            std::all_of(waters.begin(), waters.end(), [&](const auto &water) {
+              return water.second < top;
+            }))
+          log.warn("\"Level\" in section \"",
+                   silt,
+                   "\" is ",
+                   top,
+                   " m, above all water, but the \"Buoyant unit weight\" is "
+                   "that of silt under water");
     }
 
 
@@ -141,10 +186,23 @@ namespace Voussoir
 
     std::unique_ptr<const Contact>
     make_contact(const Discretization       &discretization,
-                 const InterfacesParameters &interfaces)
+                 const InterfacesParameters &interfaces,
+                 Log                        &log)
     {
       if (interfaces.list.empty())
         return nullptr;
+      for (const InterfaceParameters &interface : interfaces.list)
+        if (interface.uplift.given())
+          {
+            const std::string section =
+              " in section \"Interfaces/" + interface.name + "/Uplift\"";
+            check_level(discretization,
+                        split_list(interface.uplift.upstream_faces),
+                        "\"Upstream faces\"" + section,
+                        interface.uplift.upstream_level,
+                        "\"Upstream level\"" + section,
+                        log);
+          }
       return std::make_unique<const Contact>(discretization, interfaces);
     }
   } // namespace
@@ -194,12 +252,17 @@ namespace Voussoir
                material_of_cell(),
                parameters.discretization.quadrature,
                terms)
-    , running_loads(prepared_loads(*this, terms))
-    , added_mass(mass_added_to(terms, discretization, parameters.reservoir))
-    , reservoir(make_reservoir(parameters, meshes.water, discretization, terms))
+    , running_loads(prepared_loads(*this, terms, log))
+    , added_mass(
+        mass_added_to(terms, discretization, parameters.reservoir, log))
+    , reservoir(
+        make_reservoir(parameters, meshes.water, discretization, terms, log))
     , constraints(prepared_constraints(*this))
-    , contact(make_contact(discretization, parameters.interfaces))
+    , contact(make_contact(discretization, parameters.interfaces, log))
   {
+    for (const std::string &warning : parameters.warnings)
+      log.warn(warning);
+    check_levels(parameters, log);
     report(log);
   }
 
@@ -243,7 +306,11 @@ namespace Voussoir
              discretization.degree);
     report_materials(log);
     if (parameters.reservoir.model == "added mass")
-      log.line("Reservoir: added mass of ", added_mass, " kg over all facets");
+      log.line("Reservoir: added mass of ",
+               added_mass.mass,
+               " kg against motion along the river, (",
+               added_mass.river,
+               ")");
     if (reservoir)
       {
         double surface = std::numeric_limits<double>::lowest();
@@ -258,7 +325,43 @@ namespace Voussoir
                  ", largest step ",
                  reservoir->stable_step(),
                  " s");
+        if (parameters.modes.number > 0 && parameters.modes.water)
+          log.warn("the natural modes are those without water, as compressible "
+                   "water does not move with them; take \"Model = added mass\" "
+                   "in section \"Reservoir\" for modes with water, or say "
+                   "\"Water = false\" in section \"Modes\"");
       }
+    check_source_point(log);
+  }
+
+
+  void
+  Model::check_source_point(Log &log) const
+  {
+    const AbsorbingParameters &absorbing = parameters.boundaries.absorbing;
+    if (split_list(absorbing.face_sets).empty() || absorbing.type == "viscous")
+      return;
+    const auto &[lower, upper] = boundary.extent();
+    double distance            = absorbing.radius;
+    if (distance == 0.)
+      {
+        Tensor<1, 3> outside;
+        for (unsigned int d = 0; d < 3; ++d)
+          outside[d] = std::max({0.,
+                                 lower[d] - absorbing.source[d],
+                                 absorbing.source[d] - upper[d]});
+        distance = outside.norm();
+      }
+    if (distance > 3. * upper.distance(lower))
+      log.warn("the springs of the absorbing boundary hardly hold, as \"",
+               absorbing.radius > 0. ? "Radius" : "Source point",
+               "\" in section \"Boundaries\" puts the source of waves ",
+               distance,
+               " m from it, but the model reaches only from (",
+               lower,
+               ") to (",
+               upper,
+               ") m");
   }
 
 

@@ -171,6 +171,12 @@ namespace Voussoir
       output.checkpoint_interval > 0. || output.checkpoint_time > 0.;
     if (folder.exists() && has_intervals && !folder.restarts())
       write_first_checkpoint();
+    if (state.step < n_steps() && !model.parameters.moves())
+      log.warn(
+        "nothing moves the model, neither an earthquake nor a constraint "
+        "nor a load outside the static stages: its time steps show it "
+        "at rest; give one of these, or \"End time = 0\" in section "
+        "\"Time\"");
     observe(); // after a restart what they saw last, once more
 
     while (state.step < n_steps())

@@ -81,6 +81,22 @@ namespace Voussoir
                given :
                fitted_step(parameters.safety_factor * limit, interval);
     }
+
+
+    void
+    check_number_of_steps(const double end_time, const double step)
+    {
+      constexpr double most = 1e10; // years on any machine
+      if (end_time <= most * step)
+        return;
+      std::ostringstream text;
+      text << std::setprecision(3) << "\"End time\" in section \"Time\" is "
+           << end_time << " s, which takes " << end_time / step
+           << " steps of the time step of " << step
+           << " s, more than can be made; give a shorter \"End time\" or a "
+              "larger \"Time step\".";
+      throw UserError(text.str());
+    }
   } // namespace
 
 
@@ -105,8 +121,14 @@ namespace Voussoir
       undamped_limit = limit_without_damping(model);
     if (cracks)
       damping.add_mesh_viscosity(undamped_limit);
-    limit  = limit_with_damping(model, damping, central);
+    limit = limit_with_damping(model, damping, central);
+    if (!std::isfinite(limit))
+      throw UserError(
+        "The model cannot move, because \"Fixed\" and \"Roller\" in "
+        "section \"Boundaries\" hold all of its nodes; hold fewer "
+        "face sets, or refine the mesh.");
     length = kept ? *kept : chosen_step(model.parameters.time, limit, interval);
+    check_number_of_steps(model.parameters.time.end_time, length);
     if (cracks)
       {
         // a spring k with a dashpot c k is stable up to x^2 + 2 x c/dt_0 = 1
@@ -131,6 +153,8 @@ namespace Voussoir
            << " s)";
     const double end_time = model.parameters.time.end_time;
     line << ", " << steps_to(end_time) << " steps to " << end_time << " s\n";
+    if (model.parameters.modes.number > 0 && !model.parameters.moves())
+      line << "Nothing moves the model: no time steps.\n";
     log(line.str());
   }
 

@@ -1,3 +1,4 @@
+#include <voussoir/base/error.h>
 #include <voussoir/fem/lanczos.h>
 
 #include <deal.II/lac/tridiagonal_matrix.h>
@@ -11,7 +12,7 @@ namespace Voussoir
                      const Vector &inverse_mass,
                      const std::function<void(Vector &, const Vector &)> &apply)
   {
-    constexpr unsigned int max_iterations = 400;
+    constexpr unsigned int max_iterations = 10000;
     Vector                 root(inverse_mass); // M^-1/2
     for (double &entry : root)
       entry = std::sqrt(entry);
@@ -20,10 +21,14 @@ namespace Voussoir
     for (unsigned int i = 0; i < q.locally_owned_size(); ++i)
       if (root.local_element(i) == 0.)
         q.local_element(i) = 0.;
-    q /= q.l2_norm();
+    const double norm = q.l2_norm();
+    if (norm == 0.)
+      return 0.; // all is held
+    q /= norm;
 
     std::vector<double> alpha, beta;
-    double              value = 0., older = 0.;
+    double              older     = 0.;
+    unsigned int        next_look = 4;
     for (unsigned int k = 0; k < max_iterations; ++k)
       {
         scaled = q;
@@ -35,8 +40,13 @@ namespace Voussoir
         if (k > 0)
           w.add(-beta.back(), previous);
         beta.push_back(w.l2_norm());
+        if (!std::isfinite(beta.back()))
+          throw UserError("The stiffness over the mass of the model is beyond "
+                          "all numbers; look for moduli and densities out of "
+                          "proportion in section \"Materials\".");
 
-        if (k % 5 == 4 || beta.back() < 1e-12 * alpha.back())
+        const bool exhausted = beta.back() <= 1e-12 * alpha.back();
+        if (k == next_look || exhausted)
           {
             TridiagonalMatrix<double> tridiagonal(alpha.size(), true);
             for (unsigned int i = 0; i < alpha.size(); ++i)
@@ -46,16 +56,18 @@ namespace Voussoir
                   tridiagonal(i, i - 1) = beta[i - 1];
               }
             tridiagonal.compute_eigenvalues();
-            value = tridiagonal.eigenvalue(alpha.size() - 1);
-            if (k >= 29 && value - older < 1e-6 * value)
-              break;
-            if (beta.back() < 1e-12 * alpha.back())
-              break;
+            const double value = tridiagonal.eigenvalue(alpha.size() - 1);
+            if (exhausted || (k >= 29 && value - older < 1e-6 * value))
+              return value;
             older = value;
+            next_look += std::max(5u, k / 50);
           }
         previous.swap(q);
         q.equ(1. / beta.back(), w);
       }
-    return value;
+    throw UserError("The largest natural frequency of the mesh, which limits "
+                    "the time step, is not found in 10000 iterations; look for "
+                    "moduli and densities out of proportion in section "
+                    "\"Materials\", and for distorted cells in the mesh.");
   }
 } // namespace Voussoir

@@ -24,6 +24,38 @@ namespace Voussoir
               std::sin(1e3 * p[0] + 2e3 * p[1] + 3e3 * p[2] + 1.7 * d);
         }
     }
+
+
+    /**
+     * The dt at which limit(dt) = dt, or just below. (dt/limit)^2 is dt^2 times
+     * an eigenvalue over 4, and grows with dt, at least in proportion. So where
+     * it is below one at dt it is above one at limit^2/dt, and the other way
+     * round: each limit bounds the dt from both sides.
+     */
+    double
+    fixed_point(const std::function<double(const double)> &limit)
+    {
+      constexpr double tolerance = 1e-5;
+      double dt = limit(std::numeric_limits<double>::max()), lower = 0.,
+             upper = std::numeric_limits<double>::infinity(), last = 0.,
+             last_distance = 0.;
+      while (upper > (1. + tolerance) * lower)
+        {
+          const double reached = limit(dt);
+          lower = std::max(lower, std::min(dt, reached * reached / dt));
+          upper = std::min(upper, std::max(dt, reached * reached / dt));
+
+          // secant of the logarithms, or bisection
+          const double distance = std::log(reached / dt);
+          const double slope =
+            last > 0. ? (distance - last_distance) / std::log(dt / last) : -1.;
+          const double next = dt * std::exp(-distance / slope);
+          last              = dt;
+          last_distance     = distance;
+          dt = next > lower && next < upper ? next : std::sqrt(lower * upper);
+        }
+      return lower;
+    }
   } // namespace
 
 
@@ -36,7 +68,7 @@ namespace Voussoir
     Vector memory = discretization.create_vector(), start(memory),
            stiffer(memory);
     fill_start(discretization, start);
-    const auto limit = [&](const double dt) {
+    return fixed_point([&](const double dt) {
       const double gamma = limits.stiffening(dt);
       const auto   apply = [&](Vector &dst, const Vector &src) {
         memory.equ(gamma, src);
@@ -45,23 +77,7 @@ namespace Voussoir
         limits.add_diagonal(dst, src, dt);
       };
       return 2. / std::sqrt(largest_eigenvalue(start, mass.inverse, apply));
-    };
-
-    // With terms in 1/dt the limit is the fixed point of dt -> limit(dt), whose
-    // logarithm has a slope between 0 and 1/2: Aitken's extrapolation.
-    double log_dt = std::log(limit(1e30));
-    for (unsigned int iteration = 0; iteration < 20; ++iteration)
-      {
-        const double first = std::log(limit(std::exp(log_dt)));
-        if (std::abs(first - log_dt) < 1e-5)
-          return std::exp(first);
-        const double second = std::log(limit(std::exp(first)));
-        if (std::abs(second - first) < 1e-5)
-          return std::exp(second);
-        log_dt -=
-          (first - log_dt) * (first - log_dt) / (second - 2. * first + log_dt);
-      }
-    return std::exp(log_dt);
+    });
   }
 
 

@@ -262,7 +262,11 @@ namespace Voussoir
         at_points.reinit(cell, face);
         if (std::abs(at_points.normal_vector(0)[2]) > 0.1)
           return;
-        SideFace side{1e300, -1e300, 0., faces.material_of_cell(cell)};
+        SideFace side{1e300,
+                      -1e300,
+                      0.,
+                      faces.material_of_cell(cell),
+                      cell->face(face)->center()};
         for (const unsigned int q : at_points.quadrature_point_indices())
           side.area += at_points.JxW(q);
         for (unsigned int v = 0; v < 4; ++v)

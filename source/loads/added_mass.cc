@@ -1,9 +1,9 @@
-#include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/fem/face_nodes.h>
 #include <voussoir/fem/named_sets.h>
 #include <voussoir/loads/added_mass.h>
+#include <voussoir/loads/water_level.h>
 
 namespace Voussoir
 {
@@ -14,21 +14,64 @@ namespace Voussoir
     const std::string section = "section \"Reservoir/added mass\"";
 
 
+    // Where the river runs to, upwards, and across the valley.
+    struct Axes
+    {
+      Tensor<1, 3> river, up, across;
+    };
+
+
+    // Where the thrust of the water cancels, as in a tank, the river runs
+    // along y.
+    Axes
+    find_axes(const Discretization           &discretization,
+              const std::vector<std::string> &sets,
+              const double                    level)
+    {
+      FaceNodes    face_nodes(discretization.mapping,
+                           discretization.fe.base_element(0));
+      Tensor<1, 3> thrust;
+      double       area = 0.;
+      for_each_face(discretization,
+                    sets,
+                    "\"Face sets\" in " + section,
+                    [&](const auto &cell, const unsigned int face) {
+                      for (const FaceNode &node : face_nodes.of(cell, face))
+                        if (node.position[2] < level)
+                          {
+                            thrust -= node.area * node.normal;
+                            area += node.area;
+                          }
+                    });
+      const MPI_Comm communicator = discretization.grid.communicator();
+      thrust                      = Utilities::MPI::sum(thrust, communicator);
+      area                        = Utilities::MPI::sum(area, communicator);
+      thrust[2]                   = 0.;
+      const Tensor<1, 3> up({0., 0., 1.});
+      const Tensor<1, 3> river = thrust.norm() > 1e-6 * area ?
+                                   thrust / thrust.norm() :
+                                   Tensor<1, 3>({0., 1., 0.});
+      return {river, up, cross_product_3d(river, up)};
+    }
+
+
     // One node of a wet face.
     struct Facet
     {
       types::global_dof_index node;
       double                  weight; // of the share of a hanging node
-      double                  x, z;
+      double                  place;  // across the valley
+      double                  z;
       Tensor<1, 3>            normal;
       double                  area;
-      double                  x_begin, x_end; // of its face
+      double                  begin, end; // of its face, across the valley
     };
 
 
     std::vector<Facet>
     facets_of(const Discretization           &discretization,
-              const std::vector<std::string> &sets)
+              const std::vector<std::string> &sets,
+              const Tensor<1, 3>             &across)
     {
       FaceNodes          face_nodes(discretization.mapping,
                            discretization.fe.base_element(0));
@@ -39,19 +82,23 @@ namespace Voussoir
                     [&](const auto &cell, const unsigned int face) {
                       const auto nodes = discretization.cell_nodes(
                         discretization.dof_cell(cell));
-                      double begin = 1e300, end = -1e300;
+                      // an upright face along the river is a line across the
+                      // valley
+                      const double rim   = 1e-6 * cell->face(face)->diameter();
+                      double       begin = 1e300, end = -1e300;
                       for (unsigned int v = 0; v < 4; ++v)
                         {
-                          begin =
-                            std::min(begin, cell->face(face)->vertex(v)[0]);
-                          end = std::max(end, cell->face(face)->vertex(v)[0]);
+                          const double place =
+                            across * cell->face(face)->vertex(v);
+                          begin = std::min(begin, place - rim);
+                          end   = std::max(end, place + rim);
                         }
                       for (const FaceNode &node : face_nodes.of(cell, face))
                         for (const auto &share :
                              discretization.carriers(nodes[node.number]))
                           facets.push_back({share.node,
                                             share.weight,
-                                            node.position[0],
+                                            across * node.position,
                                             node.position[2],
                                             node.normal,
                                             node.area,
@@ -70,7 +117,7 @@ namespace Voussoir
       {
         std::vector<std::pair<double, double>> mine;
         for (const Facet &facet : facets)
-          mine.emplace_back(facet.x, facet.z);
+          mine.emplace_back(facet.place, facet.z);
         points = join_over_ranks(mine, communicator);
         std::sort(points.begin(), points.end());
         points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -79,12 +126,11 @@ namespace Voussoir
       double
       lowest(const double begin, const double end) const
       {
-        const double rim    = 1e-6 * (end - begin);
-        double       result = 1e300;
+        double result = 1e300;
         for (auto point = std::lower_bound(points.begin(),
                                            points.end(),
-                                           std::make_pair(begin - rim, -1e300));
-             point != points.end() && point->first <= end + rim;
+                                           std::make_pair(begin, -1e300));
+             point != points.end() && point->first <= end;
              ++point)
           result = std::min(result, point->second);
         return result;
@@ -96,17 +142,18 @@ namespace Voussoir
 
 
     NodalTerms::Matrix
-    direction_of(const Tensor<1, 3> &n, const std::string &direction)
+    direction_of(const Tensor<1, 3> &n,
+                 const std::string  &direction,
+                 const Axes         &axes)
     {
-      NodalTerms::Matrix result;
-      if (direction == "river")
-        result[1][1] = n[1] * n[1];
-      else
-        for (unsigned int d = 0; d < 3; ++d)
-          for (unsigned int e = d; e < 3; ++e)
-            if (direction == "normal" || d == e)
-              result[d][e] = n[d] * n[e];
-      return result;
+      const auto along = [&](const Tensor<1, 3> &axis) {
+        return (n * axis) * (n * axis) * symmetrize(outer_product(axis, axis));
+      };
+      return direction == "river" ?
+               along(axes.river) :
+             direction == "uncoupled" ?
+               along(axes.river) + along(axes.up) + along(axes.across) :
+               symmetrize(outer_product(n, n));
     }
   } // namespace
 
@@ -126,45 +173,51 @@ namespace Voussoir
       "Direction",
       direction,
       "Normal: the water resists motion along the face's normal, which couples "
-      "x, y and z on slanted faces. Uncoupled: the diagonal of that only. "
-      "River: motion in y only.",
+      "x, y and z on slanted faces. Uncoupled: motion along the river, across "
+      "and upwards, each by itself. River: motion along the river only, the "
+      "way that the water pushes.",
       Patterns::Selection("normal|uncoupled|river"));
   }
 
 
-  double
+  AddedMass
   add_westergaard_mass(const Discretization      &discretization,
                        const AddedMassParameters &parameters,
                        const double               density,
-                       NodalTerms                &terms)
+                       NodalTerms                &terms,
+                       Log                       &log)
   {
+    const auto sets = split_list(parameters.face_sets);
+    check_level(discretization,
+                sets,
+                "\"Face sets\" in " + section,
+                parameters.level,
+                "\"Level\" in " + section,
+                log);
+    const Axes axes = find_axes(discretization, sets, parameters.level);
     const std::vector<Facet> facets =
-      facets_of(discretization, split_list(parameters.face_sets));
+      facets_of(discretization, sets, axes.across);
     const MPI_Comm communicator = discretization.grid.communicator();
     const Bed      bed(facets, communicator);
 
     std::vector<std::pair<types::global_dof_index, NodalTerms::Matrix>> records;
-    double total = 0.;
+    AddedMass result{0., axes.river};
     for (const Facet &facet : facets)
       if (facet.z < parameters.level)
         {
           const double H =
-            parameters.level - bed.lowest(facet.x_begin, facet.x_end);
+            parameters.level - bed.lowest(facet.begin, facet.end);
           const double h    = parameters.level - facet.z;
           const double mass = facet.weight * parameters.reduction * 7. / 8. *
                               density * std::sqrt(H * h) * facet.area;
-          records.emplace_back(facet.node,
-                               mass * direction_of(facet.normal,
-                                                   parameters.direction));
-          total += mass;
+          const NodalTerms::Matrix added =
+            mass * direction_of(facet.normal, parameters.direction, axes);
+          records.emplace_back(facet.node, added);
+          result.mass += axes.river * (added * axes.river);
         }
-    total = Utilities::MPI::sum(total, communicator);
-    if (total == 0.)
-      throw UserError("\"Level\" in " + section +
-                      " lies below the faces with water on them; give the "
-                      "height z of the water's surface.");
+    result.mass = Utilities::MPI::sum(result.mass, communicator);
     for (const auto &[node, mass] : discretization.send_to_owners(records))
       terms.added_mass[terms.add_node(node)] += mass;
-    return total;
+    return result;
   }
 } // namespace Voussoir

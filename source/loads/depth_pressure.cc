@@ -1,6 +1,8 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/loads/face_forces.h>
 #include <voussoir/loads/load.h>
+#include <voussoir/loads/water_level.h>
 
 #include <deal.II/base/numbers.h>
 
@@ -47,12 +49,19 @@ namespace Voussoir
           throw UserError("Section \"" + place +
                           "\" has no \"Level\"; give the elevation of the " +
                           surface + " [m].");
-        forces =
-          depth_pressure_forces(model.discretization,
-                                split_list(face_sets),
-                                "\"Face sets\" in section \"" + place + "\"",
-                                level,
-                                gradient());
+        const auto        sets    = split_list(face_sets);
+        const std::string section = " in section \"" + place + "\"";
+        check_level(model.discretization,
+                    sets,
+                    "\"Face sets\"" + section,
+                    level,
+                    "\"Level\"" + section,
+                    model.log);
+        forces = depth_pressure_forces(model.discretization,
+                                       sets,
+                                       "\"Face sets\"" + section,
+                                       level,
+                                       gradient());
       }
 
       void
@@ -87,11 +96,13 @@ namespace Voussoir
         DepthPressure::declare_parameters(prm);
         prm.add_parameter("Density",
                           density,
-                          "Of the water [kg/m3].",
+                          "Of the water [kg/m3]." +
+                            usually(Usual::water_density),
                           Patterns::Double(0.));
         prm.add_parameter("Gravity",
                           gravity,
-                          "Acceleration of gravity [m/s2].",
+                          "Acceleration of gravity [m/s2]." +
+                            usually(Usual::water_gravity),
                           Patterns::Double(0.));
       }
 
@@ -127,11 +138,13 @@ namespace Voussoir
           "Buoyant unit weight",
           unit_weight,
           "Weight of the silt under water less its buoyancy [N/m3]; 8e3 to "
-          "11e3. The water in it belongs to the load of the water.",
+          "11e3. The water in it belongs to the load of the water." +
+            usually(Usual::silt_weight),
           Patterns::Double(0.));
         prm.add_parameter("Friction angle",
                           friction_angle,
-                          "Of the silt [degrees]; 10 to 20, 0 for a liquid.",
+                          "Of the silt [degrees]; 10 to 20, 0 for a liquid." +
+                            usually(Usual::silt_friction_angle),
                           Patterns::Double(0., 60.));
       }
 

@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/loads/absorbing_boundary.h>
 #include <voussoir/loads/column_field.h>
 #include <voussoir/loads/oblique_wave.h>
@@ -24,12 +25,13 @@ namespace Voussoir
       type,
       "Vertical: x and y components travel upwards as S waves, z as a P wave, "
       "through the layers at the model's sides. Oblique waves come in a "
-      "homogeneous half-space; their motion is the first component given.",
+      "homogeneous half-space; their motion is the one component given.",
       Patterns::Selection("vertical|oblique P|oblique SV|oblique SH"));
     prm.add_parameter("Angle",
                       angle,
                       "Oblique waves: angle between the direction of travel "
-                      "and the vertical [degrees].",
+                      "and the vertical [degrees]." +
+                        usually(Usual::wave_angle),
                       Patterns::Double(0., 89.));
     prm.add_parameter("Azimuth",
                       azimuth,
@@ -156,6 +158,23 @@ namespace Voussoir
       throw UserError("\"Given at\" in section \"Ground motion\" cannot be "
                       "\"free surface\" with an oblique wave; give the "
                       "incident wave or the motion of an outcrop.");
+
+    if (!vertical)
+      {
+        const auto n_given = std::count_if(motion.begin(),
+                                           motion.end(),
+                                           [](const auto &component) {
+                                             return component != nullptr;
+                                           });
+        if (n_given > 1)
+          throw UserError(
+            "\"Type\" in section \"Wave field\" is an oblique wave, "
+            "which has one motion, but section \"Ground motion\" "
+            "gives " +
+            std::to_string(n_given) +
+            " components; leave one of them, which becomes that "
+            "of the wave.");
+      }
 
     // the incident wave at an outcrop is half the motion there
     if (given_at == "outcrop")

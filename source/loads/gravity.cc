@@ -1,3 +1,4 @@
+#include <voussoir/base/error.h>
 #include <voussoir/fem/lumped_mass.h>
 #include <voussoir/fem/named_sets.h>
 #include <voussoir/loads/load.h>
@@ -36,6 +37,7 @@ namespace Voussoir
               NodalTerms &,
               const std::string &place) override
       {
+        check(place, model.log);
         const Discretization &discretization = model.discretization;
         NodalVolumes          nodal_volumes(discretization);
         std::vector<std::pair<types::global_dof_index, double>> records;
@@ -67,6 +69,21 @@ namespace Voussoir
       }
 
     private:
+      void
+      check(const std::string &place, Log &log) const
+      {
+        const std::string entry =
+          "\"Acceleration\" in section \"" + place + "\" is ";
+        if (acceleration.norm() == 0.)
+          throw UserError(entry + "zero, so that nothing weighs; give that of "
+                                  "gravity, 0, 0, -9.81, or leave the load "
+                                  "out.");
+        if (acceleration[2] > -9.7 || acceleration.norm() > 9.9)
+          log.warn(entry,
+                   acceleration,
+                   " m/s2, but gravity on earth is 0 0 -9.81 m/s2");
+      }
+
       std::string         cell_sets;
       Tensor<1, 3>        acceleration{{0., 0., -9.81}};
       std::vector<double> mass; // of each owned node [kg]

@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/loads/ground_motion.h>
 
 #include <deal.II/base/patterns.h>
@@ -60,7 +61,8 @@ namespace Voussoir
     prm.add_parameter("Overload factor",
                       overload_factor,
                       "Multiplies all components, for studies beyond the "
-                      "design earthquake [-].",
+                      "design earthquake [-]." +
+                        usually(Usual::overload),
                       Double(0.));
 
     const auto declare_section = [&prm](const std::string &name,
@@ -255,6 +257,22 @@ namespace Voussoir
           throw UserError(
             "\"File " + axis_names[component] +
             "\" in section \"Ground motion/Record\": " + error.what());
+        }
+
+      const auto largest = std::max_element(whole.values.begin(),
+                                            whole.values.end(),
+                                            [](const double a, const double b) {
+                                              return std::abs(a) < std::abs(b);
+                                            });
+      if (std::abs(*largest) > 1e6 * standard_gravity)
+        {
+          std::ostringstream text;
+          text << "\"File " << axis_names[component]
+               << "\" in section \"Ground motion/Record\": the record '" << file
+               << "' has an acceleration of " << *largest << " m/s2 at "
+               << whole.time_step * (largest - whole.values.begin())
+               << " s; repair it, or choose another \"Unit\".";
+          throw UserError(text.str());
         }
 
       const TimeSeries part =

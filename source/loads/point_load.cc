@@ -1,3 +1,4 @@
+#include <voussoir/base/error.h>
 #include <voussoir/base/time_factor.h>
 #include <voussoir/fem/point_weights.h>
 #include <voussoir/loads/load.h>
@@ -25,6 +26,10 @@ namespace Voussoir
               const std::string &place) override
       {
         factor.prepare("\"Time function\" in section \"" + place + "\"");
+        if (force.norm() == 0.)
+          throw UserError("\"Force\" in section \"" + place +
+                          "\" is zero; give its components, or leave the load "
+                          "out.");
         const PointWeights weights(model.discretization,
                                    {{"load", point}},
                                    "\"Point\" in section \"" + place + "\"");

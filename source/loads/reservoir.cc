@@ -48,6 +48,42 @@ namespace Voussoir
     }
 
 
+    // It has no pressure, which is right on top of the water only.
+    void
+    check_surface(const AcousticSpace            &space,
+                  const std::vector<std::string> &sets,
+                  Log                            &log)
+    {
+      double lowest = std::numeric_limits<double>::max(), top = -lowest,
+             bottom = lowest;
+      for (const auto &cell : space.dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          for (const unsigned int face : cell->face_indices())
+            for (unsigned int v = 0; v < 4; ++v)
+              {
+                const double z = cell->face(face)->vertex(v)[2];
+                top            = std::max(top, z);
+                bottom         = std::min(bottom, z);
+                if (in_any(space.grid, sets, cell, face))
+                  lowest = std::min(lowest, z);
+              }
+      const MPI_Comm communicator = space.grid.communicator();
+      lowest                      = Utilities::MPI::min(lowest, communicator);
+      top                         = Utilities::MPI::max(top, communicator);
+      bottom                      = Utilities::MPI::min(bottom, communicator);
+      if (sets.empty())
+        log.warn("\"Free surface\" in section \"Reservoir\" names no face "
+                 "sets, so that the water is shut in as if under a rigid lid");
+      else if (top - lowest > 0.25 * (top - bottom)) // rows of cells may slope
+        log.warn(
+          "\"Free surface\" in section \"Reservoir\" reaches down to z = ",
+          lowest,
+          " m, but the top of the water is at ",
+          top,
+          " m; the water has no pressure there");
+    }
+
+
     /** The water's nodes on the wet wall, of all ranks. */
     struct WetNodes
     {
@@ -91,7 +127,8 @@ namespace Voussoir
                        const GridParameters      &grid_parameters,
                        const ReservoirParameters &parameters,
                        const Discretization      &solid,
-                       NodalTerms                &terms)
+                       NodalTerms                &terms,
+                       Log                       &log)
     : space(water, grid_parameters, solid.degree, solid.grid.communicator())
     , density(parameters.density)
     , compressibility(1. / (parameters.density *
@@ -110,6 +147,7 @@ namespace Voussoir
       space.areas([&](const Grid::Cell &cell, const unsigned int face) {
         return in_any(grid, surface, cell, face);
       });
+    check_surface(space, surface, log);
     const Vector end_area =
       space.areas([&](const Grid::Cell &cell, const unsigned int face) {
         return in_any(grid, end, cell, face);

@@ -1,3 +1,4 @@
+#include <voussoir/base/usual_range.h>
 #include <voussoir/loads/reservoir_parameters.h>
 
 namespace Voussoir
@@ -17,7 +18,8 @@ namespace Voussoir
       Patterns::Selection("none|added mass|compressible"));
     prm.add_parameter("Density",
                       density,
-                      "Density of the water [kg/m3].",
+                      "Density of the water [kg/m3]." +
+                        usually(Usual::water_density),
                       Patterns::Double(1.));
     prm.enter_subsection("added mass");
     added_mass.declare(prm);
@@ -27,7 +29,8 @@ namespace Voussoir
                       "Compressible: the cell sets of the water.");
     prm.add_parameter("Sound speed",
                       sound_speed,
-                      "Compressible: speed of sound in the water [m/s].",
+                      "Compressible: speed of sound in the water [m/s]." +
+                        usually(Usual::sound_speed),
                       Patterns::Double(1.));
     prm.add_parameter("Free surface",
                       surface,

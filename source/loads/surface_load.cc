@@ -1,3 +1,4 @@
+#include <voussoir/base/error.h>
 #include <voussoir/base/time_factor.h>
 #include <voussoir/loads/face_forces.h>
 #include <voussoir/loads/load.h>
@@ -30,6 +31,11 @@ namespace Voussoir
               const std::string &place) override
       {
         factor.prepare("\"Time function\" in section \"" + place + "\"");
+        if (traction.norm() == 0. && pressure == 0.)
+          throw UserError(
+            "Section \"" + place +
+            "\" loads nothing, as its \"Traction\" and \"Pressure\" "
+            "are zero; give one of them, or leave the load out.");
         for (const auto &[node, force] :
              face_forces(model.discretization,
                          split_list(face_sets),

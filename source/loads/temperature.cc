@@ -68,19 +68,50 @@ namespace Voussoir
         if (sets.empty())
           throw UserError("\"Cell sets\"" + section +
                           " is empty; name the cell sets that it changes in.");
+        double                            largest_expansion = 0.;
         std::set<types::global_dof_index> touched;
-        for_each_cell(discretization,
-                      sets,
-                      "\"Cell sets\"" + section,
-                      [&](const Discretization::Cell &cell) {
-                        for (const auto node : discretization.cell_nodes(cell))
-                          touched.insert(node);
-                      });
+        for_each_cell(
+          discretization,
+          sets,
+          "\"Cell sets\"" + section,
+          [&](const Discretization::Cell &cell) {
+            largest_expansion = std::max(
+              largest_expansion,
+              model.materials[model.material_of_cell(cell)]->expansion);
+            for (const auto node : discretization.cell_nodes(cell))
+              touched.insert(node);
+          });
+        if (Utilities::MPI::max(largest_expansion,
+                                discretization.grid.communicator()) == 0.)
+          throw UserError("Section \"" + place +
+                          "\" does nothing, as \"Thermal expansion\" of the "
+                          "materials of its cells is zero; give it in section "
+                          "\"Materials\".");
         nodes = owned_carriers(discretization, touched);
         changes.assign(nodes.size(), uniform);
-        if (elevations.empty())
-          return;
+        if (!elevations.empty())
+          add_table(discretization, section);
+        check_changes(discretization, section, model.log);
+      }
 
+      void
+      add_temperature(Vector &temperature) const override
+      {
+        for (unsigned int i = 0; i < nodes.size(); ++i)
+          for (unsigned int d = 0; d < 3; ++d)
+            temperature.local_element(3 * nodes[i] + d) += changes[i];
+      }
+
+    private:
+      void
+      add_table(const Discretization &discretization,
+                const std::string    &section)
+      {
+        if (split_list(upstream_faces) == split_list(downstream_faces))
+          throw UserError("\"Upstream faces\" and \"Downstream faces\"" +
+                          section +
+                          " are the same, so that there is no thickness "
+                          "between them; name those of both sides.");
         const FaceDistance upstream(discretization.grid,
                                     split_list(upstream_faces),
                                     "\"Upstream faces\"" + section),
@@ -100,14 +131,47 @@ namespace Voussoir
       }
 
       void
-      add_temperature(Vector &temperature) const override
+      check_changes(const Discretization &discretization,
+                    const std::string    &section,
+                    Log                  &log) const
       {
+        constexpr double usual = 60.; // [K]
+
+        double largest = 0., bottom = std::numeric_limits<double>::max(),
+               top = -bottom;
         for (unsigned int i = 0; i < nodes.size(); ++i)
-          for (unsigned int d = 0; d < 3; ++d)
-            temperature.local_element(3 * nodes[i] + d) += changes[i];
+          {
+            const double z = discretization.node_positions[nodes[i]][2];
+            bottom         = std::min(bottom, z);
+            top            = std::max(top, z);
+            largest        = std::max(largest, std::abs(changes[i]));
+          }
+        const MPI_Comm communicator = discretization.grid.communicator();
+        largest = Utilities::MPI::max(largest, communicator);
+        bottom  = Utilities::MPI::min(bottom, communicator);
+        top     = Utilities::MPI::max(top, communicator);
+        if (largest > usual)
+          log.warn("the temperature",
+                   section,
+                   " changes by up to ",
+                   largest,
+                   " K; give changes since the joints were closed, not the "
+                   "temperature itself");
+        if (!elevations.empty() &&
+            (elevations.front() > top || elevations.back() < bottom))
+          log.warn("\"Table\"",
+                   section,
+                   " goes from z = ",
+                   elevations.front(),
+                   " to ",
+                   elevations.back(),
+                   " m, but the cells from ",
+                   bottom,
+                   " to ",
+                   top,
+                   " m; give elevations z in the coordinates of the mesh");
       }
 
-    private:
       void
       read_table(const std::string &place)
       {

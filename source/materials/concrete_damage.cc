@@ -1,6 +1,7 @@
 // Concrete that cracks in tension and is crushed in compression.
 
 #include <voussoir/base/error.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/split_damage.h>
 
@@ -43,12 +44,14 @@ namespace Voussoir
         SplitDamage::declare_parameters(prm);
         prm.add_parameter("Compressive strength",
                           compressive_strength,
-                          "Uniaxial compressive strength fc [Pa].",
+                          "Uniaxial compressive strength fc [Pa]." +
+                            usually(Usual::compressive_strength),
                           Patterns::Double(1.));
         prm.add_parameter("Crushing energy",
                           crushing_energy,
                           "Energy that crushing takes per area beyond the peak "
-                          "[N/m].",
+                          "[N/m]." +
+                            usually(Usual::crushing_energy),
                           Patterns::Double(1e-3));
         prm.add_parameter("Biaxial ratio",
                           biaxial_ratio,

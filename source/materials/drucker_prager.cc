@@ -1,5 +1,6 @@
 // Rock that yields on a cone.
 
+#include <voussoir/base/usual_range.h>
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/perfect_plasticity.h>
 #include <voussoir/materials/spectral.h>
@@ -33,7 +34,8 @@ namespace Voussoir
         prm.add_parameter("Tension cut-off",
                           cut_off,
                           "Largest mean stress [Pa]; beyond the apex of the "
-                          "cone it has no effect.",
+                          "cone it has no effect." +
+                            usually(Usual::cut_off),
                           Patterns::Double(1.));
         prm.add_parameter(
           "Fit",

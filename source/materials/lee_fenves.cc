@@ -1,6 +1,7 @@
 // Concrete of the plastic-damage model that dams are compared by.
 
 #include <voussoir/base/error.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/materials/isotropic_elasticity.h>
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/tension_split.h>
@@ -62,7 +63,8 @@ namespace Voussoir
         IsotropicElasticity::declare_parameters(prm);
         prm.add_parameter("Tensile strength",
                           tensile_strength,
-                          "Uniaxial tensile strength ft0 [Pa].",
+                          "Uniaxial tensile strength ft0 [Pa]." +
+                            usually(Usual::tensile_strength),
                           Patterns::Double(1.));
         prm.add_parameter("Fracture energy",
                           fracture_energy,
@@ -70,19 +72,23 @@ namespace Voussoir
                           "integral of the stress over the plastic opening "
                           "[N/m]. The loss of stiffness takes "
                           "energy besides, in proportion to the size of the "
-                          "cells.",
+                          "cells." +
+                            usually(Usual::fracture_energy),
                           Patterns::Double(1e-3));
         prm.add_parameter("Yield strength in compression",
                           yield_strength,
-                          "Uniaxial stress fc0 where crushing begins [Pa].",
+                          "Uniaxial stress fc0 where crushing begins [Pa]." +
+                            usually(Usual::compressive_strength),
                           Patterns::Double(1.));
         prm.add_parameter("Compressive strength",
                           peak_strength,
-                          "Largest uniaxial stress [Pa].",
+                          "Largest uniaxial stress [Pa]." +
+                            usually(Usual::compressive_strength),
                           Patterns::Double(1.));
         prm.add_parameter("Crushing energy",
                           crushing_energy,
-                          "Plastic work of crushing per area [N/m].",
+                          "Plastic work of crushing per area [N/m]." +
+                            usually(Usual::crushing_energy),
                           Patterns::Double(1e-3));
         prm.add_parameter("Biaxial ratio",
                           biaxial_ratio,

@@ -1,3 +1,4 @@
+#include <voussoir/base/usual_range.h>
 #include <voussoir/materials/isotropic_elasticity.h>
 #include <voussoir/materials/material_of.h>
 
@@ -10,7 +11,8 @@ namespace Voussoir
   {
     prm.add_parameter("Young's modulus",
                       young_modulus,
-                      "Dynamic modulus of elasticity [Pa].",
+                      "Dynamic modulus of elasticity [Pa]." +
+                        usually(Usual::modulus),
                       Patterns::Double(1.));
     prm.add_parameter("Poisson's ratio",
                       poisson_ratio,

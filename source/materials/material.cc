@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/materials/material.h>
 
 namespace Voussoir
@@ -13,7 +14,7 @@ namespace Voussoir
                       "Names of the cell sets that are of this material.");
     prm.add_parameter("Density",
                       density,
-                      "Mass density [kg/m3].",
+                      "Mass density [kg/m3]." + usually(Usual::density),
                       Patterns::Double(1e-6));
     prm.add_parameter(
       "Inertia factor",
@@ -36,7 +37,8 @@ namespace Voussoir
                       Patterns::Double(0.01, 2.));
     prm.add_parameter("Thermal expansion",
                       expansion,
-                      "Coefficient of thermal expansion [1/K].",
+                      "Coefficient of thermal expansion [1/K]." +
+                        usually(Usual::expansion),
                       Patterns::Double(0.));
   }
 

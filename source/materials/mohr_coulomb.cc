@@ -1,5 +1,6 @@
 // Rock that yields on the planes of Mohr and Coulomb.
 
+#include <voussoir/base/usual_range.h>
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/perfect_plasticity.h>
 #include <voussoir/materials/spectral.h>
@@ -48,7 +49,8 @@ namespace Voussoir
         prm.add_parameter("Tension cut-off",
                           cut_off,
                           "Largest principal stress [Pa]; beyond the apex it "
-                          "has no effect.",
+                          "has no effect." +
+                            usually(Usual::cut_off),
                           Patterns::Double(1.));
       }
 

@@ -1,6 +1,7 @@
 // Rock with one or more sets of joints, taken as a continuum.
 
 #include <voussoir/base/error.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/spectral.h>
 
@@ -44,13 +45,14 @@ namespace Voussoir
                             young[i],
                             "Young's modulus along axis " + single[i] +
                               " [Pa]; axis 1 is the strike of the joints, 2 "
-                              "points down their dip, 3 is normal to them.",
+                              "points down their dip, 3 is normal to them." +
+                              usually(Usual::modulus),
                             Patterns::Double(1.));
         for (unsigned int i = 0; i < 3; ++i)
           prm.add_parameter("G" + pairs[i],
                             shear[i],
                             "Shear modulus between the axes " + text(pairs[i]) +
-                              " [Pa].",
+                              " [Pa]." + usually(Usual::modulus),
                             Patterns::Double(1.));
         for (unsigned int i = 0; i < 3; ++i)
           prm.add_parameter("nu" + pairs[i],

@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/materials/perfect_plasticity.h>
 
 namespace Voussoir
@@ -20,7 +21,8 @@ namespace Voussoir
     prm.add_parameter("Dilation angle",
                       dilation_angle,
                       "Angle psi by which plastic flow gains volume, from 0 to "
-                      "the friction angle [degrees].",
+                      "the friction angle [degrees]." +
+                        usually(Usual::dilation_angle),
                       Patterns::Double(0., 70.));
   }
 

@@ -1,5 +1,6 @@
 // Rock that cracks in tension and loses its cohesion in shear.
 
+#include <voussoir/base/usual_range.h>
 #include <voussoir/materials/cohesion_and_friction.h>
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/split_damage.h>
@@ -45,7 +46,8 @@ namespace Voussoir
           "Shear energy",
           shear_energy,
           "Energy that the loss of cohesion takes per area of a "
-          "shear band, in uniaxial compression [N/m].",
+          "shear band, in uniaxial compression [N/m]." +
+            usually(Usual::crushing_energy),
           Patterns::Double(1e-3));
         prm.add_parameter("Residual cohesion",
                           residual_cohesion,

@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/materials/softening_curve.h>
 
 #include <deal.II/base/utilities.h>
@@ -294,11 +295,13 @@ namespace Voussoir
   {
     prm.add_parameter("Tensile strength",
                       tensile_strength,
-                      "Uniaxial tensile strength ft [Pa].",
+                      "Uniaxial tensile strength ft [Pa]." +
+                        usually(Usual::tensile_strength),
                       dealii::Patterns::Double(1.));
     prm.add_parameter("Fracture energy",
                       fracture_energy,
-                      "Energy Gf that a crack takes per area [N/m].",
+                      "Energy Gf that a crack takes per area [N/m]." +
+                        usually(Usual::fracture_energy),
                       dealii::Patterns::Double(1e-3));
   }
 } // namespace Voussoir

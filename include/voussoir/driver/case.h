@@ -109,6 +109,9 @@ namespace Voussoir
     OutputParameters               output;
     std::vector<std::pair<std::string, std::unique_ptr<Observer>>> observers;
 
+    /** Values that are hardly meant so, for the log. */
+    std::vector<std::string> warnings;
+
     /** The mesh that the case asks for, checked, and split along the
      * interfaces; a report goes to @p log. */
     CoarseMesh
@@ -129,6 +132,11 @@ namespace Voussoir
 
     NamedLoads
     load_list() const;
+
+    /** Whether there is an earthquake, a constraint, or a load outside the
+     *  static stages: without them a model stays at rest. */
+    bool
+    moves() const;
 
   private:
     void

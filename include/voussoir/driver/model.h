@@ -59,8 +59,8 @@ namespace Voussoir
     /** Loads that come with the earthquake, in their order. */
     const std::vector<NodalLoad *> running_loads;
 
-    /** Westergaard's added mass over all facets, or zero [kg]. */
-    const double added_mass;
+    /** Westergaard's, or zero. */
+    const AddedMass added_mass;
 
     /** Compressible water, or null. */
     const std::unique_ptr<const Reservoir> reservoir;
@@ -88,6 +88,10 @@ namespace Voussoir
 
     void
     report_materials(Log &log) const;
+
+    /** Springs go by the distance from it, wherever it is. */
+    void
+    check_source_point(Log &log) const;
 
     /** Longest edge of the cells of each material [m]. */
     std::vector<double>

@@ -1,6 +1,7 @@
 #ifndef voussoir_loads_added_mass_h
 #define voussoir_loads_added_mass_h
 
+#include <voussoir/base/log.h>
 #include <voussoir/fem/nodal_terms.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -19,22 +20,30 @@ namespace Voussoir
     declare(dealii::ParameterHandler &prm);
   };
 
+  /** Added mass against motion along the river. */
+  struct AddedMass
+  {
+    double               mass = 0.; // [kg]
+    dealii::Tensor<1, 3> river;
+  };
+
   /**
    * The generalised added mass of Westergaard (Kuo 1982): at depth h below the
    * level, where the water is H deep in the same section across the valley, a
    * facet with normal n and area A carries
    *   M_a = 7/8 rho sqrt(H h) A n n^T .
    * By nodal quadrature, so that all parts are positive. It stands for
-   * incompressible water, which is good below c/4H.
+   * incompressible water, which is good below c/4H. The river runs the way that
+   * the water pushes: horizontally, along the sum of -n A.
    *
    * @param density of the water [kg/m3]
-   * @return sum of 7/8 rho sqrt(H h) A over all facets [kg]
    */
-  double
+  AddedMass
   add_westergaard_mass(const Discretization      &discretization,
                        const AddedMassParameters &parameters,
                        const double               density,
-                       NodalTerms                &terms);
+                       NodalTerms                &terms,
+                       Log                       &log);
 } // namespace Voussoir
 
 #endif

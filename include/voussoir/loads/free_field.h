@@ -43,15 +43,16 @@ namespace Voussoir
   /** A vertical face of the boundary: where it reaches and of what it is. */
   struct SideFace
   {
-    double       lower, upper; // [m]
-    double       area;         // [m2]
-    unsigned int material;
+    double           lower, upper; // [m]
+    double           area;         // [m2]
+    unsigned int     material;
+    dealii::Point<3> middle;
 
     template <typename Archive>
     void
     serialize(Archive &archive, const unsigned int)
     {
-      archive &lower &upper &area &material;
+      archive &lower &upper &area &material &middle;
     }
   };
 

@@ -1,6 +1,7 @@
 #ifndef voussoir_loads_load_h
 #define voussoir_loads_load_h
 
+#include <voussoir/base/log.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/base/registry.h>
 #include <voussoir/fem/initial_state.h>
@@ -18,6 +19,7 @@ namespace Voussoir
     const std::vector<const Material *>            &materials;
     std::function<unsigned int(const Grid::Cell &)> material_of_cell;
     const ParameterFile                            &file;
+    Log                                            &log;
   };
 
   /**

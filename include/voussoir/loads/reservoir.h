@@ -1,6 +1,7 @@
 #ifndef voussoir_loads_reservoir_h
 #define voussoir_loads_reservoir_h
 
+#include <voussoir/base/log.h>
 #include <voussoir/fem/acoustic_space.h>
 #include <voussoir/fem/nodal_terms.h>
 #include <voussoir/loads/reservoir_parameters.h>
@@ -29,7 +30,8 @@ namespace Voussoir
               const GridParameters      &grid,
               const ReservoirParameters &parameters,
               const Discretization      &solid,
-              NodalTerms                &terms);
+              NodalTerms                &terms,
+              Log                       &log);
 
     const AcousticSpace space;
     const double        density;         // rho [kg/m3]

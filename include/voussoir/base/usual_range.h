@@ -1,0 +1,46 @@
+#ifndef voussoir_base_usual_range_h
+#define voussoir_base_usual_range_h
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <string>
+#include <vector>
+
+namespace Voussoir
+{
+  /** Quantities whose values say in which unit they were given. */
+  enum class Usual
+  {
+    modulus,
+    density,
+    expansion,
+    tensile_strength,
+    compressive_strength,
+    fracture_energy,
+    crushing_energy,
+    cohesion,
+    cut_off,
+    friction_angle,
+    dilation_angle,
+    wave_angle,
+    water_density,
+    water_gravity,
+    sound_speed,
+    silt_weight,
+    silt_friction_angle,
+    overload
+  };
+
+  /** The last sentence in the description of an entry: what the quantity
+   *  usually is. unusual_values() goes by it. */
+  std::string
+  usually(const Usual quantity);
+
+  /** A sentence for each entry whose value is not what it usually is, most
+   *  often because it is in another unit. Throws UserError if nothing can be
+   *  computed with it. */
+  std::vector<std::string>
+  unusual_values(const dealii::ParameterHandler &prm);
+} // namespace Voussoir
+
+#endif

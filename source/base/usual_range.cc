@@ -1,0 +1,116 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/usual_range.h>
+
+#include <deal.II/base/utilities.h>
+
+#include <nlohmann/json.hpp>
+
+#include <functional>
+#include <map>
+#include <regex>
+#include <sstream>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // Beyond the ends of the range by this factor nothing can be computed.
+    constexpr double absurd = 1e30;
+
+
+    struct Range
+    {
+      double from, to;
+      bool   or_zero = false; // where it means "none"
+    };
+
+
+    // In the unit of the entries. It holds soil, concrete, rock and steel, so
+    // that a value outside is a mistake rather than a rare material.
+    const Range &
+    range_of(const Usual quantity)
+    {
+      static const std::map<Usual, Range> ranges{
+        {Usual::modulus, {1e7, 1e12}},
+        {Usual::density, {500., 10000.}},
+        {Usual::expansion, {1e-6, 1e-4, true}},
+        {Usual::tensile_strength, {1e4, 1e8}},
+        {Usual::compressive_strength, {1e5, 1e9}},
+        {Usual::fracture_energy, {1., 1e5}},
+        {Usual::crushing_energy, {100., 1e6}},
+        {Usual::cohesion, {100., 1e9}},
+        {Usual::cut_off, {100., 1e9}},
+        {Usual::friction_angle, {5., 65., true}},
+        {Usual::dilation_angle, {1., 65., true}},
+        {Usual::wave_angle, {1., 89., true}},
+        {Usual::water_density, {900., 1300.}},
+        {Usual::water_gravity, {9.7, 9.9}},
+        {Usual::sound_speed, {100., 2000.}},
+        {Usual::silt_weight, {1e3, 2e4}},
+        {Usual::silt_friction_angle, {5., 50., true}},
+        {Usual::overload, {0.01, 20.}}};
+      return ranges.at(quantity);
+    }
+
+
+    // From a description that usually() ends.
+    const std::regex last_sentence(
+      R"re(.*?(?:\[([^\]]*)\])?[^\]]* Usually (0 or )?(\S+) to (\S+)\.)re");
+  } // namespace
+
+
+  std::string
+  usually(const Usual quantity)
+  {
+    const Range       &range = range_of(quantity);
+    std::ostringstream text;
+    text << " Usually " << (range.or_zero ? "0 or " : "") << range.from
+         << " to " << range.to << '.';
+    return text.str();
+  }
+
+
+  std::vector<std::string>
+  unusual_values(const ParameterHandler &prm)
+  {
+    std::vector<std::string> result;
+    const auto               look_at = [&](const std::string &entry,
+                             const std::string &section,
+                             const std::string &description,
+                             const std::string &text) {
+      std::smatch parts;
+      if (description.find(" Usually ") == std::string::npos ||
+          !std::regex_match(description, parts, last_sentence))
+        return;
+      const double value = Utilities::string_to_double(text),
+                   from  = Utilities::string_to_double(parts[3]),
+                   to    = Utilities::string_to_double(parts[4]);
+      if ((from <= value && value <= to) || (parts[2].matched && value == 0.))
+        return;
+      const std::string  unit = parts[1] == "-" ? "" : " " + parts[1].str();
+      std::ostringstream sentence;
+      sentence << "\"" << entry << "\" in section \"" << section << "\" is "
+               << value << unit << ", but usually it is " << parts[2]
+               << parts[3] << " to " << parts[4] << unit;
+      if (value > absurd * to || (value != 0. && value < from / absurd))
+        throw UserError(sentence.str() +
+                        ", and nothing can be computed with it; correct it.");
+      result.push_back(sentence.str() + "; look at the unit");
+    };
+
+    const std::function<void(const nlohmann::json &, const std::string &)>
+      collect = [&](const nlohmann::json &node, const std::string &section) {
+        for (const auto &[name, child] : node.items())
+          if (child.contains("value") && child["value"].is_string())
+            look_at(name, section, child["documentation"], child["value"]);
+          else if (child.is_object())
+            collect(child, section.empty() ? name : section + "/" + name);
+      };
+    std::ostringstream text;
+    prm.print_parameters(text, ParameterHandler::JSON);
+    collect(nlohmann::json::parse(text.str()), "");
+    return result;
+  }
+} // namespace Voussoir

@@ -1,0 +1,56 @@
+#include "with_files.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** A model that nothing moves: modes alone are computed without steps, and
+     *  steps alone are said to show nothing. */
+    class NothingMoves : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto modes = summary_of(file, communicator);
+        verdicts.is_true("modes alone: no steps", modes["steps"] == 0);
+        verdicts.is_true("modes alone: they are in the summary",
+                         modes["modes"]["modes"].size() == 2);
+        verdicts.is_true("modes alone: no warning", modes["warnings"].empty());
+
+        const auto rest =
+          summary_of(file.with({"Modes/Number=0"}), communicator);
+        verdicts.is_true("without modes: steps", rest["steps"] > 0);
+        verdicts.is_true("without modes: one warning, in the verdict",
+                         rest["warnings"].size() == 1 &&
+                           rest["verdict"] == "with warnings, see there");
+
+        const auto pushed = summary_of(file.with({"Loads/Names=push",
+                                                  "Loads/push/Face sets=top",
+                                                  "Loads/push/Pressure=1e5"}),
+                                       communicator);
+        verdicts.is_true("modes and a load: steps", pushed["steps"] > 0);
+        verdicts.is_true("modes and a load: no warning",
+                         pushed["warnings"].empty());
+      }
+
+    private:
+      static nlohmann::json
+      summary_of(const ParameterFile &file, const MPI_Comm communicator)
+      {
+        const std::string folder = "nothing_moves_output";
+        const auto        parameters =
+          make_case(file.with({"Output/Folder=" + folder}));
+        make_simulation_with_files(*parameters, communicator)->run.march();
+        return read_summary(folder);
+      }
+    };
+
+    const Registry<Check>::Add<NothingMoves>
+      registered("nothing moves", "A case without earthquake and load.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,56 @@
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** A case with one entry changed after the other: each mistake is said by
+     *  the log itself, in one warning or more. */
+    class Warnings : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Mistakes",
+                          mistakes,
+                          "Separated by |, each \"Section/Entry=value\", or "
+                          "more than one, separated by &.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        verdicts.is_true("as it is: no warning",
+                         n_warnings(file, communicator) == 0);
+        for (const std::string &mistake : split_list(mistakes, '|'))
+          verdicts.is_true(mistake + ": warned",
+                           n_warnings(file.with(split_list(mistake, '&')),
+                                      communicator) > 0);
+      }
+
+    private:
+      static std::size_t
+      n_warnings(const ParameterFile &file, const MPI_Comm communicator)
+      {
+        const auto parameters = make_case(file);
+        RunOptions options;
+        options.quiet     = true;
+        options.no_output = true;
+        options.validate  = true;
+        return Simulation(*parameters, options, communicator)
+          .log.warnings()
+          .size();
+      }
+
+      std::string mistakes;
+    };
+
+    const Registry<Check>::Add<Warnings>
+      registered("warnings", "Values that are hardly meant so are said.");
+  } // namespace
+} // namespace Voussoir

@@ -1,3 +1,4 @@
+#include <voussoir/base/error.h>
 #include <voussoir/fem/lanczos.h>
 
 #include <deal.II/lac/tridiagonal_matrix.h>
@@ -35,6 +36,11 @@ namespace Voussoir
         if (k > 0)
           w.add(-beta.back(), previous);
         beta.push_back(w.l2_norm());
+        if (!std::isfinite(alpha.back() + beta.back()))
+          throw UserError("The stiffness over the mass of the model is no "
+                          "finite number, so no time step can be found; look "
+                          "for entries of extreme size in the sections "
+                          "\"Materials\" and \"Mesh\".");
 
         if (k % 5 == 4 || beta.back() < 1e-12 * alpha.back())
           {

@@ -1,8 +1,11 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/base/text.h>
 
 #include <deal.II/base/utilities.h>
+
+#include <boost/locale/utf.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -44,6 +47,66 @@ namespace Voussoir
       return section.empty() ? "at the top level" :
                                "in section \"" + section + "\"";
     }
+
+    // More would be no parameter file, or one without "end".
+    constexpr std::size_t largest_file = 10000000, deepest_section = 10;
+
+    bool
+    is_utf8(const std::string &text)
+    {
+      using namespace boost::locale::utf;
+      for (auto position = text.begin(); position != text.end();)
+        if (!is_valid_codepoint(utf_traits<char>::decode(position, text.end())))
+          return false;
+      return true;
+    }
+
+
+    // The text of a file, whatever system it was written on.
+    std::string
+    read_text(const std::string &filename)
+    {
+      std::error_code error;
+      std::ifstream   in(filename, std::ios::binary);
+      if (!in || std::filesystem::is_directory(filename, error))
+        throw UserError("The parameter file \"" + filename +
+                        "\" cannot be read; check its name and folder.");
+      if (!is_utf8(filename))
+        throw UserError("The name of the parameter file \"" + filename +
+                        "\" or of its folder is not written in UTF-8; rename "
+                        "it.");
+      std::string text(largest_file + 1, '\0');
+      in.read(text.data(), text.size());
+      text.resize(in.gcount());
+      if (text.size() > largest_file)
+        throw UserError(filename + ": this is larger than 10 MB; give a "
+                                   "parameter file.");
+      const std::string byte_order_mark = "\xEF\xBB\xBF";
+      if (text.rfind(byte_order_mark, 0) == 0)
+        text.erase(0, byte_order_mark.size());
+      std::string lines;
+      for (std::size_t i = 0; i < text.size(); ++i)
+        if (text[i] != '\r')
+          lines += text[i];
+        else if (i + 1 == text.size() || text[i + 1] != '\n')
+          lines += '\n';
+      return lines;
+    }
+
+
+    // Whether the value is a number or a list of numbers of which one is beyond
+    // all quantities.
+    bool
+    is_too_large(const std::string &pattern, const std::string &value)
+    {
+      if (pattern.find("[Double") == std::string::npos)
+        return false;
+      const auto parts = split_list(value);
+      return std::any_of(parts.begin(), parts.end(), [](const auto &part) {
+        return std::abs(std::atof(part.c_str())) > largest_number;
+      });
+    }
+
 
     struct Declared
     {
@@ -129,6 +192,53 @@ namespace Voussoir
       collect(nlohmann::json::parse(text.str()), "");
       return entries;
     }
+
+
+    void
+    refuse_second_equals(const std::string &path,
+                         const std::string &text,
+                         const std::string &place)
+    {
+      if (text.rfind('=', 0) == 0)
+        throw UserError(place + ": \"" + entry_of(path) +
+                        "\" is followed by two \"=\"; remove one.");
+    }
+
+
+    void
+    set_entry(dealii::ParameterHandler            &prm,
+              const std::string                   &path,
+              const std::string                   &text,
+              const std::string                   &place,
+              const dealii::Patterns::PatternBase &pattern)
+    {
+      const std::string section = section_of(path);
+      const auto        refuse  = [&](const std::string &remedy) {
+        throw UserError(place + ": \"" + entry_of(path) + "\" " +
+                        in_section(section) + " cannot be \"" + text + "\"" +
+                        remedy + ".");
+      };
+      const std::string allowed = pattern.description();
+      if (!pattern.match(text))
+        refuse(what_is_allowed(allowed, text));
+      if (is_too_large(allowed, text))
+        refuse("; no quantity in SI units is beyond 1e30");
+
+      const auto names = split_list(section, '/');
+      for (const std::string &name : names)
+        prm.enter_subsection(name);
+      try
+        {
+          prm.set(entry_of(path), text);
+        }
+      catch (const std::exception &)
+        {
+          // what fits the pattern but not the variable behind it
+          refuse(what_is_allowed(allowed, text));
+        }
+      for (std::size_t i = 0; i < names.size(); ++i)
+        prm.leave_subsection();
+    }
   } // namespace
 
 
@@ -172,8 +282,13 @@ namespace Voussoir
           throw UserError("--set \"" + item +
                           "\" has no \"=\"; write it as "
                           "--set \"Section/Entry=value\".");
-        values[join_path(split_list(item.substr(0, equals), '/'))] = {
-          trim(item.substr(equals + 1)), "--set \"" + item + "\""};
+        const Value value{trim(item.substr(equals + 1)),
+                          "--set \"" + item + "\""};
+        const auto  path = join_path(split_list(item.substr(0, equals), '/'));
+        if (!is_utf8(item))
+          throw UserError(value.place + " is not written in UTF-8.");
+        refuse_second_equals(path, value.text, value.place);
+        values[path] = value;
       }
   }
 
@@ -181,18 +296,16 @@ namespace Voussoir
   void
   ParameterFile::read(const std::string &filename)
   {
-    std::ifstream in(filename);
-    if (!in || std::filesystem::is_directory(filename))
-      throw UserError("The parameter file \"" + filename +
-                      "\" cannot be read; check its name and folder.");
-
+    static const std::regex  no_break_space("\xC2\xA0");
+    std::istringstream       in(read_text(filename));
     std::vector<std::string> section;
     std::string              line;
     for (unsigned int number = 1; std::getline(in, line); ++number)
       {
         const std::string place = filename + ", line " + std::to_string(number);
         if (line.find('\0') != std::string::npos)
-          throw UserError(place + ": this is no text; give a parameter file.");
+          throw UserError(place + ": this is no text; give a parameter file, "
+                                  "saved in UTF-8.");
         // a backslash at the end continues the line
         while (!line.empty() && trim(line).size() > 0 &&
                trim(line).back() == '\\')
@@ -205,7 +318,13 @@ namespace Voussoir
             ++number;
             line += " " + trim(next);
           }
-        line = trim(line.substr(0, line.find('#')));
+        line.erase(std::min(line.find('#'), line.size()));
+        if (!is_utf8(line))
+          throw UserError(place + ": \"" + trim(line) +
+                          "\" is not written in UTF-8; save the file in that "
+                          "encoding.");
+        line = std::regex_replace(line, no_break_space, " ");
+        line = trim(line);
         if (line.empty())
           continue;
 
@@ -214,9 +333,14 @@ namespace Voussoir
         words >> keyword;
         std::getline(words, rest);
         rest = trim(rest);
-        if (keyword == "subsection")
+        if (keyword == "subsection" && !rest.empty())
           {
             section.push_back(rest);
+            if (section.size() > deepest_section)
+              throw UserError(place + ": \"" + rest + "\" lies in " +
+                              std::to_string(deepest_section) +
+                              " other sections; close those before with "
+                              "\"end\".");
             sections.emplace(join_path(section), place);
           }
         else if (keyword == "end" && rest.empty())
@@ -226,7 +350,8 @@ namespace Voussoir
                                       "it or add the missing \"subsection\".");
             section.pop_back();
           }
-        else if (keyword == "set" && rest.find('=') != std::string::npos)
+        else if (keyword == "set" && rest.find('=') != std::string::npos &&
+                 rest.front() != '=')
           {
             const auto  equals = rest.find('=');
             std::string path   = join_path(section);
@@ -236,6 +361,7 @@ namespace Voussoir
                               "\" is set a second time (first in " +
                               values[path].place + "); keep one of the two.");
             values[path] = {trim(rest.substr(equals + 1)), place};
+            refuse_second_equals(path, values[path].text, place);
           }
         else
           throw UserError(place + ": \"" + line +
@@ -268,20 +394,27 @@ namespace Voussoir
            section             = section_of(section))
         declared_sections.insert(section);
 
+    for (const auto &[path, value] : values)
+      if (const auto entry = declared.find(path); entry != declared.end())
+        set_entry(prm, path, value.text, value.place, *entry->second.pattern);
+
     const auto refuse_section = [&](const std::string &section,
                                     const std::string &place) {
+      const std::string        parent = section_of(section);
       std::vector<std::string> siblings;
       for (const std::string &other : declared_sections)
-        if (!other.empty() && section_of(other) == section_of(section))
+        if (!other.empty() && section_of(other) == parent)
           siblings.push_back(entry_of(other));
       // where the user himself names the sections
       std::string cause;
       for (const std::string entry : {"Names", "Type", "Observers"})
-        if (const auto found = declared.find(section_of(section) + "/" + entry);
-            found != declared.end())
-          cause = "; which ones there are depends on \"" + entry + "\"";
+        if (const std::string path = parent + "/" + entry;
+            declared.count(path) > 0)
+          cause =
+            "; which ones there are depends on \"" + entry + "\"" +
+            (entry == "Names" && given(path).empty() ? ", which is empty" : "");
       throw UserError(place + ": there is no section \"" + entry_of(section) +
-                      "\" " + in_section(section_of(section)) +
+                      "\" " + in_section(parent) +
                       known_names(entry_of(section), siblings) + cause + ".");
     };
     for (const auto &[section, place] : sections)
@@ -289,35 +422,19 @@ namespace Voussoir
         refuse_section(section, place);
 
     for (const auto &[path, value] : values)
-      {
-        const std::string section = section_of(path);
-        if (declared_sections.count(section) == 0)
-          refuse_section(section, value.place);
-        const auto entry = declared.find(path);
-        if (entry == declared.end())
-          {
-            std::vector<std::string> siblings;
-            for (const auto &other : declared)
-              if (other.second.section == section)
-                siblings.push_back(entry_of(other.first));
-            throw UserError(value.place + ": there is no entry \"" +
-                            entry_of(path) + "\" " + in_section(section) +
-                            known_names(entry_of(path), siblings) + ".");
-          }
-        if (!entry->second.pattern->match(value.text))
-          throw UserError(
-            value.place + ": \"" + entry_of(path) + "\" " +
-            in_section(section) + " cannot be \"" + value.text + "\"" +
-            what_is_allowed(entry->second.pattern->description(), value.text) +
-            ".");
-
-        const auto names = split_list(section, '/');
-        for (const std::string &name : names)
-          prm.enter_subsection(name);
-        prm.set(entry_of(path), value.text);
-        for (std::size_t i = 0; i < names.size(); ++i)
-          prm.leave_subsection();
-      }
+      if (declared.count(path) == 0)
+        {
+          const std::string section = section_of(path);
+          if (declared_sections.count(section) == 0)
+            refuse_section(section, value.place);
+          std::vector<std::string> siblings;
+          for (const auto &other : declared)
+            if (other.second.section == section)
+              siblings.push_back(entry_of(other.first));
+          throw UserError(value.place + ": there is no entry \"" +
+                          entry_of(path) + "\" " + in_section(section) +
+                          known_names(entry_of(path), siblings) + ".");
+        }
   }
 
 

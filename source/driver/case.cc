@@ -286,7 +286,10 @@ namespace Voussoir
     if (generator)
       {
         mesh = generator->generate();
-        check_mesh(mesh, "The generated mesh");
+        check_mesh(mesh,
+                   "The generated mesh",
+                   "change sizes and shape in section \"Mesh/" + mesh_type +
+                     "\" so that the cells there are less distorted");
       }
     else
       mesh = reader.read(&log);

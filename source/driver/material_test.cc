@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/driver/material_test.h>
 
 #include <deal.II/base/utilities.h>
@@ -45,15 +46,11 @@ namespace Voussoir
                             " of the material test is given twice.");
           Path path{is_strain, {}};
           for (const std::string &number : split_list(item.substr(colon + 1)))
-            try
-              {
-                path.values.push_back(Utilities::string_to_double(number));
-              }
-            catch (const std::exception &)
-              {
-                throw UserError("\"" + number + "\" in " + place +
-                                " is no number.");
-              }
+            if (const auto value = parse_number(number); value)
+              path.values.push_back(*value);
+            else
+              throw UserError("\"" + number + "\" in " + place +
+                              " is no number.");
           paths[component] = path;
         }
     }

@@ -1,5 +1,8 @@
 #include <voussoir/driver/model.h>
+#include <voussoir/loads/added_mass.h>
 #include <voussoir/loads/water_level.h>
+#include <voussoir/mesh/interfaces.h>
+#include <voussoir/mesh/mesh_check.h>
 #include <voussoir/mesh/reservoir_mesh.h>
 
 #include <iomanip>
@@ -24,6 +27,75 @@ namespace Voussoir
       return split_off_reservoir(mesh,
                                  sets,
                                  "\"Cell sets\" in section \"Reservoir\"");
+    }
+
+
+    // Parts of the body that are tied to nothing were forgotten when nodes were
+    // merged; a body that is held nowhere may be free to fly.
+    void
+    check_parts(const Case &parameters, const CoarseMesh &solid, Log &log)
+    {
+      const BoundaryParameters &boundaries = parameters.boundaries;
+      std::vector<std::string>  holding;
+      for (const Support &support : boundaries.supports_with_absorbing(false))
+        holding.push_back(support.set);
+      const auto parts =
+        find_parts(solid, holding, parameters.interfaces.surfaces());
+      if (parts.size() == 1)
+        return;
+      std::vector<std::string> held, loose;
+      for (const MeshPart &part : parts)
+        (part.is_held ? held : loose).push_back(part.place);
+      if (!held.empty() && !loose.empty() &&
+          parameters.projections.objects.empty())
+        throw UserError("Nothing holds the part of the mesh around " +
+                        loose[0] +
+                        " m: it shares no node with the rest, no interface "
+                        "joins it and no entry of section \"Boundaries\" "
+                        "names its faces; merge the nodes between the parts, "
+                        "or hold it.");
+      held.insert(held.end(), loose.begin(), loose.end());
+      held.resize(std::min<std::size_t>(held.size(), 10));
+      log.warn("The mesh falls into ",
+               parts.size(),
+               " parts that share neither nodes nor interfaces, around ",
+               join(held, ", "),
+               " m; waves and forces do not pass between them.");
+    }
+
+
+    // What acts on the faces of an interface acts on one of its sides only.
+    void
+    say_sets_on_interfaces(const Case       &parameters,
+                           const CoarseMesh &solid,
+                           Log              &log)
+    {
+      std::set<std::pair<unsigned int, unsigned int>> sides;
+      for (const std::string &surface : parameters.interfaces.surfaces())
+        for (const std::string &side : {surface, surface + other_side})
+          for (const CoarseMesh::Face &face : solid.face_sets.at(side))
+            sides.emplace(face.cell, face.face);
+
+      std::vector<std::string> entries{"Boundaries/Fixed",
+                                       "Boundaries/Roller",
+                                       "Boundaries/Absorbing"};
+      for (const auto &load : parameters.loads.objects)
+        entries.push_back("Loads/" + load.first + "/Face sets");
+      for (const std::string &entry : entries)
+        for (const std::string &set : split_list(parameters.file.given(entry)))
+          if (const auto faces = solid.face_sets.find(set);
+              faces != solid.face_sets.end() &&
+              std::any_of(faces->second.begin(),
+                          faces->second.end(),
+                          [&](const CoarseMesh::Face &face) {
+                            return sides.count({face.cell, face.face}) > 0;
+                          }))
+            log.warn("\"",
+                     entry,
+                     "\" names the face set \"",
+                     set,
+                     "\", which lies on an interface: it acts there on one "
+                     "side only.");
     }
 
 
@@ -215,6 +287,8 @@ namespace Voussoir
     log(report.str());
     water     = take_water(parameters.reservoir, solid);
     materials = parameters.material_of_coarse_cells(solid);
+    check_parts(parameters, solid, log);
+    say_sets_on_interfaces(parameters, solid, log);
   }
 
 

@@ -1,6 +1,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/fem/discretization.h>
 #include <voussoir/fem/one_point_cell.h>
+#include <voussoir/mesh/mesh_check.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_renumbering.h>
@@ -60,6 +61,10 @@ namespace Voussoir
     , fe(FE_Q<3>(parameters.degree), 3)
     , dof_handler(grid.triangulation())
   {
+    check_size(grid.triangulation().n_global_active_cells(),
+               degree,
+               "\"Degree\" in section \"Discretization\"",
+               grid.communicator());
     dof_handler.distribute_dofs(fe);
     number_by_nodes();
     owned_dofs = dof_handler.locally_owned_dofs();

@@ -40,10 +40,11 @@ namespace Voussoir
         if (k > 0)
           w.add(-beta.back(), previous);
         beta.push_back(w.l2_norm());
-        if (!std::isfinite(beta.back()))
-          throw UserError("The stiffness over the mass of the model is beyond "
-                          "all numbers; look for moduli and densities out of "
-                          "proportion in section \"Materials\".");
+        if (!std::isfinite(alpha.back() + beta.back()))
+          throw UserError("The stiffness over the mass of the model is no "
+                          "finite number, so no time step can be found; look "
+                          "for entries of extreme size in the sections "
+                          "\"Materials\" and \"Mesh\".");
 
         const bool exhausted = beta.back() <= 1e-12 * alpha.back();
         if (k == next_look || exhausted)

@@ -1,7 +1,10 @@
 #include <voussoir/base/error.h>
 #include <voussoir/fem/named_sets.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
+#include <sstream>
 
 namespace Voussoir
 {
@@ -18,9 +21,41 @@ namespace Voussoir
     if (sets.empty())
       throw UserError(place + " is empty; name the face sets it acts on.");
     for (const std::string &set : sets)
-      discretization.grid.check_face_set(set, place);
+      check_outer_face_set(discretization.grid, set, place);
     for (const std::string &set : sets)
       discretization.grid.for_each_face(set, visit);
+  }
+
+
+  void
+  check_outer_face_set(const Grid        &grid,
+                       const std::string &set,
+                       const std::string &place)
+  {
+    grid.check_face_set(set, place);
+    unsigned int n_inner = 0;
+    Point<3>     inner;
+    grid.for_each_face(set, [&](const auto &cell, const unsigned int face) {
+      if (!cell->at_boundary(face))
+        {
+          ++n_inner;
+          inner = cell->face(face)->center();
+        }
+    });
+    for (const auto &[n, point] :
+         Utilities::MPI::all_gather(grid.communicator(),
+                                    std::make_tuple(n_inner, inner)))
+      if (n > 0)
+        {
+          std::ostringstream text;
+          text
+            << place << " names the face set \"" << set
+            << "\", which has faces with cells on both sides, one at ("
+            << point[0] << ", " << point[1] << ", " << point[2]
+            << ") m; name faces of the surface, or make the set an interface "
+               "in section \"Interfaces\".";
+          throw UserError(text.str());
+        }
   }
 
 

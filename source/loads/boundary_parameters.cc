@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/fem/named_sets.h>
 #include <voussoir/loads/boundary_parameters.h>
 
 #include <map>
@@ -26,8 +27,9 @@ namespace Voussoir
                                             {"Absorbing", absorbing.face_sets}})
       for (const std::string &set : split_list(list))
         {
-          grid.check_face_set(set,
-                              "\"" + kind + "\" in section \"Boundaries\"");
+          check_outer_face_set(grid,
+                               set,
+                               "\"" + kind + "\" in section \"Boundaries\"");
           const auto [place, is_new] = kind_of_set.emplace(set, kind);
           if (!is_new)
             throw UserError("In section \"Boundaries\" the face set \"" + set +

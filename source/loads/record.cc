@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/loads/record.h>
 
 #include <algorithm>
@@ -39,8 +40,9 @@ namespace Voussoir
     std::vector<Line>
     read_lines(const std::string &file)
     {
-      std::ifstream stream(file);
-      if (!std::filesystem::is_regular_file(file) || !stream)
+      std::ifstream   stream(file);
+      std::error_code error;
+      if (!std::filesystem::is_regular_file(file, error) || !stream)
         refuse(file,
                "there is no such file to read; give its path relative to the "
                "folder of the parameter file, or absolute");
@@ -126,13 +128,20 @@ namespace Voussoir
                    "'" + word +
                      "' is not a number; below the header only numbers are "
                      "allowed");
-          if (!std::isfinite(*number))
+          if (!(std::abs(*number) <= largest_number))
             refuse(file,
                    line,
-                   "'" + word + "' is not a finite number; repair the record");
+                   "'" + word + "' is no acceleration; repair the record");
           result.push_back(*number);
         }
       return result;
+    }
+
+    /** Enough of a line for what a header says. */
+    std::string
+    beginning(const Line &line)
+    {
+      return line.text.substr(0, 200);
     }
 
     /** What the header of an AT2 file says. */
@@ -151,10 +160,10 @@ namespace Voussoir
       const std::string number =
         R"(([0-9]*\.?[0-9]+(?:E[-+]?[0-9]+)?|[0-9]+\.))";
       const auto       flags = std::regex::icase;
-      const std::regex both_before_words("([0-9]+)[ ,]+" + number +
+      const std::regex both_before_words("([0-9]{1,9})[ ,]+" + number +
                                            "[ ,]+NPTS[ ,]+DT\\b",
                                          flags);
-      const std::regex points("\\bNPTS *[=:]? *([0-9]+)", flags);
+      const std::regex points("\\bNPTS *[=:]? *([0-9]{1,9})", flags);
       const std::regex step("\\bDT *[=:]? *" + number, flags);
 
       constexpr std::size_t longest_header = 20;
@@ -169,16 +178,17 @@ namespace Voussoir
               header.end = i;
               return header;
             }
-          std::smatch match;
-          if (std::regex_search(lines[i].text, match, both_before_words))
+          const std::string text = beginning(lines[i]);
+          std::smatch       match;
+          if (std::regex_search(text, match, both_before_words))
             {
               header.n_points  = std::stoul(match[1]);
               header.time_step = to_number(match[2]).value_or(0);
               continue;
             }
-          if (std::regex_search(lines[i].text, match, points))
+          if (std::regex_search(text, match, points))
             header.n_points = std::stoul(match[1]);
-          if (std::regex_search(lines[i].text, match, step))
+          if (std::regex_search(text, match, step))
             header.time_step = to_number(match[1]).value_or(0);
         }
       if (header.n_points > 0)
@@ -196,7 +206,7 @@ namespace Voussoir
     {
       for (std::size_t i = 0; i < header.end; ++i)
         {
-          if (std::regex_search(lines[i].text,
+          if (std::regex_search(beginning(lines[i]),
                                 std::regex("(VELOCITY|DISPLACEMENT) +TIME",
                                            std::regex::icase)))
             refuse(file,
@@ -204,7 +214,7 @@ namespace Voussoir
                    "the header announces velocity or displacement; give the "
                    "file of the acceleration");
           if (unit != "g" &&
-              std::regex_search(lines[i].text,
+              std::regex_search(beginning(lines[i]),
                                 std::regex("UNITS OF G\\b", std::regex::icase)))
             refuse(file,
                    lines[i],
@@ -256,8 +266,11 @@ namespace Voussoir
           if (step <= 0)
             refuse(file,
                    lines[first_line + i],
-                   "the time in the first column does not increase; sort the "
-                   "rows and remove repeated ones");
+                   "the first of " + std::to_string(rows[i].size()) +
+                     " columns is the time [s], but it does not increase; sort "
+                     "the rows and remove repeated ones, or, if these are "
+                     "accelerations alone, write one in each row with the "
+                     "entry Time step, or give the header with NPTS and DT");
           const double first_step = rows[1][0] - rows[0][0];
           if (std::abs(step - first_step) > 1e-3 * first_step)
             refuse(file,

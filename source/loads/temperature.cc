@@ -1,10 +1,9 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/fem/named_sets.h>
 #include <voussoir/loads/design_spectrum.h>
 #include <voussoir/loads/load.h>
 #include <voussoir/mesh/face_distance.h>
-
-#include <sstream>
 
 namespace Voussoir
 {
@@ -177,21 +176,19 @@ namespace Voussoir
       {
         for (const std::string &row : split_list(table_text, ';'))
           {
-            std::istringstream in(row);
-            double             elevation, mean, difference;
-            std::string        rest;
-            if (!(in >> elevation >> mean >> difference) || (in >> rest))
+            const auto numbers = parse_numbers(row);
+            if (!numbers || numbers->size() != 3)
               throw UserError(place + ": \"" + row +
                               "\" needs three numbers, the elevation [m], the "
                               "change of the mean and that of the difference "
                               "downstream minus upstream [K].");
-            if (!elevations.empty() && elevation <= elevations.back())
+            if (!elevations.empty() && (*numbers)[0] <= elevations.back())
               throw UserError(place + ": \"" + row +
                               "\" does not lie above the row before it; list "
                               "the elevations from below.");
-            elevations.push_back(elevation);
-            means.push_back(mean);
-            differences.push_back(difference);
+            elevations.push_back((*numbers)[0]);
+            means.push_back((*numbers)[1]);
+            differences.push_back((*numbers)[2]);
           }
       }
 

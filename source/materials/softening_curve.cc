@@ -1,9 +1,8 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/materials/softening_curve.h>
-
-#include <deal.II/base/utilities.h>
 
 #include <cmath>
 #include <iomanip>
@@ -256,21 +255,15 @@ namespace Voussoir
     std::vector<std::pair<double, double>> result;
     for (const std::string &item : split_list(table))
       {
-        const auto colon = item.find(':');
-        try
-          {
-            if (colon == std::string::npos)
-              throw std::invalid_argument(item);
-            result.emplace_back(
-              dealii::Utilities::string_to_double(item.substr(0, colon)),
-              dealii::Utilities::string_to_double(item.substr(colon + 1)));
-          }
-        catch (const std::exception &)
-          {
-            throw UserError(place + ": \"" + item +
-                            "\" is no pair of numbers; write pairs as in \"0: "
-                            "2.9e6, 66e-6: 1.9e6\".");
-          }
+        const auto colon  = item.find(':');
+        const auto first  = parse_number(item.substr(0, colon));
+        const auto second = parse_number(
+          colon == std::string::npos ? "" : item.substr(colon + 1));
+        if (!first || !second)
+          throw UserError(place + ": \"" + item +
+                          "\" is no pair of numbers; write pairs as in \"0: "
+                          "2.9e6, 66e-6: 1.9e6\".");
+        result.emplace_back(*first, *second);
         if (result.size() == 1 ?
               result[0].first != 0. :
               result.back().first <= result[result.size() - 2].first)

@@ -161,8 +161,8 @@ namespace Voussoir
                         "by commas.");
             dealii::Point<3> position;
             for (unsigned int d = 0; d < 3 && d + 1 < items.size(); ++d)
-              position[d] =
-                file.to_number<double>(items[d + 1], "a coordinate");
+              position[d] = file.check_coordinate(
+                file.to_number<double>(items[d + 1], "a coordinate"));
             numbers.push_back(
               file.to_number<std::int64_t>(items[0], "a node number"));
             mesh.vertices.emplace_back(numbers.back(), position);
@@ -347,8 +347,8 @@ namespace Voussoir
           mesh.face_sets[name].push_back(
             {hexahedron->second, face_of_side[side[1] - '1']});
         else
-          file.fail("a hexahedron has no face \"" + side +
-                    "\"; allowed are S1 to S6.");
+          file.fail("a hexahedron has no face " + in_quotes(side) +
+                    "; allowed are S1 to S6.");
         return true;
       }
 

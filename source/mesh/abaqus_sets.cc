@@ -98,14 +98,14 @@ namespace Voussoir
       range[i] = file.to_number<std::int64_t>(items[i], "an integer number");
     const auto first = range[0], last = range[1], step = range[2];
     // More than 100 million members would be a slip, and fill the memory.
-    if (items.size() < 2 || step < 1 || last < first ||
+    if (items.size() < 2 || first < 0 || step < 1 || last < first ||
         (last - first) / step > 100000000)
       file.fail("GENERATE needs the first number, the last, not below the "
                 "first, and if wanted an increment of 1 or more, 100 million "
                 "numbers at most.");
     range.clear();
-    for (auto number = first; number <= last; number += step)
-      range.push_back(number);
+    for (std::int64_t i = 0; i <= (last - first) / step; ++i)
+      range.push_back(first + i * step);
     return range;
   }
 
@@ -137,7 +137,7 @@ namespace Voussoir
         for (const auto &set : sets)
           if (!set.second.is_internal)
             names.push_back(set.second.name);
-        file.fail("no set \"" + std::string(item) + "\" is given before" +
+        file.fail("no set " + in_quotes(item) + " is given before" +
                   known_names(std::string(item), names) + ".");
       }
     return entry->second.numbers;

@@ -2,6 +2,8 @@
 #include <voussoir/base/text.h>
 #include <voussoir/mesh/arch_dam_mesh.h>
 #include <voussoir/mesh/generator.h>
+#include <voussoir/mesh/grading.h>
+#include <voussoir/mesh/mesh_check.h>
 
 #include <algorithm>
 #include <cmath>
@@ -119,6 +121,10 @@ namespace Voussoir
       unsigned int
       columns_per_block(const ArchDamSections &sections) const;
 
+      /** Refuses many more cells than the memory holds. */
+      void
+      check_cells(const ArchDamSections &sections, const double height) const;
+
       /** Those that are asked for; they lay lines of the section straight. */
       std::vector<AbutmentWedge>
       make_wedges(const ArchDamSweep        &sweep,
@@ -173,15 +179,48 @@ namespace Voussoir
       // columns are halved in the cross-section
       const double crest   = sections.left_end - sections.right_end;
       const double columns = std::max(least_columns, crest / (2. * cell_size));
-      return std::max(1., std::round(columns / (n_joints + 1)));
+      // more are refused later
+      return std::clamp(std::round(columns / (n_joints + 1.)), 1., 1e9);
+    }
+
+
+    // Rows of the section's grid are as high as its columns are wide, or as
+    // the steeper bank rises over one.
+    void
+    ArchDam::check_cells(const ArchDamSections &sections,
+                         const double           height) const
+    {
+      const double crest     = sections.left_end - sections.right_end;
+      const double n_columns = (n_joints + 1.) * columns_per_block(sections);
+      constexpr unsigned int n_samples = 100;
+      double                 slope     = 1.;
+      for (unsigned int i = 0; i < n_samples; ++i)
+        {
+          const double s = sections.right_end + i * crest / n_samples;
+          slope          = std::max(slope,
+                           std::abs(sections.contour(s + crest / n_samples) -
+                                    sections.contour(s)) /
+                             (crest / n_samples));
+        }
+      const double n_rows = n_columns * height / (slope * crest);
+      const double n_layers =
+        n_thickness +
+        2. *
+          graded_points(rock_extent * height, cell_size, growth, largest_cell)
+            .size();
+      // half of the section is air
+      check_size(0.5 * 4. * n_columns * n_rows * n_layers,
+                 1,
+                 "Section \"Mesh/arch dam\"");
     }
 
 
     CoarseMesh
     ArchDam::generate() const
     {
-      const ArchDamShape                        shape = this->shape();
-      const ArchDamSections                     sections(shape);
+      const ArchDamShape    shape = this->shape();
+      const ArchDamSections sections(shape);
+      check_cells(sections, shape.height);
       std::array<ArchDamCrossSection::Ledge, 2> ledges;
       for (const unsigned int bank : {0, 1})
         {

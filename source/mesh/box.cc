@@ -1,6 +1,8 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/mesh/generator.h>
+#include <voussoir/mesh/mesh_check.h>
 
 #include <cmath>
 #include <sstream>
@@ -53,6 +55,9 @@ namespace Voussoir
               throw UserError(text.str());
             }
         layers();
+        check_size(1. * cells[0] * cells[1] * cells[2],
+                   1,
+                   "\"Cells\" in section \"Mesh/box\"");
       }
 
       CoarseMesh
@@ -134,24 +139,22 @@ namespace Voussoir
         const auto items = split_list(layers_text, ';');
         for (unsigned int i = 0; i < items.size(); ++i)
           {
-            const bool         last  = i + 1 == items.size();
-            const auto         colon = items[i].find(':');
-            double             top   = upper[2];
-            std::istringstream in(
+            const bool last  = i + 1 == items.size();
+            const auto colon = items[i].find(':');
+            const auto top   = parse_number(
               colon == std::string::npos ? "" : items[i].substr(colon + 1));
-            std::string rest;
-            if ((!(in >> top) && !last) || (in >> rest))
+            if (!top && !(last && colon == std::string::npos))
               throw UserError("\"Layers\" in section \"Mesh/box\": \"" +
                               items[i] +
                               "\" has no top elevation; write \"name: "
                               "elevation\" [m].");
-            if (!list.empty() && !last && top <= list.back().second)
+            if (!list.empty() && !last && *top <= list.back().second)
               throw UserError("\"Layers\" in section \"Mesh/box\": \"" +
                               items[i] +
                               "\" does not lie above the layer before it; list "
                               "the layers from below.");
             list.emplace_back(Utilities::trim(items[i].substr(0, colon)),
-                              last ? 1e300 : top);
+                              last ? 1e300 : *top);
           }
         return list;
       }

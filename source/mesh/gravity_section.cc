@@ -1,6 +1,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/mesh/generator.h>
 #include <voussoir/mesh/grading.h>
+#include <voussoir/mesh/mesh_check.h>
 
 #include <deal.II/base/numbers.h>
 
@@ -96,6 +97,13 @@ namespace Voussoir
             "\"Reservoir length\" in section \"Mesh/gravity "
             "section\" is 0, to the end of the rock, but there is "
             "no rock; give a length.");
+        const std::string place = "Section \"Mesh/gravity section\"";
+        check_size(1. * cells[0] * cells[1] * cells[2], 1, place);
+        const Lattice lattice = make_lattice();
+        check_size(1. * cells[0] * lattice.base.size() *
+                     lattice.elevations.size(),
+                   1,
+                   place);
       }
 
       CoarseMesh

@@ -1,7 +1,9 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/base/text.h>
 #include <voussoir/mesh/grid.h>
+#include <voussoir/mesh/mesh_check.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/fully_distributed_tria.h>
@@ -10,6 +12,7 @@
 #include <deal.II/grid/tria_description.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace Voussoir
@@ -75,13 +78,20 @@ namespace Voussoir
           result.set = Utilities::trim(item.substr(0, colon));
           if (result.set.rfind("box ", 0) == 0)
             {
-              std::istringstream in(result.set.substr(4));
-              for (Point<3> *corner : {&result.lower, &result.upper})
-                for (unsigned int d = 0; d < 3; ++d)
-                  in >> (*corner)[d];
-              if (!in || (in >> rest))
+              const auto corners = parse_numbers(result.set.substr(4));
+              if (!corners || corners->size() != 6)
                 throw UserError(place + ": \"" + item +
                                 "\" needs six coordinates [m] after \"box\".");
+              for (unsigned int d = 0; d < 3; ++d)
+                {
+                  result.lower[d] = (*corners)[d];
+                  result.upper[d] = (*corners)[3 + d];
+                  if (result.lower[d] >= result.upper[d])
+                    throw UserError(place + ": in \"" + item +
+                                    "\" the second corner must lie above the "
+                                    "first in " +
+                                    "xyz"[d] + "; exchange the two.");
+                }
               result.set.clear();
             }
           items.push_back(result);
@@ -201,6 +211,10 @@ namespace Voussoir
   Grid::refine(dealii::Triangulation<3> &triangulation,
                const GridParameters     &parameters) const
   {
+    check_size(sets_of_cell.size() * std::pow(8., parameters.global_refinement),
+               1,
+               "\"Global refinement\" in section \"Mesh\"",
+               mpi_communicator);
     triangulation.refine_global(parameters.global_refinement);
     for (const LocalRefinement &item :
          parse_local_refinement(parameters.local_refinement))

@@ -1,17 +1,24 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
+#include <voussoir/mesh/interfaces.h>
 #include <voussoir/mesh/mesh_check.h>
 #include <voussoir/mesh/mesh_geometry.h>
 
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/base/geometry_info.h>
+#include <deal.II/base/utilities.h>
+#include <deal.II/numerics/rtree.h>
 
 #include <boost/pending/disjoint_sets.hpp>
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iomanip>
 #include <limits>
+#include <set>
 #include <sstream>
 #include <unordered_map>
 
@@ -27,6 +34,10 @@ namespace Voussoir
     // Vertices nearer than this part of the shortest edge are taken to
     // coincide.
     constexpr double coincidence = 1e-6;
+
+
+    // What a run takes at its peak, per unknown of elastic cells [bytes].
+    constexpr double memory_per_unknown = 1000.;
 
 
     // Whether the face, run through counterclockwise as seen from outside its
@@ -59,13 +70,19 @@ namespace Voussoir
 
 
     std::string
+    describe_point(const Point<3> &point)
+    {
+      std::ostringstream text;
+      text << "(" << point[0] << ", " << point[1] << ", " << point[2] << ")";
+      return text.str();
+    }
+
+
+    std::string
     place(const CoarseMesh &mesh, const unsigned int cell)
     {
-      const Point<3>     center = cell_center(mesh, cell);
-      std::ostringstream text;
-      text << "cell " << cell << " (counted from 0) with centre (" << center[0]
-           << ", " << center[1] << ", " << center[2] << ")";
-      return text.str();
+      return "cell " + std::to_string(cell) + " (counted from 0) with centre " +
+             describe_point(cell_center(mesh, cell));
     }
 
 
@@ -81,11 +98,15 @@ namespace Voussoir
     {
       for (unsigned int v = 0; v < mesh.vertices.size(); ++v)
         for (unsigned int d = 0; d < 3; ++d)
-          if (!std::isfinite(mesh.vertices[v][d]))
-            throw UserError(where + ": coordinate " + "xyz"[d] + " of vertex " +
-                            std::to_string(v) +
-                            " (counted from 0) is not a finite number; correct "
-                            "the coordinates in the mesh.");
+          if (!(std::abs(mesh.vertices[v][d]) <= largest_coordinate))
+            {
+              std::ostringstream text;
+              text << where << ": coordinate "
+                   << "xyz"[d] << " of vertex " << v << " (counted from 0) is "
+                   << mesh.vertices[v][d]
+                   << ", which is no place in a mesh; correct it.";
+              throw UserError(text.str());
+            }
     }
 
 
@@ -123,14 +144,36 @@ namespace Voussoir
 
 
     void
-    check_shapes(const CoarseMesh &mesh, const std::string &where)
+    check_coincidence(const CoarseMesh &mesh, const std::string &where)
+    {
+      for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
+        for (unsigned int i = 0; i < 8; ++i)
+          for (unsigned int j = 0; j < i; ++j)
+            if (const Point<3> &vertex = mesh.vertices[mesh.cells[cell][i]];
+                vertex == mesh.vertices[mesh.cells[cell][j]])
+              throw UserError(where + ": two vertices of " + place(mesh, cell) +
+                              " lie at one place, " + describe_point(vertex) +
+                              "; wedges and other collapsed cells must be "
+                              "remeshed as hexahedra with eight different "
+                              "vertices.");
+    }
+
+
+    void
+    check_shapes(const CoarseMesh  &mesh,
+                 const std::string &where,
+                 const std::string &remedy)
     {
       std::vector<unsigned int> bad;
       for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
         {
           const auto shapes = corner_shapes(mesh, cell);
-          // Written so that the NaN of an edge of no length counts as bad.
-          if (!(*std::min_element(shapes.begin(), shapes.end()) > flat_corner))
+          // NaN counts as bad
+          if (!std::all_of(shapes.begin(),
+                           shapes.end(),
+                           [](const double shape) {
+                             return shape > flat_corner;
+                           }))
             bad.push_back(cell);
         }
       if (!bad.empty())
@@ -138,7 +181,7 @@ namespace Voussoir
           where + ": " + counted(bad.size(), "cell is", "cells are") +
           " flat, inverted or tangled (the Jacobian is not positive at every "
           "vertex), the first is " +
-          place(mesh, bad.front()) + "; improve the mesh there.");
+          place(mesh, bad.front()) + "; " + remedy + ".");
     }
 
 
@@ -172,20 +215,120 @@ namespace Voussoir
     }
 
 
-    // Parts of the mesh that share no face: the number of cells in each,
-    // largest first.
+    // A number for each cell that is the same for all cells that hang together
+    // by their faces.
     std::vector<std::size_t>
-    connected_parts(const CoarseMesh &mesh)
+    parts_of_cells(const CoarseMesh &mesh)
     {
       boost::disjoint_sets_with_storage<> parts(mesh.cells.size());
       const std::vector<SortedFace>       faces = sorted_faces(mesh);
       for (unsigned int i = 1; i < faces.size(); ++i)
         if (same_vertices(faces[i - 1], faces[i]))
           parts.union_set(faces[i].face.cell, faces[i - 1].face.cell);
-
-      std::vector<std::size_t> size(mesh.cells.size(), 0);
+      std::vector<std::size_t> result;
       for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
-        ++size[parts.find_set(cell)];
+        result.push_back(parts.find_set(cell));
+      return result;
+    }
+
+
+    // Points well inside of a cell, near its vertices and in the middle.
+    std::array<Point<3>, 9>
+    inner_points(const CoarseMesh &mesh, const unsigned int cell)
+    {
+      std::array<Point<3>, 9> points;
+      for (unsigned int i = 0; i < 9; ++i)
+        {
+          const Point<3> unit =
+            i == 8 ? Point<3>(0.5, 0.5, 0.5) :
+                     Point<3>(0.9 * GeometryInfo<3>::unit_cell_vertex(i) +
+                              Point<3>(0.05, 0.05, 0.05));
+          for (unsigned int v = 0; v < 8; ++v)
+            points[i] += GeometryInfo<3>::d_linear_shape_function(unit, v) *
+                         mesh.vertices[mesh.cells[cell][v]];
+        }
+      return points;
+    }
+
+
+    // Whether a point lies inside of a cell, below all triangles that its faces
+    // can be cut into.
+    bool
+    is_inside(const CoarseMesh  &mesh,
+              const unsigned int cell,
+              const Point<3>    &point)
+    {
+      for (unsigned int face = 0; face < 6; ++face)
+        {
+          const auto v = face_vertices(mesh, {cell, face});
+          // counterclockwise from outside
+          std::array<unsigned int, 4> around = {{v[0], v[1], v[3], v[2]}};
+          if (face % 2 == 0)
+            std::reverse(around.begin(), around.end());
+          for (unsigned int i = 0; i < 4; ++i)
+            {
+              const Point<3> &a = mesh.vertices[around[i]];
+              if (cross_product_3d(mesh.vertices[around[(i + 1) % 4]] - a,
+                                   mesh.vertices[around[(i + 2) % 4]] - a) *
+                    (point - a) >=
+                  0.)
+                return false;
+            }
+        }
+      return true;
+    }
+
+
+    // Parts that share no face can lie in the same place, wholly or partly.
+    void
+    check_overlap(const CoarseMesh &mesh, const std::string &where)
+    {
+      const std::vector<std::size_t> part = parts_of_cells(mesh);
+      if (std::all_of(part.begin(), part.end(), [&](const std::size_t number) {
+            return number == part[0];
+          }))
+        return;
+      std::vector<std::pair<BoundingBox<3>, unsigned int>> boxes;
+      for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
+        {
+          std::vector<Point<3>> corners;
+          for (const unsigned int v : mesh.cells[cell])
+            corners.push_back(mesh.vertices[v]);
+          boxes.emplace_back(BoundingBox<3>(corners), cell);
+        }
+      const auto tree = pack_rtree(boxes);
+      for (const auto &[box, cell] : boxes)
+        {
+          const unsigned int this_cell = cell;
+          const auto         points    = inner_points(mesh, cell);
+          const auto         overlaps =
+            [&](const std::pair<BoundingBox<3>, unsigned int> &other) {
+              return part[other.second] != part[this_cell] &&
+                     std::any_of(points.begin(),
+                                 points.end(),
+                                 [&](const Point<3> &point) {
+                                   return is_inside(mesh, other.second, point);
+                                 });
+            };
+          namespace bgi = boost::geometry::index;
+          const auto other =
+            tree.qbegin(bgi::intersects(box) && bgi::satisfies(overlaps));
+          if (other != tree.qend())
+            throw UserError(where + ": " + place(mesh, cell) + " and cell " +
+                            std::to_string(other->second) +
+                            " lie in the same place but share no face; remove "
+                            "one of them, or mesh both together.");
+        }
+    }
+
+
+    // The number of cells in each part, largest first.
+    std::vector<std::size_t>
+    sizes_of_parts(const CoarseMesh &mesh)
+    {
+      std::vector<std::size_t> size(mesh.cells.size(), 0);
+      for (const std::size_t part : parts_of_cells(mesh))
+        ++size[part];
       std::sort(size.rbegin(), size.rend());
       size.erase(std::find(size.begin(), size.end(), 0U), size.end());
       return size;
@@ -291,7 +434,7 @@ namespace Voussoir
                         const double        shortest_edge,
                         std::ostringstream &text)
     {
-      const std::vector<std::size_t> parts = connected_parts(mesh);
+      const std::vector<std::size_t> parts = sizes_of_parts(mesh);
       if (parts.size() > 1)
         {
           text << "  " << parts.size()
@@ -353,7 +496,9 @@ namespace Voussoir
 
 
   void
-  check_mesh(const CoarseMesh &mesh, const std::string &where)
+  check_mesh(const CoarseMesh  &mesh,
+             const std::string &where,
+             const std::string &remedy)
   {
     if (mesh.cells.empty())
       throw UserError(where +
@@ -361,8 +506,73 @@ namespace Voussoir
                       "volume elements.");
     check_vertices(mesh, where);
     check_repetition(mesh, where);
-    check_shapes(mesh, where);
+    check_coincidence(mesh, where);
+    check_shapes(mesh, where, remedy);
     check_neighbours(mesh, where);
+    check_overlap(mesh, where);
+  }
+
+
+  void
+  check_size(const double       n_cells,
+             const unsigned int degree,
+             const std::string &place,
+             const MPI_Comm     communicator)
+  {
+    MPI_Comm machine;
+    MPI_Comm_split_type(
+      communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+    const bool first = Utilities::MPI::this_mpi_process(machine) == 0;
+    MPI_Comm_free(&machine);
+    const double n_machines =
+      Utilities::MPI::sum(first ? 1. : 0., communicator);
+    const double n_unknowns = 3. * n_cells * Utilities::pow(degree, 3),
+                 needed     = memory_per_unknown * n_unknowns,
+                 memory     = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+                          sysconf(_SC_PAGESIZE) * n_machines;
+    if (needed <= memory)
+      return;
+    std::ostringstream text;
+    text << std::setprecision(2) << place << ": about " << n_cells
+         << " cells with " << n_unknowns << " unknowns would come of this, "
+         << needed / 1e9 << " GB, but there are only " << memory / 1e9
+         << " GB of memory; use larger or fewer cells.";
+    throw UserError(text.str());
+  }
+
+
+  std::vector<MeshPart>
+  find_parts(const CoarseMesh               &mesh,
+             const std::vector<std::string> &holding_sets,
+             const std::vector<std::string> &interfaces)
+  {
+    boost::disjoint_sets_with_storage<> parts(mesh.vertices.size());
+    for (const auto &cell : mesh.cells)
+      for (const unsigned int vertex : cell)
+        parts.union_set(cell[0], vertex);
+    for (const std::string &interface : interfaces)
+      {
+        const auto &first = mesh.face_sets.at(interface),
+                   &other = mesh.face_sets.at(interface + other_side);
+        for (unsigned int i = 0; i < first.size(); ++i)
+          parts.union_set(mesh.cells[first[i].cell][0],
+                          mesh.cells[other[i].cell][0]);
+      }
+    std::set<std::size_t> held;
+    for (const std::string &set : holding_sets)
+      if (const auto faces = mesh.face_sets.find(set);
+          faces != mesh.face_sets.end())
+        for (const CoarseMesh::Face &face : faces->second)
+          held.insert(parts.find_set(mesh.cells[face.cell][0]));
+
+    std::set<std::size_t> seen;
+    std::vector<MeshPart> result;
+    for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
+      if (const std::size_t part = parts.find_set(mesh.cells[cell][0]);
+          seen.insert(part).second)
+        result.push_back(
+          {describe_point(cell_center(mesh, cell)), held.count(part) > 0});
+    return result;
   }
 
 

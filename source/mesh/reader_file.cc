@@ -1,9 +1,13 @@
 #include <voussoir/base/error.h>
+#include <voussoir/mesh/mesh_check.h>
 #include <voussoir/mesh/reader_file.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 namespace Voussoir
 {
@@ -16,8 +20,10 @@ namespace Voussoir
   MeshFile::MeshFile(const std::string &filename)
     : name(filename)
   {
-    std::ifstream in(filename, std::ios::binary);
-    content.assign(std::istreambuf_iterator<char>(in), {});
+    std::error_code error;
+    std::ifstream   in(filename, std::ios::binary);
+    if (std::filesystem::is_regular_file(filename, error))
+      content.assign(std::istreambuf_iterator<char>(in), {});
     if (!in || content.empty())
       throw UserError("The mesh file \"" + filename +
                       "\" does not exist, cannot be read or is empty; give in "
@@ -89,8 +95,8 @@ namespace Voussoir
   {
     const std::string_view found = word(expected);
     if (found != expected)
-      fail("expected " + expected + ", but found \"" + std::string(found) +
-           "\"; the file is damaged or of another format.");
+      fail("expected " + expected + ", but found " + in_quotes(found) +
+           "; the file is damaged or of another format.");
   }
 
 
@@ -109,11 +115,39 @@ namespace Voussoir
   std::size_t
   MeshFile::count(const std::string &expected)
   {
-    const auto n = number<std::size_t>(expected);
-    if (n > content.size())
+    return check_count(number<std::int64_t>(expected), expected);
+  }
+
+
+  std::size_t
+  MeshFile::check_count(const std::int64_t n, const std::string &expected) const
+  {
+    if (n < 0 || n > static_cast<std::int64_t>(content.size()))
       fail("expected " + expected + ", but found " + std::to_string(n) +
-           ", more than the file can hold; the file is damaged.");
+           (n < 0 ? "" : ", more than the file can hold") +
+           "; the file is damaged.");
     return n;
+  }
+
+
+  double
+  MeshFile::coordinate()
+  {
+    return check_coordinate(number<double>("a coordinate"));
+  }
+
+
+  double
+  MeshFile::check_coordinate(const double x) const
+  {
+    if (!(std::abs(x) <= largest_coordinate))
+      {
+        std::ostringstream text;
+        text << "a coordinate is " << x
+             << ", which is no place in a mesh; correct it.";
+        fail(text.str());
+      }
+    return x;
   }
 
 
@@ -134,6 +168,20 @@ namespace Voussoir
     if (position == content.size())
       fail("the file ends where " + expected +
            " should come; export it again, it is incomplete.");
+  }
+
+
+  std::string
+  in_quotes(const std::string_view text)
+  {
+    constexpr std::size_t longest = 40;
+    std::string           result(text.substr(0, longest));
+    std::replace_if(
+      result.begin(),
+      result.end(),
+      [](const unsigned char c) { return c < ' ' || c > '~'; },
+      '?');
+    return '"' + result + (text.size() > longest ? "..." : "") + '"';
   }
 
 

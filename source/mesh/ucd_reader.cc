@@ -35,7 +35,7 @@ namespace Voussoir
         const auto       number = file.number<std::int64_t>("a node number");
         dealii::Point<3> position;
         for (unsigned int d = 0; d < 3; ++d)
-          position[d] = file.number<double>("a coordinate");
+          position[d] = file.coordinate();
         mesh.vertices.emplace_back(number, position);
       }
 
@@ -70,8 +70,8 @@ namespace Voussoir
             else if (ignored_types.count(type) > 0)
               ++mesh.ignored[ignored_types.at(type)];
             else
-              file.fail("unknown type of cell \"" + std::string(type) +
-                        "\"; allowed are hex and quad (line, tri and pt are "
+              file.fail("unknown type of cell " + in_quotes(type) +
+                        "; allowed are hex and quad (line, tri and pt are "
                         "left out).");
             file.skip_line();
           }

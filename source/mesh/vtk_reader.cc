@@ -91,13 +91,13 @@ namespace Voussoir
         file.skip_line(); // title
         const auto format = file.word("ASCII or BINARY");
         if (format != "ASCII" && format != "BINARY")
-          file.fail("expected ASCII or BINARY, but found \"" +
-                    std::string(format) + "\"; the file is damaged.");
+          file.fail("expected ASCII or BINARY, but found " + in_quotes(format) +
+                    "; the file is damaged.");
         is_binary = (format == "BINARY");
         file.expect("DATASET");
         const std::string dataset(file.word("a kind of dataset"));
         if (dataset != "UNSTRUCTURED_GRID")
-          file.fail("the dataset is " + dataset +
+          file.fail("the dataset is " + in_quotes(dataset) +
                     ", but only UNSTRUCTURED_GRID is read; convert it, for "
                     "example by the filter \"Append Datasets\" of ParaView.");
       }
@@ -121,7 +121,7 @@ namespace Voussoir
           {
             const auto n = file.count("the number of cells");
             file.skip_line();
-            types = read_values(n, "int");
+            types = whole(read_values(n, "int"));
           }
         else if (section == "CELL_DATA" || section == "POINT_DATA")
           {
@@ -148,13 +148,13 @@ namespace Voussoir
         if (file.peek_line().substr(0, 7) == "OFFSETS")
           {
             file.expect("OFFSETS");
-            offsets = read_typed_values(n);
+            offsets = whole(read_typed_values(n));
             file.expect("CONNECTIVITY");
-            connectivity = read_typed_values(size);
+            connectivity = whole(read_typed_values(size));
           }
         else
           {
-            const std::vector<double> list = read_values(size, "int");
+            const std::vector<double> list = whole(read_values(size, "int"));
             offsets.push_back(0);
             for (std::size_t i = 0; i < size; i += 1 + list[i])
               {
@@ -194,9 +194,9 @@ namespace Voussoir
             for (unsigned int i = 0; i < n; ++i)
               {
                 const std::string array(file.word("the name of an array"));
-                const auto n_values = file.count("a number of components") *
-                                      file.count("a number of tuples");
-                keep_array(array, read_typed_values(n_values));
+                const auto n_components = file.count("a number of components");
+                const auto n_tuples     = file.count("a number of tuples");
+                keep_array(array, read_typed_values(n_components * n_tuples));
               }
           }
         else if (n_components.count(section) > 0)
@@ -211,8 +211,8 @@ namespace Voussoir
             keep_array(name, read_values(n_values, type));
           }
         else
-          file.fail("the section \"" + section +
-                    "\" is not read; save the mesh with its points, cells and "
+          file.fail("the section " + in_quotes(section) +
+                    " is not read; save the mesh with its points, cells and "
                     "scalar cell data only.");
       }
 
@@ -255,9 +255,21 @@ namespace Voussoir
         else if (type == "char" || type == "unsigned_char")
           read_binary<std::int8_t>(values, n);
         else
-          file.fail("numbers of type \"" + type +
-                    "\" are not read; save the mesh as ASCII with double and "
+          file.fail("numbers of type " + in_quotes(type) +
+                    " are not read; save the mesh as ASCII with double and "
                     "int data.");
+        return values;
+      }
+
+
+      // Numbers of points and cells, and types.
+      std::vector<double>
+      whole(std::vector<double> values) const
+      {
+        for (const double value : values)
+          if (!(std::abs(value) <= 1e15 && value == std::floor(value)))
+            file.fail("there are numbers of points or cells that are no whole "
+                      "numbers; the file is damaged.");
         return values;
       }
 
@@ -268,7 +280,8 @@ namespace Voussoir
       read_binary(std::vector<double> &values, const std::size_t n)
       {
         const std::string_view block =
-          file.bytes(n * sizeof(Number), "binary data");
+          file.bytes(sizeof(Number) * file.check_count(n, "a number of values"),
+                     "binary data");
         for (std::size_t i = 0; i < n; ++i)
           {
             std::array<char, sizeof(Number)> bytes;
@@ -340,7 +353,7 @@ namespace Voussoir
       std::string
       material_name(const double material) const
       {
-        if (material != std::floor(material) || std::abs(material) > 1e9)
+        if (material != std::floor(material) || !(std::abs(material) <= 1e9))
           throw UserError(file.name + ": the array of materials holds " +
                           std::to_string(material) +
                           "; only integers up to 1e9 are allowed.");

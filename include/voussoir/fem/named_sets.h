@@ -9,8 +9,9 @@ namespace Voussoir
 {
   /**
    * Calls @p visit for each face of this rank in these face sets, set by set.
-   * Refuses a list without sets and unknown sets; @p place names the entry in
-   * messages, as in `"Face sets" in section "Loads/push"`.
+   * Refuses a list without sets, unknown sets and inner faces, on all ranks
+   * together; @p place names the entry in messages, as in `"Face sets" in
+   * section "Loads/push"`.
    */
   void
   for_each_face(const Discretization           &discretization,
@@ -19,6 +20,13 @@ namespace Voussoir
                 const std::function<
                   void(const dealii::Triangulation<3>::active_cell_iterator &,
                        const unsigned int face)> &visit);
+
+  /** Refuses, on all ranks together, a face set that the mesh does not have or
+   *  that has faces with cells on both sides. */
+  void
+  check_outer_face_set(const Grid        &grid,
+                       const std::string &set,
+                       const std::string &place);
 
   /**
    * Calls @p visit once for each cell of this rank that is in any of these cell

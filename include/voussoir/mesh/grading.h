@@ -1,6 +1,8 @@
 #ifndef voussoir_mesh_grading_h
 #define voussoir_mesh_grading_h
 
+#include <voussoir/base/error.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -21,6 +23,10 @@ namespace Voussoir
     double              cell = std::min(size, largest);
     while (points.back() + 0.5 * cell < length || points.size() == 1)
       {
+        if (points.size() > 1000000)
+          throw UserError("In section \"Mesh\" the cells are so small, or the "
+                          "rock or water so long, that a million cells would "
+                          "lie in a row; change these entries.");
         points.push_back(points.back() + cell);
         cell = std::min(growth * cell, largest);
       }

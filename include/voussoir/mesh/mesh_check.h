@@ -3,18 +3,54 @@
 
 #include <voussoir/mesh/coarse_mesh.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <string>
 
 namespace Voussoir
 {
+  /** No vertex of a mesh lies further out, in whatever unit. */
+  constexpr double largest_coordinate = 1e12;
+
   /**
    * Throw UserError, with a sentence that begins with @p where, if the mesh is
    * empty, has coordinates that are no finite numbers, cells that name a vertex
-   * twice, duplicate cells, inverted or tangled cells, cells that overlap
-   * across a face, or faces with more than two cells.
+   * twice, or two vertices at one place, duplicate cells, inverted or tangled
+   * cells, cells that overlap across a face or in parts that share none, or
+   * faces with more than two cells. @p remedy says what to do about tangled
+   * cells.
    */
   void
-  check_mesh(const CoarseMesh &mesh, const std::string &where);
+  check_mesh(const CoarseMesh  &mesh,
+             const std::string &where,
+             const std::string &remedy = "improve the mesh there");
+
+  /**
+   * Throw UserError, with a sentence that begins with @p place, if so many
+   * cells need more memory than the machines of all ranks have; what each rank
+   * makes as a whole must fit into one.
+   */
+  void
+  check_size(const double       n_cells,
+             const unsigned int degree,
+             const std::string &place,
+             const MPI_Comm     communicator = MPI_COMM_SELF);
+
+  /** What hangs together by vertices and interfaces. */
+  struct MeshPart
+  {
+    std::string place; // "(x, y, z)" of a cell in it
+    bool        is_held;
+  };
+
+  /**
+   * The parts of a mesh that is split along the @p interfaces; those that have
+   * faces in the @p holding_sets are held.
+   */
+  std::vector<MeshPart>
+  find_parts(const CoarseMesh               &mesh,
+             const std::vector<std::string> &holding_sets,
+             const std::vector<std::string> &interfaces);
 
   /**
    * Some lines for the log: size, extent, volume, edges, worst corner, parts

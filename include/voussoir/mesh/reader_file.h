@@ -2,6 +2,7 @@
 #define voussoir_mesh_reader_file_h
 
 #include <charconv>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -62,6 +63,19 @@ namespace Voussoir
     std::size_t
     count(const std::string &expected);
 
+    /** @p n, the number of things that follow, unless the file cannot hold as
+     * many. */
+    std::size_t
+    check_count(const std::int64_t n, const std::string &expected) const;
+
+    /** The next word as a coordinate. */
+    double
+    coordinate();
+
+    /** @p x, unless no mesh has such a coordinate. */
+    double
+    check_coordinate(const double x) const;
+
     /** The @p text as a number; @p expected names it in an error. */
     template <typename Number>
     Number
@@ -81,6 +95,11 @@ namespace Voussoir
     std::size_t position = 0;
     std::size_t piece    = 0; // where the piece taken last begins
   };
+
+
+  /** What can be shown of a piece of a file, in quotation marks. */
+  std::string
+  in_quotes(const std::string_view text);
 
 
   /** Without the blanks, tabs and carriage returns at both ends. */
@@ -121,8 +140,7 @@ namespace Voussoir
       std::from_chars(text.data(), text.data() + text.size(), value);
     if (result.ec != std::errc() || result.ptr != text.data() + text.size())
       fail("expected " + expected + ", but found " +
-           (written.empty() ? "the end of the line" :
-                              "\"" + std::string(written) + "\"") +
+           (written.empty() ? "the end of the line" : in_quotes(written)) +
            "; the file is damaged or of another format.");
     return value;
   }

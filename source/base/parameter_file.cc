@@ -129,6 +129,21 @@ namespace Voussoir
       collect(nlohmann::json::parse(text.str()), "");
       return entries;
     }
+    // Names and titles come again in JSON, which is UTF-8.
+    void
+    check_encoding(const std::string &text, const std::string &place)
+    {
+      try
+        {
+          nlohmann::json(text).dump();
+        }
+      catch (const nlohmann::json::type_error &)
+        {
+          throw UserError(place + ": \"" + text +
+                          "\" is not in UTF-8; write it in that encoding, or "
+                          "without letters beyond a-z.");
+        }
+    }
   } // namespace
 
 
@@ -167,6 +182,7 @@ namespace Voussoir
   {
     for (const std::string &item : changes)
       {
+        check_encoding(item, "--set");
         const auto equals = item.find('=');
         if (equals == std::string::npos)
           throw UserError("--set \"" + item +
@@ -208,6 +224,7 @@ namespace Voussoir
         line = trim(line.substr(0, line.find('#')));
         if (line.empty())
           continue;
+        check_encoding(line, place);
 
         std::istringstream words(line);
         std::string        keyword, rest;

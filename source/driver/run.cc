@@ -19,53 +19,6 @@ namespace Voussoir
     {
       stop_requested = 1;
     }
-
-
-    Damping
-    adapted_damping(const DampingParameters &parameters, const Modes &modes)
-    {
-      Damping damping(parameters);
-      damping.adapt_to_modes(modes.frequencies());
-      return damping;
-    }
-
-
-    std::optional<double>
-    kept_step(const ResultFolder &folder)
-    {
-      if (!folder.restarts())
-        return {};
-      return folder.checkpoint().at("time step").get<double>();
-    }
-
-
-    /** The shortest of all records [s]; 0 if nothing is recorded. */
-    double
-    record_interval(const Model &model, const ResultFolder &folder)
-    {
-      double shortest = 0.;
-      if (folder.exists())
-        for (const auto &observer : model.parameters.observers)
-          {
-            const double interval = observer.second->record_interval();
-            if (interval > 0. && (shortest == 0. || interval < shortest))
-              shortest = interval;
-          }
-      return shortest;
-    }
-
-
-    std::unique_ptr<WaterMotion>
-    make_water(const Model      &model,
-               const Earthquake &earthquake,
-               const TimeStep   &time_step)
-    {
-      if (!model.reservoir)
-        return nullptr;
-      return std::make_unique<WaterMotion>(*model.reservoir,
-                                           earthquake.base,
-                                           time_step.length);
-    }
   } // namespace
 
 
@@ -74,19 +27,29 @@ namespace Voussoir
            const Modes        &modes,
            const ResultFolder &folder,
            Log                &log)
-    : model(model)
+    : Run(rest,
+          modes,
+          folder,
+          std::make_unique<RunSetup>(model, modes, folder, log),
+          log)
+  {}
+
+
+  Run::Run(const RestState          &rest,
+           const Modes              &modes,
+           const ResultFolder       &folder,
+           std::unique_ptr<RunSetup> made,
+           Log                      &log)
+    : setup(std::move(made))
+    , model(setup->model)
     , rest(rest)
     , modes(modes)
     , folder(folder)
     , log(log)
-    , damping(adapted_damping(model.parameters.damping, modes))
-    , time_step(model,
-                damping,
-                kept_step(folder),
-                record_interval(model, folder),
-                log)
-    , earthquake(model, damping, time_step, log)
-    , water(make_water(model, earthquake, time_step))
+    , damping(setup->damping)
+    , time_step(setup->time_step)
+    , earthquake(setup->earthquake)
+    , water(setup->water)
     , contact(rest.contact)
     , equation{model.discretization,
                model.internal_force,
@@ -100,17 +63,18 @@ namespace Voussoir
                time_step.closing_viscosity}
     , scheme(equation, time_step.leap_frog())
     , state(scheme.state_at_rest())
-    , observed(what_is_observed())
+    , observed(setup->observed(folder.path(),
+                               rest.initial,
+                               state.material_memory,
+                               contact ? &*contact : nullptr,
+                               log))
     , energy(equation, time_step.length)
     , checkpoint(model.discretization, folder.path() + "/checkpoint")
     , timer(std::cout, TimerOutput::never, TimerOutput::wall_times)
   {
-    for (const auto &observer : model.parameters.observers)
-      observer.second->check(observed);
-    // a case that is refused up to here leaves nothing behind
     if (folder.exists())
       open_output();
-    if (folder.restarts())
+    if (folder.exists() && folder.restarts())
       read_checkpoint();
     for (Projection *projection : equation.projections)
       projection->start(state);
@@ -180,6 +144,7 @@ namespace Voussoir
           }
       }
     finish();
+    refuse_missing_files();
   }
 
 
@@ -261,17 +226,17 @@ namespace Voussoir
     std::string written;
     if (folder.exists())
       {
-        write_fields(observed,
-                     {{&last_good.displacement, {"displacement"}},
-                      {&last_good.velocity, {"velocity"}}},
-                     &last_good.displacement,
-                     "last_good",
-                     last_good.time);
-        written =
-          "; the last good state is in " + folder.path() + "/last_good.vtu";
-        nlohmann::json result = summary();
-        result["verdict"]     = "stopped: " + reason;
-        write_summary(result);
+        const std::string picture =
+          write_fields(observed,
+                       {{&last_good.displacement, {"displacement"}},
+                        {&last_good.velocity, {"velocity"}}},
+                       &last_good.displacement,
+                       "last_good",
+                       last_good.time);
+        if (!picture.empty())
+          written =
+            "; the last good state is in " + folder.path() + "/" + picture;
+        write_summary(summary(), "stopped: " + reason);
       }
     std::ostringstream text;
     text << "Stopped at t = " << state.time << " s, because " << reason

@@ -29,6 +29,36 @@ namespace Voussoir
         log.line(parameters.title);
       return log;
     }
+
+
+    /** Refuses what cannot be computed or recorded before that costs time or
+     *  leaves something behind; then the folder is that of this run. */
+    std::unique_ptr<RunSetup>
+    checked_setup(const Model      &model,
+                  ResultFolder     &folder,
+                  const RunOptions &options,
+                  Log              &log)
+    {
+      auto setup = std::make_unique<RunSetup>(model, Modes(), folder, log);
+      check_modes(model);
+      if (folder.wanted() && !options.validate)
+        folder.claim(log);
+      return setup;
+    }
+
+
+    /** The setup again, if it depends on the modes. */
+    std::unique_ptr<RunSetup>
+    adapted_setup(std::unique_ptr<RunSetup> setup,
+                  const Modes              &modes,
+                  const ResultFolder       &folder,
+                  Log                      &log)
+    {
+      const Model &model = setup->model;
+      if (model.parameters.damping.modes.empty() || modes.list.empty())
+        return setup;
+      return std::make_unique<RunSetup>(model, modes, folder, log);
+    }
   } // namespace
 
 
@@ -38,8 +68,13 @@ namespace Voussoir
     : log(opened_log(parameters, options, communicator))
     , folder(parameters, options, log)
     , model(parameters, log)
+    , setup(checked_setup(model, folder, options, log))
     , rest(options.validate ? RestState(model) : find_rest(model, log))
     , modes(options.validate ? Modes() : find_modes(model, log))
-    , run(model, rest, modes, folder, log)
+    , run(rest,
+          modes,
+          folder,
+          adapted_setup(std::move(setup), modes, folder, log),
+          log)
   {}
 } // namespace Voussoir

@@ -139,9 +139,8 @@ namespace Voussoir
         }
       catch (const nlohmann::json::type_error &)
         {
-          throw UserError(place + ": \"" + text +
-                          "\" is not in UTF-8; write it in that encoding, or "
-                          "without letters beyond a-z.");
+          throw UserError(place + ": this is not in UTF-8; write it in that "
+                                  "encoding, or without letters beyond a-z.");
         }
     }
   } // namespace

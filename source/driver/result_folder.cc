@@ -57,7 +57,7 @@ namespace Voussoir
 
 
     bool
-    exists(const fs::path &file)
+    is_there(const fs::path &file)
     {
       std::error_code ignored;
       return fs::exists(file, ignored);
@@ -105,7 +105,7 @@ namespace Voussoir
       const std::string name = name_in(parameters);
       unsigned int      n    = 1;
       if (options.restart || !options.overwrite)
-        while (exists(numbered(name, n)))
+        while (is_there(numbered(name, n)))
           ++n;
       if (options.restart && n > 1)
         --n;
@@ -116,8 +116,8 @@ namespace Voussoir
                         "--restart.");
       if (const std::string reason = obstacle(folder); !reason.empty())
         refuse(folder, "cannot be written to because " + reason);
-      if (options.overwrite && !options.restart && exists(folder) &&
-          !exists(folder + "/parameters.prm"))
+      if (options.overwrite && !options.restart && is_there(folder) &&
+          !is_there(folder + "/parameters.prm"))
         throw UserError("--overwrite does not remove \"" + folder +
                         "\", which holds no parameters.prm of an earlier "
                         "run; choose another \"Folder\" in section "
@@ -149,7 +149,7 @@ namespace Voussoir
              name == "summary.json" || kind == ".csv" || kind == ".vtu" ||
              kind == ".pvd" ||
              (kind == ".txt" &&
-              exists(fs::path(file).replace_extension("pvd")));
+              is_there(fs::path(file).replace_extension("pvd")));
     }
 
 

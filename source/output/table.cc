@@ -103,7 +103,7 @@ namespace Voussoir
       return;
     std::ostringstream remark;
     remark << "; its lines from t = " << first_waiting
-           << " s on wait in memory until there is room";
+           << " s on wait in memory until that is possible";
     log->attempted(file.name(), file.flush(), remark.str());
   }
 } // namespace Voussoir

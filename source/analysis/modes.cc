@@ -85,10 +85,23 @@ namespace Voussoir
     }
 
 
+    AffineConstraints<double>
+    modal_constraints(const ModalModel &model, const ModeParameters &parameters)
+    {
+      const auto held = among(model.material_names, parameters.held_materials);
+      return model.discretization.make_constraints(
+        model.boundaries.supports_with_absorbing(false),
+        [&](const Grid::Cell &cell) {
+          return held[model.material_of_cell(cell)];
+        });
+    }
+
+
+    /** Zero where nothing can move. */
     Vector
-    structural_mass(const ModalModel     &model,
-                    const ModeParameters &parameters,
-                    const ElasticSolver  &solver)
+    structural_mass(const ModalModel                &model,
+                    const ModeParameters            &parameters,
+                    const AffineConstraints<double> &constraints)
     {
       const auto massless =
         among(model.material_names, parameters.massless_materials);
@@ -101,7 +114,10 @@ namespace Voussoir
                                density,
                                model.material_of_cell)
                       .mass;
-      solver.clear_held(mass);
+      for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)
+        if (constraints.is_constrained(
+              model.discretization.owned_dofs.nth_index_in_set(i)))
+          mass.local_element(i) = 0.;
       return mass;
     }
 
@@ -363,6 +379,16 @@ namespace Voussoir
   }
 
 
+  void
+  check_modes(const ModalModel &model, const ModeParameters &parameters)
+  {
+    block_size(structural_mass(model,
+                               parameters,
+                               modal_constraints(model, parameters)),
+               parameters.number);
+  }
+
+
   Modes
   find_modes(const ModalModel     &model,
              const ModeParameters &parameters,
@@ -373,20 +399,14 @@ namespace Voussoir
     const InternalForce   moduli_as_given = model.internal_force.with(
       std::vector<StiffnessFactors>(model.materials.size()));
 
-    const auto held = among(model.material_names, parameters.held_materials);
-    const AffineConstraints<double> constraints =
-      discretization.make_constraints(
-        model.boundaries.supports_with_absorbing(false),
-        [&](const Grid::Cell &cell) {
-          return held[model.material_of_cell(cell)];
-        });
+    const auto          constraints = modal_constraints(model, parameters);
     const ElasticSolver solver(discretization,
                                moduli_as_given,
                                model.materials,
                                model.material_of_cell,
                                constraints,
                                nullptr);
-    const Vector        mass = structural_mass(model, parameters, solver);
+    const Vector        mass = structural_mass(model, parameters, constraints);
     const ModalMass     modal_mass(mass,
                                parameters.water ? &model.terms : nullptr,
                                solver);

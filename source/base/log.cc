@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iomanip>
 
 namespace Voussoir
@@ -16,10 +17,13 @@ namespace Voussoir
   void
   Log::open(const std::string &filename, const bool append)
   {
+    missing.clear();
     if (!speaks)
       return;
-    file.open(filename, append ? std::ios::app : std::ios::trunc);
-    file << said_before_open << std::flush;
+    std::error_code none;
+    const auto      size = std::filesystem::file_size(filename, none);
+    file.open(filename, append && !none ? size : 0);
+    attempted(filename, file.flush());
   }
 
 
@@ -30,10 +34,9 @@ namespace Voussoir
       return;
     if (!quiet)
       std::cout << text << std::flush;
-    if (file.is_open())
-      file << text << std::flush;
-    else
-      said_before_open += text;
+    file.append(text);
+    if (!file.name().empty())
+      attempted(file.name(), file.flush());
   }
 
 
@@ -54,6 +57,30 @@ namespace Voussoir
   Log::warnings() const
   {
     return all_warnings;
+  }
+
+
+  void
+  Log::attempted(const std::string &file,
+                 const std::string &reason,
+                 const std::string &remark)
+  {
+    if (!speaks)
+      return;
+    if (!reason.empty())
+      {
+        missing[file] = reason;
+        warn('"', file, "\" cannot be written because ", reason, remark);
+      }
+    else if (missing.erase(file) > 0)
+      line("All of \"", file, "\" is written now.");
+  }
+
+
+  std::map<std::string, std::string>
+  Log::missing_files() const
+  {
+    return dealii::Utilities::MPI::broadcast(mpi_communicator, missing);
   }
 
 

@@ -1,5 +1,6 @@
 #include <voussoir/base/parallel_session.h>
 
+#include <csignal>
 #include <cstdlib>
 
 #if defined(__SSE__)
@@ -14,6 +15,8 @@ namespace Voussoir
     _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
     _mm_setcsr(_mm_getcsr() | 0x0040);
 #endif
+    // A file that grows beyond the limit of its size is an error like others.
+    std::signal(SIGXFSZ, SIG_IGN);
     // Shared file pointers are not used. Open MPI's component for them keeps a
     // file in the session's folder, which two programs without mpirun at the
     // same time take from each other, and complains on every file opened then.

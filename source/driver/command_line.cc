@@ -10,8 +10,8 @@
 #include <CLI/CLI.hpp>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <thread>
 
 namespace Voussoir
@@ -75,21 +75,47 @@ namespace Voussoir
       return item->second;
     }
 
-    // Everything that can be said of a case without stepping.
-    void
-    validate(Case &parameters, const MPI_Comm communicator)
+    /** What a step takes, by the first ones [s]. */
+    double
+    seconds_per_step(Run &run)
     {
-      RunOptions options;
-      options.quiet     = true;
-      options.no_output = true;
-      options.validate  = true;
-      Simulation simulation(parameters, options, communicator);
+      const auto  last  = std::min(run.n_steps(), 10ULL);
+      double      total = 0.;
+      const Timer clock;
+      while (run.state.step < last && total < 1.)
+        {
+          run.scheme.step(run.state);
+          total = Utilities::MPI::broadcast(run.log.communicator(),
+                                            clock.wall_time());
+        }
+      return last > 0 ? total / double(run.state.step) : 0.;
+    }
+
+
+    // Everything that can be said of a case without computing it.
+    void
+    validate(Case &parameters, RunOptions options, const MPI_Comm communicator)
+    {
+      options.quiet    = true;
+      options.validate = true;
+      Simulation   simulation(parameters, options, communicator);
+      Run         &run     = simulation.run;
+      const double seconds = double(run.n_steps()) * seconds_per_step(run);
+      Utilities::System::MemoryStats memory;
+      Utilities::System::get_memory_stats(memory);
+      const double megabytes =
+        Utilities::MPI::max(memory.VmHWM / 1024., communicator);
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        std::cout << "Valid: "
-                  << simulation.model.discretization.dof_handler.n_dofs()
-                  << " unknowns, time step " << simulation.run.time_step.length
-                  << " s, " << simulation.run.n_steps() << " steps."
-                  << std::endl;
+        std::cout
+          << "Valid: " << simulation.model.discretization.dof_handler.n_dofs()
+          << " unknowns, time step " << run.time_step.length << " s, "
+          << run.n_steps() << " steps.\nThe steps take about "
+          << duration_text(seconds) << " on "
+          << counted(Utilities::MPI::n_mpi_processes(communicator),
+                     "rank",
+                     "ranks")
+          << ", static state, modes and output not counted, and at least "
+          << std::lround(megabytes) << " MB of memory on each." << std::endl;
     }
 
 
@@ -112,8 +138,10 @@ namespace Voussoir
                         "\" exists; give another name, or \"--overwrite\".");
       std::ostringstream table;
       test.run(*materials[place - names.begin()], table);
-      if (!(std::ofstream(csv_file) << table.str()).flush())
-        throw UserError("\"" + csv_file + "\" cannot be written.");
+      if (const std::string reason = write_file(csv_file, table.str());
+          !reason.empty())
+        throw UserError("\"" + csv_file + "\" cannot be written because " +
+                        reason + "; give another name.");
       std::cout << "The test of material \"" << name << "\" is in " << csv_file
                 << std::endl;
     }
@@ -231,7 +259,8 @@ namespace Voussoir
         "Go on from the last checkpoint of the newest output folder");
       app.add_flag("--overwrite",
                    arguments.options.overwrite,
-                   "Replace an earlier output folder instead of numbering");
+                   "Replace the results in an earlier output folder instead "
+                   "of numbering");
     }
 
 
@@ -274,7 +303,7 @@ namespace Voussoir
                           arguments.options.overwrite);
         }
       else if (arguments.only_validate)
-        validate(parameters, communicator);
+        validate(parameters, arguments.options, communicator);
       else
         {
           listen_to_signals();

@@ -33,20 +33,36 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    ModalModel
+    modal_model(const Model &model)
+    {
+      const Case &parameters = model.parameters;
+      return {model.discretization,
+              model.internal_force,
+              parameters.material_names(),
+              model.materials,
+              model.material_of_cell(),
+              parameters.boundaries,
+              model.terms};
+    }
+  } // namespace
+
+
+  void
+  check_modes(const Model &model)
+  {
+    if (model.parameters.modes.number > 0)
+      check_modes(modal_model(model), model.parameters.modes);
+  }
+
+
   Modes
   find_modes(const Model &model, Log &log)
   {
-    const Case &parameters = model.parameters;
-    if (parameters.modes.number == 0)
+    if (model.parameters.modes.number == 0)
       return {};
-    return find_modes({model.discretization,
-                       model.internal_force,
-                       parameters.material_names(),
-                       model.materials,
-                       model.material_of_cell(),
-                       parameters.boundaries,
-                       model.terms},
-                      parameters.modes,
-                      log);
+    return find_modes(modal_model(model), model.parameters.modes, log);
   }
 } // namespace Voussoir

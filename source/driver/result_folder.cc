@@ -4,6 +4,10 @@
 #include <voussoir/driver/result_folder.h>
 #include <voussoir/output/checkpoint.h>
 
+#include <unistd.h>
+
+#include <cerrno>
+#include <climits>
 #include <filesystem>
 
 namespace Voussoir
@@ -13,49 +17,171 @@ namespace Voussoir
 
   namespace
   {
-    /** The folder that the case names and those with a number added, the newest
-     *  first. */
-    std::vector<std::string>
-    earlier_folders(const std::string &wanted, const MPI_Comm communicator)
+    /** What the first rank does for all: they throw what it throws. */
+    template <typename Action>
+    void
+    on_first_rank(const MPI_Comm communicator, const Action &action)
     {
-      std::vector<std::string> folders;
-      std::string              next = wanted;
+      std::string problem;
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        for (unsigned int n = 2; fs::exists(next); ++n)
+        try
           {
-            folders.insert(folders.begin(), next);
-            next = wanted + "-" + std::to_string(n);
+            action();
           }
-      return Utilities::MPI::broadcast(communicator, folders);
+        catch (const UserError &error)
+          {
+            problem = error.what();
+          }
+      problem = Utilities::MPI::broadcast(communicator, problem);
+      if (!problem.empty())
+        throw UserError(problem);
+    }
+
+
+    [[noreturn]] void
+    refuse(const std::string &folder, const std::string &why)
+    {
+      throw UserError("The output folder \"" + folder + "\" " + why +
+                      "; choose another \"Folder\" in section \"Output\".");
+    }
+
+
+    constexpr const char *still_going_on =
+      "is that of a run which is still going on";
+
+
+    std::string
+    lock_in(const std::string &folder)
+    {
+      return folder + "/.lock";
+    }
+
+
+    bool
+    is_there(const fs::path &file)
+    {
+      std::error_code ignored;
+      return fs::exists(file, ignored);
+    }
+
+
+    /** The n-th folder of this name. */
+    std::string
+    numbered(const std::string &name, const unsigned int n)
+    {
+      return n == 1 ? name : name + "-" + std::to_string(n);
     }
 
 
     std::string
-    wanted_folder(const Case &parameters)
+    name_in(const Case &parameters)
     {
-      return parameters.output.folder.empty() ?
-               "output/" + parameters.file.name() :
-               parameters.output.folder;
+      std::string name = parameters.output.folder.empty() ?
+                           "output/" + parameters.file.name() :
+                           parameters.output.folder;
+      while (name.size() > 1 && name.back() == '/')
+        name.pop_back();
+      return name;
+    }
+
+
+    /** Why nothing can be written to a folder, there or to be made, as far as
+     *  that shows without trying; empty: it can. */
+    std::string
+    obstacle(const fs::path &folder)
+    {
+      for (fs::path there = fs::absolute(folder);; there = there.parent_path())
+        if (there.filename().string().size() > NAME_MAX)
+          return reason_of(ENAMETOOLONG);
+        else if (::access(there.c_str(), W_OK | X_OK) == 0)
+          return fs::is_directory(there) ? "" : reason_of(ENOTDIR);
+        else if (errno != ENOENT)
+          return reason_of(errno);
+    }
+
+
+    /** How many folders of this name there are. */
+    unsigned int
+    count(const std::string &name)
+    {
+      unsigned int n = 0;
+      while (is_there(numbered(name, n + 1)))
+        ++n;
+      return n;
+    }
+
+
+    void
+    check_writable(const std::string &folder)
+    {
+      if (const std::string reason = obstacle(folder); !reason.empty())
+        refuse(folder, "cannot be written to because " + reason);
+      if (FileLock::is_taken(lock_in(folder)))
+        refuse(folder, still_going_on);
     }
 
 
     std::string
-    new_folder(const Case       &parameters,
-               const RunOptions &options,
-               const MPI_Comm    communicator)
+    new_folder(const Case &parameters, const RunOptions &options)
     {
-      const std::string wanted = wanted_folder(parameters);
-      if (options.overwrite)
-        {
-          if (fs::exists(wanted) && !fs::exists(wanted + "/parameters.prm"))
-            throw UserError("--overwrite does not remove \"" + wanted +
-                            "\", which holds no parameters.prm of an earlier "
-                            "run; choose another \"Folder\" in section "
-                            "\"Output\".");
-          return wanted;
-        }
-      const std::size_t n = earlier_folders(wanted, communicator).size();
-      return n == 0 ? wanted : wanted + "-" + std::to_string(n + 1);
+      const std::string name = name_in(parameters);
+      const std::string folder =
+        numbered(name, options.overwrite ? 1 : count(name) + 1);
+      check_writable(folder);
+      if (options.overwrite && is_there(folder) &&
+          !is_there(folder + "/parameters.prm"))
+        throw UserError("--overwrite does not remove \"" + folder +
+                        "\", which holds no parameters.prm of an earlier "
+                        "run; choose another \"Folder\" in section "
+                        "\"Output\".");
+      return folder;
+    }
+
+
+    /** Makes a folder, and those that it is in; returns whether it was not
+     *  there before. */
+    bool
+    make_folder(const std::string &folder)
+    {
+      std::error_code problem;
+      fs::create_directories(fs::absolute(folder).parent_path(), problem);
+      const bool made = !problem && fs::create_directory(folder, problem);
+      if (problem)
+        refuse(folder, "cannot be made because " + reason_of(problem.value()));
+      return made;
+    }
+
+
+    /** Whether a run writes files of this kind to its folder. */
+    bool
+    is_result(const fs::path &file)
+    {
+      const std::string name = file.filename(), kind = file.extension();
+      return name == "log.txt" || name == "parameters.prm" ||
+             name == "summary.json" || kind == ".csv" || kind == ".vtu" ||
+             kind == ".pvd" ||
+             (kind == ".txt" &&
+              is_there(fs::path(file).replace_extension("pvd")));
+    }
+
+
+    /** Removes what a run has written to its folder, and nothing else, such as
+     *  the folder of another run there. */
+    void
+    remove_results(const std::string &folder)
+    {
+      std::vector<fs::path> results{fs::path(folder) / "checkpoint"};
+      for (const auto &entry : fs::directory_iterator(folder))
+        if (!entry.is_directory() && is_result(entry))
+          results.push_back(entry);
+        else if (entry.is_directory())
+          for (const auto &picture : fs::directory_iterator(entry))
+            if (const std::string name = picture.path().filename();
+                name.rfind(entry.path().filename().string() + "-", 0) == 0 &&
+                is_result(picture))
+              results.push_back(picture);
+      for (const fs::path &result : results)
+        fs::remove_all(result);
     }
   } // namespace
 
@@ -66,36 +192,40 @@ namespace Voussoir
     : parameters(parameters)
     , options(options)
   {
-    if (options.no_output)
+    if (!wanted())
       return;
     if (options.restart)
       find_checkpoint(log);
     else
-      chosen = new_folder(parameters, options, log.communicator());
-    log.line("Results go to ", chosen);
+      {
+        on_first_rank(log.communicator(),
+                      [&] { chosen = new_folder(parameters, options); });
+        chosen = Utilities::MPI::broadcast(log.communicator(), chosen);
+      }
   }
 
 
   void
   ResultFolder::find_checkpoint(Log &log)
   {
-    const std::string        wanted = wanted_folder(parameters);
+    const std::string  name = name_in(parameters);
+    const unsigned int n =
+      Utilities::MPI::broadcast(log.communicator(), count(name));
     std::vector<std::string> damaged;
-    for (const std::string &folder :
-         earlier_folders(wanted, log.communicator()))
+    for (unsigned int i = n; i > 0 && from.empty(); --i)
       {
-        chosen = folder;
+        chosen = numbered(name, i);
         from   = Checkpoint(checkpoints(), log.communicator()).newest(damaged);
-        if (!from.empty())
-          break;
       }
     if (from.empty())
       throw UserError(
-        "There is no checkpoint in \"" + wanted + "\" to restart from" +
+        "There is no checkpoint in \"" + numbered(name, std::max(n, 1u)) +
+        "\" to restart from" +
         (damaged.empty() ? "" : " (" + join(damaged, "; ") + ")") +
         "; run the case without --restart.");
     for (const std::string &file : damaged)
       log.line("Not used: the checkpoint ", file);
+    on_first_rank(log.communicator(), [&] { check_writable(chosen); });
     header = read_state_header(from, log.communicator());
     check_identity(parameters, header.at("identity"), from);
     const double reached = header.at("time");
@@ -110,42 +240,65 @@ namespace Voussoir
 
 
   void
-  ResultFolder::make(Log &log) const
+  ResultFolder::claim(Log &log)
   {
-    const bool first =
-      Utilities::MPI::this_mpi_process(log.communicator()) == 0;
-    std::error_code problem;
-    if (first)
-      {
-        if (options.overwrite && !options.restart)
-          fs::remove_all(chosen, problem);
-        if (!problem)
-          fs::create_directories(chosen, problem);
-      }
-    if (Utilities::MPI::max(problem ? 1 : 0, log.communicator()) == 1)
-      throw UserError("The output folder \"" + chosen +
-                      "\" cannot be made; choose another \"Folder\" in "
-                      "section \"Output\".");
+    on_first_rank(log.communicator(), [&] {
+      bool made = make_folder(chosen);
+      if (!made && !options.restart && !options.overwrite)
+        for (unsigned int n = 2; !made; ++n) // another run was faster
+          {
+            chosen = numbered(name_in(parameters), n);
+            made   = make_folder(chosen);
+          }
+      if (!lock.take(lock_in(chosen)))
+        refuse(chosen, still_going_on);
+      try
+        {
+          if (!made && !options.restart)
+            remove_results(chosen);
+        }
+      catch (const fs::filesystem_error &error)
+        {
+          refuse(chosen,
+                 "cannot be emptied: " + error.path1().string() + ", because " +
+                   reason_of(error.code().value()));
+        }
+      std::ostringstream text;
+      parameters.prm.print_parameters(text, ParameterHandler::Text);
+      if (const std::string reason =
+            write_file(chosen + "/parameters.prm", text.str());
+          !reason.empty())
+        {
+          if (made)
+            fs::remove_all(chosen);
+          refuse(chosen, "cannot be written to because " + reason);
+        }
+    });
+    chosen  = Utilities::MPI::broadcast(log.communicator(), chosen);
+    claimed = true;
+    log.line("Results go to ", chosen);
     log.open(chosen + "/log.txt", options.restart);
-    if (first)
-      {
-        std::ofstream prm(chosen + "/parameters.prm");
-        parameters.prm.print_parameters(prm, ParameterHandler::Text);
-      }
   }
 
 
-  std::string
-  ResultFolder::path() const
+  bool
+  ResultFolder::wanted() const
   {
-    return chosen;
+    return !options.no_output;
   }
 
 
   bool
   ResultFolder::exists() const
   {
-    return !chosen.empty();
+    return claimed;
+  }
+
+
+  std::string
+  ResultFolder::path() const
+  {
+    return claimed ? chosen : "";
   }
 
 
@@ -163,17 +316,17 @@ namespace Voussoir
   }
 
 
-  const nlohmann::json &
-  ResultFolder::checkpoint() const
-  {
-    return header;
-  }
-
-
   const std::string &
   ResultFolder::checkpoint_file() const
   {
     return from;
+  }
+
+
+  const nlohmann::json &
+  ResultFolder::checkpoint() const
+  {
+    return header;
   }
 
 

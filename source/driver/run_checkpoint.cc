@@ -5,10 +5,7 @@
 #include <voussoir/base/version.h>
 #include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/run.h>
-#include <voussoir/driver/stored_rest.h>
 #include <voussoir/fem/nodal_values.h>
-
-#include <filesystem>
 
 namespace Voussoir
 {
@@ -99,29 +96,6 @@ namespace Voussoir
                          {"free field", nullptr},
                          {"sums of ranks", nullptr}};
     return content;
-  }
-
-
-  void
-  Run::write_first_checkpoint()
-  {
-    try
-      {
-        std::error_code problem; // shows when the files are written
-        if (Utilities::MPI::this_mpi_process(log.communicator()) == 0)
-          std::filesystem::create_directories(folder.checkpoints(), problem);
-        const std::string place = folder.checkpoints() + "/";
-        if (rest.initial.displacement.size() > 0)
-          store_rest(model, rest, place + rest_file);
-        if (!modes.list.empty())
-          store_modes(model, modes, place + modes_file);
-      }
-    catch (const UserError &error)
-      {
-        log.warn("a restart will have to find the state at rest again: ",
-                 error.what());
-      }
-    write_checkpoint();
   }
 
 

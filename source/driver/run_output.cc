@@ -1,5 +1,7 @@
 // What a run says and writes of itself: its files, progress, summary.
 
+#include <voussoir/base/error.h>
+#include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/run.h>
 #include <voussoir/output/field_writer.h>
@@ -11,33 +13,11 @@ namespace Voussoir
 {
   using namespace dealii;
 
-  ObservedModel
-  Run::what_is_observed() const
-  {
-    return {model.discretization,
-            model.materials,
-            model.material_of_cell(),
-            state.material_memory,
-            rest.initial,
-            water.get(),
-            contact ? &*contact : nullptr,
-            folder.path(),
-            time_step.length,
-            model.parameters.time.end_time,
-            model.carried_frequency(),
-            earthquake.base,
-            ResultNames(model.parameters.material_names(),
-                        model.grid,
-                        contact ? &*contact : nullptr)};
-  }
-
-
   void
   Run::open_output()
   {
-    folder.make(log);
     write_modes();
-    energy.open(folder.path(), folder.start_time(), folder.restarts());
+    energy.open(folder.path(), folder.start_time(), folder.restarts(), log);
     for (const auto &observer : model.parameters.observers)
       observer.second->prepare(observed,
                                folder.start_time(),
@@ -128,10 +108,7 @@ namespace Voussoir
       result["materials"] =
         memory_summary(observed, model.parameters.material_names());
     result["energy balance"] = energy.summary();
-    result["verdict"] =
-      log.warnings().empty() ? "no objection" : "with warnings, see there";
-    result["warnings"] = log.warnings();
-    result["names"]    = observed.names.json();
+    result["names"]          = observed.names.json();
     return result;
   }
 
@@ -146,14 +123,19 @@ namespace Voussoir
         TimerOutput::Scope scope(timer, "output");
         for (const auto &observer : model.parameters.observers)
           observer.second->finish(state, result);
-        write_summary(result);
+        write_summary(result,
+                      log.warnings().empty() ? "no objection" :
+                                               "with warnings, see there");
       }
 
     std::ostringstream text;
-    text << std::setprecision(3) << "Done: " << state.step - first_step
-         << " steps in " << duration_text(loop_seconds) << ", "
-         << throughput(loop_seconds) << " MDOF-steps/s, energy error "
-         << 100. * energy.relative_error() << " %\n";
+    const bool         complete = log.missing_files().empty();
+    text << std::setprecision(3)
+         << (complete ? "Done: " : "Done, but not all is written: ")
+         << state.step - first_step << " steps in "
+         << duration_text(loop_seconds) << ", " << throughput(loop_seconds)
+         << " MDOF-steps/s, energy error " << 100. * energy.relative_error()
+         << " %\n";
     if (contact)
       text << "Contact: "
            << 100. * result.at("contact share of the loop").get<double>()
@@ -166,11 +148,35 @@ namespace Voussoir
 
 
   void
-  Run::write_summary(const nlohmann::json &result) const
+  Run::write_summary(nlohmann::json result, const std::string &verdict) const
   {
-    if (Utilities::MPI::this_mpi_process(log.communicator()) == 0)
-      std::ofstream(folder.path() + "/summary.json")
-        << result.dump(2) << std::endl;
+    const auto missing = log.missing_files();
+    if (Utilities::MPI::this_mpi_process(log.communicator()) != 0)
+      return;
+    result["verdict"]  = verdict;
+    result["warnings"] = log.warnings();
+    if (!missing.empty())
+      result["files not written"] = missing;
+    const std::string name = folder.path() + "/summary.json";
+    log.attempted(name, write_file(name, result.dump(2) + '\n'));
+  }
+
+
+  void
+  Run::refuse_missing_files() const
+  {
+    const auto missing = log.missing_files();
+    if (missing.empty())
+      return;
+    const auto &[name, reason] = *missing.begin();
+    throw UserError(
+      "Done, but \"" + name + "\" " +
+      (missing.size() > 1 ?
+         "and " + counted(missing.size() - 1, "other file", "other files") +
+           " (see the warnings) " :
+         "") +
+      "could not be written because " + reason +
+      "; see to it and run the case again.");
   }
 
 

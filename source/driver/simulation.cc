@@ -1,3 +1,4 @@
+#include <voussoir/base/error.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/simulation.h>
 #include <voussoir/driver/stored_rest.h>
@@ -32,8 +33,24 @@ namespace Voussoir
     }
 
 
-    /** Reads what the run that goes on from its checkpoint has stored, or else
-     *  finds it. */
+    /** Refuses what cannot be computed or recorded before that costs time or
+     *  leaves something behind; then the folder is that of this run. */
+    std::unique_ptr<RunSetup>
+    checked_setup(const Model      &model,
+                  ResultFolder     &folder,
+                  const RunOptions &options,
+                  Log              &log)
+    {
+      auto setup = std::make_unique<RunSetup>(model, Modes(), folder, log);
+      check_modes(model);
+      if (folder.wanted() && !options.validate)
+        folder.claim(log);
+      return setup;
+    }
+
+
+    /** Takes what the run that goes on from its checkpoint has stored in the
+     *  file, or else finds and stores it, so that no restart finds it again. */
     template <typename Result>
     Result
     stored_or_found(const Model        &model,
@@ -41,14 +58,63 @@ namespace Voussoir
                     const std::string  &name,
                     Result (*read)(const Model &, const std::string &),
                     Result (*find)(const Model &, Log &),
+                    void (*store)(const Model &,
+                                  const Result &,
+                                  const std::string &),
                     Log &log)
     {
       const std::string file = folder.checkpoints() + "/" + name;
-      if (!folder.restarts() ||
-          !damage_of_state(file, log.communicator()).empty())
-        return find(model, log);
-      log.line("Taken from ", file);
-      return read(model, file);
+      if (folder.exists() && folder.restarts() &&
+          damage_of_state(file, log.communicator()).empty())
+        {
+          log.line("Taken from ", file);
+          return read(model, file);
+        }
+      const Result result = find(model, log);
+      if (folder.exists() && model.parameters.output.has_checkpoints())
+        try
+          {
+            store(model, result, file);
+          }
+        catch (const UserError &error)
+          {
+            log.warn("a restart will have to find this again: ", error.what());
+          }
+      return result;
+    }
+
+
+    RestState
+    rest_of(const Model &model, const ResultFolder &folder, Log &log)
+    {
+      if (model.parameters.static_state.stage_names().empty())
+        return RestState(model);
+      return stored_or_found(
+        model, folder, "rest.h5", read_rest, find_rest, store_rest, log);
+    }
+
+
+    Modes
+    modes_of(const Model &model, const ResultFolder &folder, Log &log)
+    {
+      if (model.parameters.modes.number == 0)
+        return {};
+      return stored_or_found(
+        model, folder, "modes.h5", read_modes, find_modes, store_modes, log);
+    }
+
+
+    /** The setup again, if it depends on the modes. */
+    std::unique_ptr<RunSetup>
+    adapted_setup(std::unique_ptr<RunSetup> setup,
+                  const Modes              &modes,
+                  const ResultFolder       &folder,
+                  Log                      &log)
+    {
+      const Model &model = setup->model;
+      if (model.parameters.damping.modes.empty() || modes.list.empty())
+        return setup;
+      return std::make_unique<RunSetup>(model, modes, folder, log);
     }
   } // namespace
 
@@ -59,17 +125,13 @@ namespace Voussoir
     : log(opened_log(parameters, options, communicator))
     , folder(parameters, options, log)
     , model(parameters, log)
-    , rest(
-        options.validate ?
-          RestState(model) :
-          stored_or_found(model, folder, rest_file, read_rest, find_rest, log))
-    , modes(options.validate ? Modes() :
-                               stored_or_found(model,
-                                               folder,
-                                               modes_file,
-                                               read_modes,
-                                               find_modes,
-                                               log))
-    , run(model, rest, modes, folder, log)
+    , setup(checked_setup(model, folder, options, log))
+    , rest(options.validate ? RestState(model) : rest_of(model, folder, log))
+    , modes(options.validate ? Modes() : modes_of(model, folder, log))
+    , run(rest,
+          modes,
+          folder,
+          adapted_setup(std::move(setup), modes, folder, log),
+          log)
   {}
 } // namespace Voussoir

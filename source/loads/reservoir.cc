@@ -6,7 +6,6 @@
 #include <voussoir/loads/reservoir.h>
 #include <voussoir/mesh/reservoir_mesh.h>
 
-#include <deal.II/numerics/data_out.h>
 #include <deal.II/numerics/rtree.h>
 
 #include <sstream>
@@ -312,24 +311,4 @@ namespace Voussoir
     flux.compress(VectorOperation::add);
   }
 
-
-  void
-  Reservoir::write(const Vector      &pressure,
-                   const std::string &file,
-                   const double       time) const
-  {
-    Vector full = space.create_ghosted_vector();
-    full.copy_locally_owned_data_from(pressure);
-    full *= 1e-6;
-    full.update_ghost_values();
-    DataOut<3> data_out;
-    data_out.attach_dof_handler(space.dof_handler);
-    data_out.add_data_vector(full, "pressure_MPa");
-    DataOutBase::VtkFlags flags;
-    flags.time              = time;
-    flags.compression_level = DataOutBase::VtkFlags::best_speed;
-    data_out.set_flags(flags);
-    data_out.build_patches(space.mapping, space.fe.degree);
-    data_out.write_vtu_in_parallel(file, space.grid.communicator());
-  }
 } // namespace Voussoir

@@ -61,18 +61,16 @@ namespace Voussoir
                     const nlohmann::json    &header,
                     const StateContent      &content) const
   {
-    std::error_code problem; // shows when the file is written
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      fs::create_directories(folder, problem);
     write_state(folder + "/" + file_name(step), header, content, communicator);
     // the one before stays; newer ones are damaged, or this run would be older
     const std::string written = folder + "/" + file_name(step);
     const auto        all     = files();
     const auto        place   = std::find(all.begin(), all.end(), written);
+    std::error_code   ignored;
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       for (auto file = all.begin(); file != all.end(); ++file)
         if (file < place || file > place + 1)
-          fs::remove(*file, problem);
+          fs::remove(*file, ignored);
   }
 
 

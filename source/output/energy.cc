@@ -31,9 +31,10 @@ namespace Voussoir
   void
   EnergyBalance::open(const std::string &folder,
                       const double       start_time,
-                      const bool         restarted)
+                      const bool         restarted,
+                      Log               &log)
   {
-    table.open(equation.discretization.grid.communicator(),
+    table.open(log,
                folder + "/energy.csv",
                {"kinetic [J]",
                 "strain [J]",

@@ -46,6 +46,7 @@ namespace Voussoir
                      const std::string              &kind,
                      const std::vector<std::string> &all_names)
     : folder(model.folder)
+    , log(model.log)
     , discretization(model.discretization)
     , kind(kind)
     , all_names(all_names)
@@ -302,7 +303,7 @@ namespace Voussoir
     all_texts.push_back({kind + "_names", all_names});
     SurfaceOutput     output(std::move(patches), all_fields);
     const std::string file = name + ".vtu";
-    write_vtu(output, folder + "/" + file, time, all_texts, communicator());
-    return file;
+    return write_vtu(output, folder + "/" + file, time, all_texts, log) ? file :
+                                                                          "";
   }
 } // namespace Voussoir

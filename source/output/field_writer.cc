@@ -197,12 +197,9 @@ namespace Voussoir
       data_out.add_data_vector(values, vtk_name(memory_name));
 
     data_out.build_patches(discretization.mapping, discretization.degree);
-    const std::string file = name + ".vtu";
-    write_vtu(data_out,
-              model.folder + "/" + file,
-              time,
-              texts(model),
-              discretization.grid.communicator());
-    return file;
+    const std::string file    = name + ".vtu";
+    const bool        written = write_vtu(
+      data_out, model.folder + "/" + file, time, texts(model), model.log);
+    return written ? file : "";
   }
 } // namespace Voussoir

@@ -87,7 +87,7 @@ namespace Voussoir
                 columns.push_back(point.name + ' ' + all_quantities[k].name +
                                   ' ' + "xyz"[d] + relative + " [" +
                                   all_quantities[k].unit + ']');
-        table.open(model.discretization.grid.communicator(),
+        table.open(model.log,
                    model.folder + "/histories.csv",
                    columns,
                    model.time_step,

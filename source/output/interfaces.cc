@@ -98,7 +98,7 @@ namespace Voussoir
         safety_of_blocks.assign(blocks.size(), {});
         energies_at_start = energies();
 
-        table.open(communicator,
+        table.open(observed.log,
                    observed.folder + "/interfaces.csv",
                    columns(),
                    observed.time_step,

@@ -3,7 +3,6 @@
 
 #include <deal.II/base/data_out_base.h>
 
-#include <filesystem>
 #include <fstream>
 #include <iomanip>
 
@@ -54,9 +53,9 @@ namespace Voussoir
                          const double         start_time,
                          const bool           restarted)
   {
-    folder       = model.folder;
-    time_step    = model.time_step;
-    communicator = model.discretization.grid.communicator();
+    folder    = model.folder;
+    time_step = model.time_step;
+    log       = &model.log;
     pictures.clear();
     if (!restarted)
       return;
@@ -83,9 +82,6 @@ namespace Voussoir
   std::string
   PictureSeries::next_name(const State &state) const
   {
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      std::filesystem::create_directories(folder + "/" + name);
-    MPI_Barrier(communicator);
     std::ostringstream text;
     text << name << '/' << name << '-' << std::setw(8) << std::setfill('0')
          << state.step;
@@ -96,15 +92,19 @@ namespace Voussoir
   void
   PictureSeries::add(const double time, const std::string &file)
   {
-    pictures.emplace_back(time, file);
-    if (Utilities::MPI::this_mpi_process(communicator) != 0)
+    if (file.empty())
       return;
-    std::ofstream pvd(folder + "/" + name + ".pvd");
+    pictures.emplace_back(time, file);
+    if (Utilities::MPI::this_mpi_process(log->communicator()) != 0)
+      return;
+    std::ostringstream pvd, text;
     DataOutBase::write_pvd_record(pvd, pictures);
-    std::ofstream text(folder + "/" + name + ".txt");
     text << std::setprecision(17);
     for (const auto &picture : pictures)
       text << picture.first << ' ' << picture.second << '\n';
+    const std::string list = folder + "/" + name;
+    log->attempted(list + ".pvd", write_file(list + ".pvd", pvd.str()));
+    log->attempted(list + ".txt", write_file(list + ".txt", text.str()));
   }
 
 

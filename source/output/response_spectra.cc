@@ -66,8 +66,8 @@ namespace Voussoir
       void
       prepare(const ObservedModel &model, const double, const bool) override
       {
-        folder       = model.folder;
-        communicator = model.discretization.grid.communicator();
+        folder = model.folder;
+        log    = &model.log;
         sample_step =
           model.time_step *
           std::max(1., std::floor(interval / model.time_step + 1e-9));
@@ -110,8 +110,7 @@ namespace Voussoir
                 columns.back(),
                 summary["response spectra"][name][std::string(1, component)]);
             }
-        if (Utilities::MPI::this_mpi_process(communicator) == 0)
-          write(titles, columns);
+        write(titles, columns);
       }
 
       nlohmann::json
@@ -171,15 +170,18 @@ namespace Voussoir
       write(const std::vector<std::string>         &titles,
             const std::vector<std::vector<double>> &columns) const
       {
-        std::ofstream file(folder + "/response_spectra.csv");
-        file << csv_heading(titles) << '\n';
+        if (Utilities::MPI::this_mpi_process(log->communicator()) != 0)
+          return;
+        std::string text = csv_heading(titles) + '\n';
         for (unsigned int i = 0; i < columns[0].size(); ++i)
           {
             std::vector<double> line;
             for (const std::vector<double> &column : columns)
               line.push_back(column[i]);
-            file << csv_line(line) << '\n';
+            text += csv_line(line) + '\n';
           }
+        const std::string file = folder + "/response_spectra.csv";
+        log->attempted(file, write_file(file, text));
       }
 
       std::string  components    = "x, y, z";
@@ -191,7 +193,7 @@ namespace Voussoir
       PointRecorder recorder{section, "Reference"};
 
       std::string                      folder;
-      MPI_Comm                         communicator;
+      Log                             *log = nullptr;
       std::vector<unsigned int>        directions;
       double                           sample_step = 0.; // [s]
       std::vector<std::vector<double>> accelerations;    // by point, direction

@@ -87,7 +87,7 @@ namespace Voussoir
           for (const Quantity &quantity : quantities)
             columns.push_back(line.name + ' ' + quantity.name + " [" +
                               quantity.unit + ']');
-        table.open(communicator,
+        table.open(model.log,
                    model.folder + "/section_forces.csv",
                    columns,
                    model.time_step,

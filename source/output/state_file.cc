@@ -586,6 +586,11 @@ namespace Voussoir
   {
     const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
     const std::string unfinished = file + ".unfinished";
+    std::error_code   ignored; // shows when the file is written
+    if (first)
+      std::filesystem::create_directories(
+        std::filesystem::path(file).parent_path(), ignored);
+    MPI_Barrier(communicator);
 
     std::string problem = problem_of(communicator, [&] {
       nlohmann::json contents{{"format", format},
@@ -634,10 +639,7 @@ namespace Voussoir
     if (problem.empty())
       return;
     if (first)
-      {
-        std::error_code ignored;
-        std::filesystem::remove(unfinished, ignored);
-      }
+      std::filesystem::remove(unfinished, ignored);
     throw UserError("\"" + file + "\" could not be written: " + problem + ".");
   }
 

@@ -1,8 +1,8 @@
 #include <voussoir/output/table.h>
 
 #include <cmath>
+#include <fstream>
 #include <iomanip>
-#include <sstream>
 
 namespace Voussoir
 {
@@ -39,52 +39,71 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    /** Bytes of the heading and the lines before a time; what is cut or comes
+     *  later is of a run that was interrupted. */
+    std::uintmax_t
+    size_before(const std::string &filename, const double time)
+    {
+      std::ifstream  file(filename);
+      std::uintmax_t size = 0;
+      for (std::string line; std::getline(file, line) && !file.eof();
+           size += line.size() + 1)
+        if (size > 0 && std::strtod(line.c_str(), nullptr) >= time)
+          break;
+      return size;
+    }
+  } // namespace
+
+
   void
-  TimeTable::open(const MPI_Comm                  communicator,
+  TimeTable::open(Log                            &log,
                   const std::string              &filename,
                   const std::vector<std::string> &columns,
                   const double                    time_step,
                   const double                    start_time,
                   const bool                      restarted)
   {
-    if (dealii::Utilities::MPI::this_mpi_process(communicator) != 0)
+    if (dealii::Utilities::MPI::this_mpi_process(log.communicator()) != 0)
       return;
-    std::vector<std::string> lines;
-    if (restarted)
-      {
-        std::ifstream old(filename);
-        for (std::string line; std::getline(old, line);)
-          if (lines.empty() ||
-              std::strtod(line.c_str(), nullptr) < start_time - 0.5 * time_step)
-            lines.push_back(line);
-      }
-    if (lines.empty())
+    this->log     = &log;
+    first_waiting = start_time;
+    const std::uintmax_t kept =
+      restarted ? size_before(filename, start_time - 0.5 * time_step) : 0;
+    file = GrowingFile();
+    file.open(filename, kept);
+    if (kept == 0)
       {
         std::vector<std::string> titles = columns;
         titles.insert(titles.begin(), "time [s]");
-        lines.push_back(csv_heading(titles));
+        file.append(csv_heading(titles) + '\n');
       }
-    file = std::ofstream(filename);
-    for (const std::string &line : lines)
-      file << line << '\n';
-    file.flush();
+    flush();
   }
 
 
   void
   TimeTable::write(const double time, const std::vector<double> &values)
   {
-    if (!file.is_open())
+    if (file.name().empty())
       return;
+    if (!file.has_waiting())
+      first_waiting = time;
     std::vector<double> line{time};
     line.insert(line.end(), values.begin(), values.end());
-    file << csv_line(line) << '\n';
+    file.append(csv_line(line) + '\n');
   }
 
 
   void
   TimeTable::flush()
   {
-    file.flush();
+    if (file.name().empty())
+      return;
+    std::ostringstream remark;
+    remark << "; its lines from t = " << first_waiting
+           << " s on wait in memory until that is possible";
+    log->attempted(file.name(), file.flush(), remark.str());
   }
 } // namespace Voussoir

@@ -1,9 +1,5 @@
-#include <voussoir/base/error.h>
 #include <voussoir/output/vtu_file.h>
 
-#include <deal.II/base/mpi.h>
-
-#include <fstream>
 #include <iomanip>
 #include <sstream>
 
@@ -41,61 +37,67 @@ namespace Voussoir
     }
 
 
-    /** Puts the field data in before the end of the file, since deal.II writes
-     *  no texts. The time is among them: of several elements of field data VTK
-     *  reads the last one only.
-     *  @return whether that was possible */
-    bool
-    add_field_data(const std::string &file, const std::string &data)
+    /** The patches of one rank without what comes before and after them in a
+     *  file; nothing if there are none, since ParaView takes no empty piece at
+     *  the beginning. */
+    std::string
+    piece_of(const std::string &file)
     {
-      std::ostringstream end;
-      DataOutBase::write_vtu_footer(end);
-      std::string  found(end.str().size(), ' ');
-      std::fstream stream(file,
-                          std::ios::in | std::ios::out | std::ios::binary);
-      stream.seekg(-std::streamoff(found.size()), std::ios::end);
-      const auto place = stream.tellg();
-      stream.read(found.data(), found.size());
-      if (!stream || found != end.str())
-        return false;
-      stream.seekp(place);
-      stream << data << end.str() << std::flush;
-      return stream.good();
+      const std::string begin = "<Piece", end = "</Piece>\n";
+      const auto        first = file.find(begin);
+      const auto        past  = file.rfind(end) + end.size();
+      const std::string piece = file.substr(first, past - first);
+      const auto        none  = piece.find("NumberOfCells=\"0\"");
+      return none < piece.find('>') ? "" : piece;
     }
   } // namespace
 
 
   template <int dim>
-  void
+  bool
   write_vtu(DataOutInterface<dim, 3>   &output,
             const std::string          &file,
             const double                time,
             const std::vector<VtuText> &texts,
-            const MPI_Comm              communicator)
+            Log                        &log)
   {
+    const MPI_Comm        communicator = log.communicator();
     DataOutBase::VtkFlags flags;
     flags.compression_level        = DataOutBase::VtkFlags::best_speed;
     flags.write_higher_order_cells = false;
     output.set_flags(flags);
-    output.write_vtu_in_parallel(file, communicator);
-    const bool written = Utilities::MPI::this_mpi_process(communicator) != 0 ||
-                         add_field_data(file, field_data(time, texts));
-    if (Utilities::MPI::min(written ? 1 : 0, communicator) == 0)
-      throw UserError("The file \"" + file +
-                      "\" cannot be written; look whether the disk is full.");
+
+    // deal.II's own writer of parallel files leaves the other ranks waiting
+    // when one cannot write, and knows no texts. The time is among them: of
+    // several elements of field data VTK reads the last one only.
+    const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
+    std::ostringstream own, part;
+    output.write_vtu(own);
+    if (rank == 0)
+      DataOutBase::write_vtu_header(part, flags);
+    part << piece_of(own.str());
+    if (rank + 1 == Utilities::MPI::n_mpi_processes(communicator))
+      {
+        part << field_data(time, texts);
+        DataOutBase::write_vtu_footer(part);
+      }
+    const std::string reason =
+      write_file_in_parts(file, part.str(), communicator);
+    log.attempted(file, reason);
+    return reason.empty();
   }
 
 
-  template void
+  template bool
   write_vtu<2>(DataOutInterface<2, 3> &,
                const std::string &,
                const double,
                const std::vector<VtuText> &,
-               const MPI_Comm);
-  template void
+               Log &);
+  template bool
   write_vtu<3>(DataOutInterface<3, 3> &,
                const std::string &,
                const double,
                const std::vector<VtuText> &,
-               const MPI_Comm);
+               Log &);
 } // namespace Voussoir

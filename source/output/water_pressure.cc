@@ -1,6 +1,9 @@
 #include <voussoir/base/error.h>
 #include <voussoir/loads/water_motion.h>
 #include <voussoir/output/picture_series.h>
+#include <voussoir/output/vtu_file.h>
+
+#include <deal.II/numerics/data_out.h>
 
 namespace Voussoir
 {
@@ -35,6 +38,7 @@ namespace Voussoir
       {
         folder = observed.folder;
         water  = observed.water;
+        log    = &observed.log;
         pictures.prepare(observed, start_time, restarted);
       }
 
@@ -43,11 +47,18 @@ namespace Voussoir
       {
         if (!pictures.due(state))
           return;
+        const AcousticSpace &space    = water->reservoir.space;
+        Vector               pressure = space.create_ghosted_vector(); // [MPa]
+        pressure.copy_locally_owned_data_from(water->pressure);
+        pressure *= 1e-6;
+        pressure.update_ghost_values();
+        DataOut<3> data_out;
+        data_out.attach_dof_handler(space.dof_handler);
+        data_out.add_data_vector(pressure, "pressure_MPa");
+        data_out.build_patches(space.mapping, space.fe.degree);
         const std::string file = pictures.next_name(state) + ".vtu";
-        water->reservoir.write(water->pressure,
-                               folder + "/" + file,
-                               state.time);
-        pictures.add(state.time, file);
+        if (write_vtu(data_out, folder + "/" + file, state.time, {}, *log))
+          pictures.add(state.time, file);
       }
 
       void
@@ -59,6 +70,7 @@ namespace Voussoir
 
       std::string        folder;
       const WaterMotion *water = nullptr;
+      Log               *log   = nullptr;
     };
 
     const Registry<Observer>::Add<WaterPressure>

@@ -33,8 +33,9 @@ namespace Voussoir
         Simulation simulation(*parameters, options, communicator);
         Run       &first = simulation.run;
         first.march();
-        const ResultFolder folder(*parameters, options, simulation.log);
-        Run                second(simulation.model,
+        ResultFolder folder(*parameters, options, simulation.log);
+        folder.claim(simulation.log);
+        Run second(simulation.model,
                    simulation.rest,
                    simulation.modes,
                    folder,

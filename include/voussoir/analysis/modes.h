@@ -71,6 +71,10 @@ namespace Voussoir
     summary() const;
   };
 
+  /** Refuses more modes than the model can have. */
+  void
+  check_modes(const ModalModel &model, const ModeParameters &parameters);
+
   /**
    * The lowest natural modes, K phi = omega^2 (M + M_a) phi, with the moduli as
    * given, absorbing faces held.

@@ -1,10 +1,12 @@
 #ifndef voussoir_base_log_h
 #define voussoir_base_log_h
 
+#include <voussoir/base/file.h>
+
 #include <deal.II/base/mpi.h>
 
-#include <fstream>
 #include <iostream>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -18,7 +20,8 @@ namespace Voussoir
   public:
     explicit Log(const MPI_Comm communicator, const bool quiet = false);
 
-    /** Writes to this file from now on, first what was said before. */
+    /** Writes to this file from now on, first what was said before; no file is
+     *  missing yet. Goes on in a file that is there, or begins a new one. */
     void
     open(const std::string &filename, const bool append);
 
@@ -50,6 +53,23 @@ namespace Voussoir
     const std::vector<std::string> &
     warnings() const;
 
+    /**
+     * Takes note of an attempt to write a file of the results, on the first
+     * rank: a failure does not stop a run, but is a warning.
+     *
+     * @param reason of the failure, see reason_of(); empty: all is written
+     * @param remark what becomes of what was not written
+     */
+    void
+    attempted(const std::string &file,
+              const std::string &reason,
+              const std::string &remark = "");
+
+    /** Files that are not, or not completely, written, each with the reason;
+     *  all ranks must call this together. */
+    std::map<std::string, std::string>
+    missing_files() const;
+
     MPI_Comm
     communicator() const;
 
@@ -57,12 +77,12 @@ namespace Voussoir
     void
     add_warning(const std::string &text);
 
-    MPI_Comm      mpi_communicator;
-    const bool    speaks, quiet;
-    std::ofstream file;
-    std::string   said_before_open;
+    MPI_Comm    mpi_communicator;
+    const bool  speaks, quiet;
+    GrowingFile file; // what was said before it is open waits
 
-    std::vector<std::string> all_warnings;
+    std::vector<std::string>           all_warnings;
+    std::map<std::string, std::string> missing; // on the first rank
   };
 
   /** "1 h 05 min", "3 min 20 s", "12 s". */

@@ -66,6 +66,12 @@ namespace Voussoir
     double      checkpoint_interval = 10.;
     double      checkpoint_time     = 0.;
 
+    bool
+    has_checkpoints() const
+    {
+      return checkpoint_interval > 0. || checkpoint_time > 0.;
+    }
+
     void
     declare(dealii::ParameterHandler &prm);
   };

@@ -25,6 +25,10 @@ namespace Voussoir
   RestState
   find_rest(const Model &model, Log &log);
 
+  /** Refuses natural modes that the model cannot have. */
+  void
+  check_modes(const Model &model);
+
   /** The natural modes that the case asks for. */
   Modes
   find_modes(const Model &model, Log &log);

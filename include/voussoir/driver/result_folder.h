@@ -1,6 +1,7 @@
 #ifndef voussoir_driver_result_folder_h
 #define voussoir_driver_result_folder_h
 
+#include <voussoir/base/file.h>
 #include <voussoir/base/log.h>
 #include <voussoir/driver/case.h>
 
@@ -18,7 +19,8 @@ namespace Voussoir
     /** No output folder: for tests that look at the state themselves. */
     bool no_output = false;
 
-    /** Set up for checks only: no static state, no modes. */
+    /** For checks and estimates only: no static state, no modes, and nothing is
+     *  written. */
     bool validate = false;
   };
 
@@ -28,24 +30,31 @@ namespace Voussoir
   {
   public:
     /**
-     * Chooses the folder: the one that the case names, with the next free
-     * number added if it exists; a restart goes on in the one with the newest
-     * checkpoint. Throws UserError if it must not be overwritten, or if there
-     * is no checkpoint, or one of other physics.
+     * Looks for the folder, but writes nothing: the one that the case names,
+     * with the next free number added if it exists; a restart goes on in the
+     * one with the newest checkpoint. Throws UserError if it cannot be written
+     * to or must not be overwritten, if another run is writing there, or if
+     * there is no checkpoint, or one of other physics.
      */
     ResultFolder(const Case &parameters, const RunOptions &options, Log &log);
 
-    /** Makes the folder, in it the parameters as run, and lets the log write
-     *  there. */
+    /** Takes the folder for this run and no other, puts the parameters as run
+     *  there, and lets the log write there. Throws UserError if that is
+     *  impossible. */
     void
-    make(Log &log) const;
+    claim(Log &log);
 
-    /** Empty: no output. */
-    std::string
-    path() const;
+    /** Whether the run is to have one. */
+    bool
+    wanted() const;
 
+    /** Whether it is claimed. */
     bool
     exists() const;
+
+    /** Empty: not claimed. */
+    std::string
+    path() const;
 
     bool
     restarts() const;
@@ -74,7 +83,9 @@ namespace Voussoir
 
     const Case      &parameters;
     const RunOptions options;
-    std::string      chosen;
+    std::string      chosen; // on all ranks; another number may be claimed
+    bool             claimed = false;
+    FileLock         lock; // of the first rank
     std::string      from; // file of the checkpoint
     nlohmann::json   header;
   };

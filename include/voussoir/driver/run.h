@@ -1,10 +1,8 @@
 #ifndef voussoir_driver_run_h
 #define voussoir_driver_run_h
 
-#include <voussoir/driver/earthquake.h>
 #include <voussoir/driver/rest_state.h>
-#include <voussoir/driver/result_folder.h>
-#include <voussoir/loads/water_motion.h>
+#include <voussoir/driver/run_setup.h>
 #include <voussoir/output/checkpoint.h>
 #include <voussoir/output/energy.h>
 #include <voussoir/time/central_difference.h>
@@ -21,31 +19,40 @@ namespace Voussoir
   class Run
   {
   public:
-    /** @param model,rest,folder,log must live as long as this */
+    /** @param model,rest,modes,folder,log must live as long as this */
     Run(const Model        &model,
         const RestState    &rest,
         const Modes        &modes,
         const ResultFolder &folder,
         Log                &log);
 
-    /** Steps to the end time. */
+    /** With what was made and checked before the static state was found. */
+    Run(const RestState          &rest,
+        const Modes              &modes,
+        const ResultFolder       &folder,
+        std::unique_ptr<RunSetup> setup,
+        Log                      &log);
+
+    /** Steps to the end time. Throws UserError at the end if results could not
+     *  be written. */
     void
     march();
 
-    const Model                 &model;
-    const RestState             &rest;
-    const Modes                 &modes;
-    const ResultFolder          &folder;
-    Log                         &log;
-    Damping                      damping;
-    const TimeStep               time_step;
-    Earthquake                   earthquake;
-    std::unique_ptr<WaterMotion> water;   // compressible, or null
-    std::optional<Contact>       contact; // none without interfaces
-    const EquationOfMotion       equation;
-    CentralDifference            scheme;
-    State                        state;
-    const ObservedModel          observed;
+    const std::unique_ptr<RunSetup>     setup;
+    const Model                        &model;
+    const RestState                    &rest;
+    const Modes                        &modes;
+    const ResultFolder                 &folder;
+    Log                                &log;
+    Damping                            &damping;
+    const TimeStep                     &time_step;
+    Earthquake                         &earthquake;
+    const std::unique_ptr<WaterMotion> &water;   // compressible, or null
+    std::optional<Contact>              contact; // none without interfaces
+    const EquationOfMotion              equation;
+    CentralDifference                   scheme;
+    State                               state;
+    const ObservedModel                 observed;
 
     /** Energy balance at the state. */
     EnergyBalance energy;
@@ -64,10 +71,7 @@ namespace Voussoir
     std::vector<Projection *>
     projections();
 
-    ObservedModel
-    what_is_observed() const;
-
-    /** Makes the output folder and its files. */
+    /** Begins the files of the output folder. */
     void
     open_output();
 
@@ -107,10 +111,6 @@ namespace Voussoir
     StateContent
     checkpoint_content();
 
-    /** What no restart shall have to find again, and the state at t = 0. */
-    void
-    write_first_checkpoint();
-
     /** @return whether it was possible */
     bool
     write_checkpoint();
@@ -122,7 +122,11 @@ namespace Voussoir
     finish();
 
     void
-    write_summary(const nlohmann::json &result) const;
+    write_summary(nlohmann::json result, const std::string &verdict) const;
+
+    /** Throws UserError if the results are not all written. */
+    void
+    refuse_missing_files() const;
 
     std::string
     timer_table() const;

@@ -12,18 +12,23 @@ namespace Voussoir
   class Simulation
   {
   public:
-    /** Throws UserError for whatever cannot be computed, before the output
-     *  folder is made. */
+    /** Throws UserError for whatever cannot be computed, before the static
+     * state is found and before the output folder is made. */
     Simulation(Case             &parameters,
                const RunOptions &options,
                const MPI_Comm    communicator);
 
-    Log                log;
-    const ResultFolder folder;
-    Model              model;
-    const RestState    rest;
-    const Modes        modes;
-    Run                run;
+    Log          log;
+    ResultFolder folder;
+    Model        model;
+
+  private:
+    std::unique_ptr<RunSetup> setup; // until the run has it
+
+  public:
+    const RestState rest;
+    const Modes     modes;
+    Run             run;
   };
 } // namespace Voussoir
 

@@ -5,9 +5,6 @@
 
 namespace Voussoir
 {
-  /** Names of the files beside the checkpoints. */
-  constexpr char rest_file[] = "rest.h5", modes_file[] = "modes.h5";
-
   /** Writes the state at rest into a file, so that it need not be found again;
    *  throws UserError if that fails. */
   void

@@ -85,12 +85,6 @@ namespace Voussoir
                  const Vector &displacement,
                  const double  time_step) const;
 
-    /** Writes a pressure [Pa] to this VTU file, in MPa. */
-    void
-    write(const Vector      &pressure,
-          const std::string &file,
-          const double       time) const;
-
   private:
     void
     couple(const Discretization &solid, NodalTerms &terms);

@@ -60,7 +60,8 @@ namespace Voussoir
     void
     open(const std::string &folder,
          const double       start_time,
-         const bool         restarted);
+         const bool         restarted,
+         Log               &log);
 
     /** Evaluates the balance at the state. */
     const EnergyTerms &

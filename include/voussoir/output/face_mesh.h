@@ -75,7 +75,7 @@ namespace Voussoir
      * @param name   of the file in the output folder, without its ending
      * @param time   [s]
      * @param texts  further ones for the file
-     * @return its name in the output folder
+     * @return its name in the output folder; empty if it cannot be written
      */
     std::string
     write(const std::vector<std::string> &fields,
@@ -124,6 +124,7 @@ namespace Voussoir
     number_nodes(const NodeNumbers &nodes, const unsigned int n_sets);
 
     const std::string              folder;
+    Log                           &log;
     const Discretization          &discretization;
     const std::string              kind;
     const std::vector<std::string> all_names;

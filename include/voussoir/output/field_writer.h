@@ -31,7 +31,7 @@ namespace Voussoir
    *   null for none
    * @param name      of the file in the output folder, without its ending
    * @param time      [s]
-   * @return its name in the output folder
+   * @return its name in the output folder; empty if it cannot be written
    */
   std::string
   write_fields(const ObservedModel           &model,

@@ -2,6 +2,7 @@
 #define voussoir_output_observer_h
 
 #include <voussoir/base/keyed_values.h>
+#include <voussoir/base/log.h>
 #include <voussoir/base/registry.h>
 #include <voussoir/fem/initial_state.h>
 #include <voussoir/fem/state.h>
@@ -35,6 +36,9 @@ namespace Voussoir
     const RigidBase &base;
 
     ResultNames names;
+
+    /** Takes note of results that cannot be written. */
+    Log &log;
   };
 
   /**

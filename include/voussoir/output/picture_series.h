@@ -33,12 +33,11 @@ namespace Voussoir
     bool
     due(const State &state) const;
 
-    /** Name for the picture of this state, without ending; its folder is
-     *  there once all ranks have called this. */
+    /** Name for the picture of this state, without ending. */
     std::string
     next_name(const State &state) const;
 
-    /** Adds a picture to the list. */
+    /** Adds a picture to the list; none if the name of its file is empty. */
     void
     add(const double time, const std::string &file);
 
@@ -52,7 +51,7 @@ namespace Voussoir
 
     std::string                                 folder;
     double                                      time_step = 1.;
-    MPI_Comm                                    communicator;
+    Log                                        *log       = nullptr;
     std::vector<std::pair<double, std::string>> pictures;
   };
 } // namespace Voussoir

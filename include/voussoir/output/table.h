@@ -1,11 +1,7 @@
 #ifndef voussoir_output_table_h
 #define voussoir_output_table_h
 
-#include <deal.II/base/mpi.h>
-
-#include <fstream>
-#include <string>
-#include <vector>
+#include <voussoir/base/log.h>
 
 namespace Voussoir
 {
@@ -20,20 +16,23 @@ namespace Voussoir
   csv_line(const std::vector<double> &values);
 
   /** A file of comma-separated values over time, with the time in the first
-   *  column. The first rank writes it, what the others say is ignored. */
+   *  column. The first rank writes it, what the others say is ignored. Lines
+   *  that cannot be written wait until they can. */
   class TimeTable
   {
   public:
     /**
      * Leaves the file it wrote to before, if there was one.
      *
+     * @param log        takes note of what cannot be written; must live as long
+     *   as this
      * @param columns    titles with units, without that of the time
      * @param time_step  [s]
      * @param start_time of a run that goes on [s]: lines from here on come
      *   again; others are kept
      */
     void
-    open(const MPI_Comm                  communicator,
+    open(Log                            &log,
          const std::string              &filename,
          const std::vector<std::string> &columns,
          const double                    time_step,
@@ -48,7 +47,9 @@ namespace Voussoir
     flush();
 
   private:
-    std::ofstream file;
+    Log        *log = nullptr;
+    GrowingFile file;
+    double      first_waiting = 0.; // time of a line [s]
   };
 } // namespace Voussoir
 

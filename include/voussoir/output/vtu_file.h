@@ -1,10 +1,9 @@
 #ifndef voussoir_output_vtu_file_h
 #define voussoir_output_vtu_file_h
 
-#include <deal.II/base/data_out_base.h>
+#include <voussoir/base/log.h>
 
-#include <string>
-#include <vector>
+#include <deal.II/base/data_out_base.h>
 
 namespace Voussoir
 {
@@ -21,19 +20,21 @@ namespace Voussoir
    * its spreadsheet and readers such as VTK's give by name. The names behind
    * the numbers of a field "NAME" are in "NAME_names".
    *
-   * Called on all ranks of the communicator.
+   * Called on all ranks of the log, which takes note if that fails; there is no
+   * such file then.
    *
    * @param output deal.II's patches and fields; gets its flags here
    * @param file   name with folder and ending
    * @param time   [s]
+   * @return whether it is written
    */
   template <int dim>
-  void
+  bool
   write_vtu(dealii::DataOutInterface<dim, 3> &output,
             const std::string                &file,
             const double                      time,
             const std::vector<VtuText>       &texts,
-            const MPI_Comm                    communicator);
+            Log                              &log);
 } // namespace Voussoir
 
 #endif

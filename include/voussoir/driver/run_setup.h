@@ -1,0 +1,47 @@
+#ifndef voussoir_driver_run_setup_h
+#define voussoir_driver_run_setup_h
+
+#include <voussoir/driver/earthquake.h>
+#include <voussoir/driver/result_folder.h>
+#include <voussoir/loads/water_motion.h>
+#include <voussoir/output/observer.h>
+
+namespace Voussoir
+{
+  /**
+   * What a run is made of that does not depend on the static state. Whatever a
+   * run may refuse is refused here, before that is computed.
+   */
+  class RunSetup
+  {
+  public:
+    /**
+     * Throws UserError for what cannot be computed or recorded.
+     *
+     * @param model  must live as long as this
+     * @param modes  to which damping is adapted, if the case wants that; before
+     *   they are known there is none, which allows for the longest step
+     * @param folder whose checkpoint, if the run goes on from one, has the step
+     */
+    RunSetup(const Model        &model,
+             const Modes        &modes,
+             const ResultFolder &folder,
+             Log                &log);
+
+    /** What observers see of a run, whose parts are given by the caller. */
+    ObservedModel
+    observed(const std::string    &folder,
+             const InitialState   &initial,
+             const MaterialMemory &memory,
+             const Contact        *contact,
+             Log                  &log) const;
+
+    const Model                       &model;
+    Damping                            damping;
+    const TimeStep                     time_step;
+    Earthquake                         earthquake;
+    const std::unique_ptr<WaterMotion> water; // compressible, or null
+  };
+} // namespace Voussoir
+
+#endif

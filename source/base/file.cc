@@ -1,0 +1,311 @@
+#include <voussoir/base/file.h>
+
+#include <deal.II/base/mpi_large_count.h>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <system_error>
+
+namespace Voussoir
+{
+  using namespace dealii;
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    /** A file of the operating system that is open for writing. */
+    class OpenFile
+    {
+    public:
+      explicit OpenFile(const std::string &name)
+        : number(::open(name.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666))
+      {}
+
+      OpenFile(const OpenFile &) = delete;
+
+      ~OpenFile()
+      {
+        if (is_open())
+          ::close(number);
+      }
+
+      bool
+      is_open() const
+      {
+        return number >= 0;
+      }
+
+      /** Ends the file here; devices have no end. */
+      bool
+      cut(const std::uintmax_t size) const
+      {
+        return ::ftruncate(number, size) == 0 || errno == EINVAL;
+      }
+
+      bool
+      write(const std::string &text, const std::uintmax_t place) const
+      {
+        // a pipe has one place only
+        if (::lseek(number, place, SEEK_SET) < 0 && errno != ESPIPE)
+          return false;
+        for (std::size_t done = 0; done < text.size();)
+          {
+            const ssize_t n =
+              ::write(number, text.data() + done, text.size() - done);
+            if (n < 0 && errno != EINTR)
+              return false;
+            done += std::max<ssize_t>(n, 0);
+          }
+        return true;
+      }
+
+      /** Makes room for so many bytes, where the file system can promise it. */
+      bool
+      reserve(const std::uintmax_t size) const
+      {
+        return size == 0 || ::fallocate(number, 0, 0, size) == 0 ||
+               errno == EOPNOTSUPP || errno == ENOSYS;
+      }
+
+      /** Some file systems say only now that there is no room. */
+      bool
+      close()
+      {
+        const int closed = number;
+        number           = -1;
+        return ::close(closed) == 0;
+      }
+
+    private:
+      int number;
+    };
+
+
+    /** Writes the text to this place, which becomes the end of the file; if
+     *  that fails the file ends at the place. */
+    std::string
+    put(const std::string   &name,
+        const std::string   &text,
+        const std::uintmax_t place)
+    {
+      OpenFile file(name);
+      if (!file.is_open())
+        return reason_of(errno);
+      if (file.cut(place) && file.write(text, place) && file.close())
+        return "";
+      const std::string reason = reason_of(errno);
+      if (file.is_open())
+        file.cut(place);
+      return reason;
+    }
+
+
+    std::string
+    aside(const std::string &name)
+    {
+      return name + ".part";
+    }
+
+
+    /** Puts what was written aside in its place, or removes it if that failed
+     *  for a reason. */
+    std::string
+    settle(const std::string &name, std::string reason)
+    {
+      std::error_code problem;
+      if (reason.empty())
+        {
+          fs::rename(aside(name), name, problem);
+          if (problem)
+            reason = reason_of(problem.value());
+        }
+      if (!reason.empty())
+        fs::remove(aside(name), problem);
+      return reason;
+    }
+
+
+    /** Room for a file of this size, so that it is clear before the ranks write
+     *  their parts whether there is enough of it. */
+    std::string
+    make_room(const std::string &name, const std::uintmax_t size)
+    {
+      std::error_code problem;
+      fs::create_directories(fs::absolute(name).parent_path(), problem);
+      if (problem)
+        return reason_of(problem.value());
+      OpenFile file(name);
+      return file.is_open() && file.cut(0) && file.reserve(size) &&
+                 file.close() ?
+               "" :
+               reason_of(errno);
+    }
+
+
+    /** Whether this rank wrote its part. */
+    bool
+    write_part(const std::string &name,
+               const std::string &part,
+               const MPI_Offset   place,
+               const MPI_Comm     communicator)
+    {
+      MPI_File  file;
+      const int opened = MPI_File_open(communicator,
+                                       name.c_str(),
+                                       MPI_MODE_CREATE | MPI_MODE_WRONLY,
+                                       MPI_INFO_NULL,
+                                       &file);
+      // nobody must wait for a rank that has no file
+      if (Utilities::MPI::max(opened == MPI_SUCCESS ? 0 : 1, communicator) == 1)
+        return false;
+      const int written = Utilities::MPI::LargeCount::File_write_at_all_c(
+        file, place, part.data(), part.size(), MPI_CHAR, MPI_STATUS_IGNORE);
+      // closing does not suffice with some versions of Open MPI
+      const int synchronised = MPI_File_sync(file);
+      const int closed       = MPI_File_close(&file);
+      return written == MPI_SUCCESS && synchronised == MPI_SUCCESS &&
+             closed == MPI_SUCCESS;
+    }
+  } // namespace
+
+
+  std::string
+  reason_of(const int error)
+  {
+    static const std::map<int, std::string> reasons{
+      {ENOSPC, "the disk is full"},
+      {EDQUOT, "the quota of disk space is used up"},
+      {EFBIG, "it would be larger than files may be here (ulimit -f)"},
+      {EACCES, "the permission is missing"},
+      {EPERM, "the permission is missing"},
+      {EROFS, "the disk can only be read"},
+      {EISDIR, "there is a folder of that name"},
+      {ENOTDIR, "a part of its path is not a folder"},
+      {ENOENT, "its folder does not exist"},
+      {ENAMETOOLONG, "the name is too long"},
+      {ELOOP, "a link in its path leads back to itself"},
+      {EIO, "the disk or the network failed"}};
+    const auto found = reasons.find(error);
+    return found != reasons.end() ?
+             found->second :
+             "the system says: " + std::generic_category().message(error);
+  }
+
+
+  std::string
+  write_file(const std::string &name, const std::string &text)
+  {
+    std::error_code problem;
+    const bool      exists = fs::exists(name, problem);
+    if (exists && !fs::is_regular_file(name, problem))
+      return put(name, text, 0);
+    // a link stays one
+    const std::string target =
+      exists ? fs::canonical(name, problem).string() : name;
+    return settle(target, put(aside(target), text, 0));
+  }
+
+
+  std::string
+  write_file_in_parts(const std::string &name,
+                      const std::string &part,
+                      const MPI_Comm     communicator)
+  {
+    const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
+    const std::uint64_t size  = part.size();
+    const std::uint64_t total = Utilities::MPI::sum(size, communicator);
+    std::uint64_t       place = 0;
+    MPI_Exscan(&size, &place, 1, MPI_UINT64_T, MPI_SUM, communicator);
+
+    std::string reason =
+      Utilities::MPI::broadcast(communicator,
+                                first ? make_room(aside(name), total) : "");
+    if (reason.empty())
+      {
+        const bool mine = write_part(aside(name), part, place, communicator);
+        if (Utilities::MPI::min(mine ? 1 : 0, communicator) == 0)
+          reason = reason_of(EIO);
+      }
+    if (first)
+      reason = settle(name, reason);
+    return Utilities::MPI::broadcast(communicator, reason);
+  }
+
+
+  FileLock::~FileLock()
+  {
+    if (file >= 0)
+      ::close(file);
+  }
+
+
+  bool
+  FileLock::open(const std::string &name, const int mode)
+  {
+    file = ::open(name.c_str(), O_RDWR | O_CLOEXEC | mode, 0666);
+    return ::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+  }
+
+
+  bool
+  FileLock::take(const std::string &name)
+  {
+    return open(name, O_CREAT);
+  }
+
+
+  bool
+  FileLock::is_taken(const std::string &name)
+  {
+    FileLock lock;
+    return !lock.open(name, 0);
+  }
+
+
+  void
+  GrowingFile::open(const std::string &name, const std::uintmax_t keep)
+  {
+    file_name = name;
+    written   = keep;
+  }
+
+
+  const std::string &
+  GrowingFile::name() const
+  {
+    return file_name;
+  }
+
+
+  void
+  GrowingFile::append(const std::string &text)
+  {
+    waiting += text;
+  }
+
+
+  std::string
+  GrowingFile::flush()
+  {
+    const std::string reason = put(file_name, waiting, written);
+    if (reason.empty())
+      {
+        written += waiting.size();
+        waiting.clear();
+      }
+    return reason;
+  }
+
+
+  bool
+  GrowingFile::has_waiting() const
+  {
+    return !waiting.empty();
+  }
+} // namespace Voussoir

@@ -1,0 +1,228 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/file.h>
+
+#include <sys/resource.h>
+
+#include <filesystem>
+
+#include "same.h"
+#include "with_files.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    /** No file may grow beyond this, as if the disk were full. */
+    void
+    limit_files(const rlim_t bytes)
+    {
+      rlimit limit;
+      getrlimit(RLIMIT_FSIZE, &limit);
+      limit.rlim_cur = bytes;
+      setrlimit(RLIMIT_FSIZE, &limit);
+    }
+
+
+    /** Lets files grow no further in a part of a run. */
+    class FullDisk : public Observer
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("From", from, "When it is full [s].");
+        prm.add_parameter("To", to, "When there is room again [s].");
+        prm.add_parameter("Size", size, "To which files may grow [bytes].");
+      }
+
+      void
+      check(const ObservedModel &) const override
+      {}
+
+      void
+      prepare(const ObservedModel &, const double, const bool) override
+      {}
+
+      void
+      observe(const State &state) override
+      {
+        limit_files(state.time >= from && state.time < to ? size :
+                                                            RLIM_INFINITY);
+      }
+
+      void
+      finish(const State &, nlohmann::json &) override
+      {}
+
+    private:
+      double       from = 0., to = 0.;
+      unsigned int size = 0;
+    };
+
+    const Registry<Observer>::Add<FullDisk>
+      full_disk("full disk", "Limits the size of files, for the tests.");
+
+
+    /**
+     * A disk that is full for a while costs pictures of that time, and nothing
+     * else; one that stays full is said, and the run does not end well.
+     */
+    class FailedWrites : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
+        if (first)
+          look_at_files(verdicts);
+        MPI_Barrier(communicator);
+        const auto march = [&](const std::string &folder,
+                               const std::string &from,
+                               const std::string &to) {
+          const auto parameters =
+            make_case(file.with({"Output/Folder=" + folder,
+                                 "Output/full disk/From=" + from,
+                                 "Output/full disk/To=" + to}));
+          std::string end = "done";
+          // which must not grow either
+          said.str("");
+          std::streambuf *terminal = std::cout.rdbuf(said.rdbuf());
+          try
+            {
+              make_simulation_with_files(*parameters, communicator)
+                ->run.march();
+            }
+          catch (const UserError &error)
+            {
+              end = error.what();
+            }
+          std::cout.rdbuf(terminal);
+          limit_files(RLIM_INFINITY);
+          MPI_Barrier(communicator);
+          return end;
+        };
+
+        verdicts.is_true("with room: " + march("room", "9", "9"), true);
+        verdicts.is_true("full for a while: " +
+                           march("while", "0.0295", "0.0595"),
+                         true);
+        for (const std::string table : {"histories.csv", "energy.csv"})
+          verdicts.is_true("all of " + table + " is there",
+                           text_of("room/" + table).size() > 3000 &&
+                             text_of("while/" + table) ==
+                               text_of("room/" + table));
+        verdicts.is_true("pictures of that time are missing from the list",
+                         pictures("room") == 11 && pictures("while") == 8);
+        verdicts.is_true("and from the folder",
+                         files_in("room/fields") == 11 &&
+                           files_in("while/fields") == 8);
+        const nlohmann::json summary = read_summary("while");
+        for (const auto &item : summary["files not written"].items())
+          verdicts.is_true("the summary names " + item.key() + ": " +
+                             std::string(item.value()),
+                           true);
+        for (const std::string file :
+             {"histories.csv", "energy.csv", "fields/fields-00000600.vtu"})
+          verdicts.is_true("the summary warns of " + file + ", as was said",
+                           warns_of(summary, "while/" + file) &&
+                             (!first ||
+                              said.str().find(file) != std::string::npos));
+
+        verdicts.is_true("full to the end: " + march("full", "0.0295", "9"),
+                         true);
+        verdicts.is_true("histories.csv ends with a whole line",
+                         text_of("full/histories.csv").size() > 1000 &&
+                           text_of("room/histories.csv")
+                               .rfind(text_of("full/histories.csv"), 0) == 0 &&
+                           text_of("full/histories.csv").back() == '\n');
+        verdicts.is_true("no part of a summary",
+                         !fs::exists("full/summary.json") &&
+                           !fs::exists("full/summary.json.part"));
+      }
+
+    private:
+      static void
+      look_at_files(Verdicts &verdicts)
+      {
+        const auto say = [&](const std::string &what,
+                             const std::string &reason) {
+          verdicts.is_true(what + ": " + (reason.empty() ? "written" : reason),
+                           true);
+        };
+        fs::remove_all("files");
+        fs::create_directories("files/folder");
+        say("a new file", write_file("files/a", "first"));
+        say("in a folder that does not exist", write_file("nowhere/a", "text"));
+        say("in a file", write_file("files/a/b", "text"));
+        say("with the name of a folder", write_file("files/folder", "text"));
+        say("with a long name", write_file(std::string(300, 'a'), "text"));
+        say("full disk", write_file("/dev/full", "text"));
+        limit_files(100);
+        say("too long", write_file("files/a", std::string(200, '.')));
+        limit_files(RLIM_INFINITY);
+        verdicts.is_true("what was there before is there still",
+                         text_of("files/a") == "first");
+        fs::create_symlink("a", "files/link");
+        say("through a link", write_file("files/link", "second"));
+        verdicts.is_true("which stays one",
+                         fs::is_symlink("files/link") &&
+                           text_of("files/a") == "second");
+
+        fs::create_symlink("/dev/full", "files/growing");
+        GrowingFile growing;
+        growing.open("files/growing");
+        growing.append("one\n");
+        say("a file that grows on a full disk", growing.flush());
+        fs::remove("files/growing");
+        growing.append("two\n");
+        say("with room", growing.flush());
+        limit_files(10);
+        growing.append("three\n");
+        say("with too little room", growing.flush());
+        verdicts.is_true("no part of what does not fit",
+                         text_of("files/growing") == "one\ntwo\n");
+        limit_files(RLIM_INFINITY);
+        say("with room again", growing.flush());
+        verdicts.is_true("all of it",
+                         text_of("files/growing") == "one\ntwo\nthree\n");
+        verdicts.is_true("nothing else is left", files_in("files") == 4);
+      }
+
+      static bool
+      warns_of(const nlohmann::json &summary, const std::string &file)
+      {
+        const auto &warnings = summary["warnings"];
+        return std::any_of(warnings.begin(),
+                           warnings.end(),
+                           [&](const std::string &warning) {
+                             return warning.find('"' + file + '"') !=
+                                    std::string::npos;
+                           });
+      }
+
+      static std::size_t
+      files_in(const std::string &folder)
+      {
+        return std::distance(fs::directory_iterator(folder), {});
+      }
+
+      static std::size_t
+      pictures(const std::string &folder)
+      {
+        const std::string list = text_of(folder + "/fields.txt");
+        return std::count(list.begin(), list.end(), '\n');
+      }
+
+      std::ostringstream said;
+    };
+
+    const Registry<Check>::Add<FailedWrites>
+      registered("failed writes", "What becomes of results without room.");
+  } // namespace
+} // namespace Voussoir

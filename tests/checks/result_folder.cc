@@ -1,0 +1,126 @@
+#include <voussoir/base/error.h>
+
+#include <filesystem>
+
+#include "same.h"
+#include "with_files.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    /** Runs share no folder, and overwriting removes results of the run only.
+     */
+    class ResultFolders : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
+        const auto on_first = [&](const std::function<void()> &action) {
+          if (first)
+            action();
+          MPI_Barrier(communicator);
+        };
+        const auto parameters =
+          make_case(file.with({"Output/Folder=results/"}));
+        Log        log(communicator, true);
+        RunOptions plain, overwrite, restart;
+        overwrite.overwrite = true;
+        restart.restart     = true;
+        const auto refusal  = [&](const RunOptions &options) {
+          try
+            {
+              ResultFolder(*parameters, options, log).claim(log);
+            }
+          catch (const UserError &error)
+            {
+              return std::string("refused: ") + error.what();
+            }
+          return std::string("claimed");
+        };
+
+        on_first([] {
+          for (const std::string folder : {"results", "results-2"})
+            fs::remove_all(folder);
+        });
+        {
+          // both look before one of them takes it
+          ResultFolder one(*parameters, plain, log),
+            other(*parameters, plain, log);
+          verdicts.is_true("nothing is there before", !fs::exists("results"));
+          MPI_Barrier(communicator);
+          one.claim(log);
+          other.claim(log);
+          verdicts.is_true("one has " + one.path(), true);
+          verdicts.is_true("the other has " + other.path(), true);
+          on_first([] {
+            fs::create_directories("results/checkpoint");
+            fs::create_directories("results-2/checkpoint");
+            std::ofstream("results/checkpoint/last_complete") << "slot-1\n";
+            std::ofstream("results-2/checkpoint/last_complete") << "slot-1\n";
+          });
+          verdicts.is_true("--overwrite meanwhile: " + refusal(overwrite),
+                           true);
+          verdicts.is_true("--restart meanwhile: " + refusal(restart), true);
+        }
+
+        on_first([] {
+          fs::create_directories("results/a/fields");
+          fs::create_directories("results/fields");
+          for (const std::string name : {"histories.csv",
+                                         "fields.pvd",
+                                         "fields.txt",
+                                         "fields/fields-00000001.vtu",
+                                         "notes.txt",
+                                         "a/parameters.prm",
+                                         "a/histories.csv",
+                                         "a/fields/fields-00000001.vtu"})
+            std::ofstream("results/" + name) << "text\n";
+        });
+        {
+          const auto bad = make_case(
+            file.with({"Output/Folder=results", "Output/fields/Times=9"}));
+          std::string message = "accepted";
+          try
+            {
+              make_simulation_with_files(*bad, communicator);
+            }
+          catch (const UserError &)
+            {
+              message = "refused";
+            }
+          verdicts.is_true("a bad case with --overwrite: " + message, true);
+          verdicts.is_true("all results are there still",
+                           text_of("results/histories.csv") == "text\n" &&
+                             fs::exists("results/checkpoint"));
+        }
+        MPI_Barrier(communicator);
+        verdicts.is_true("--overwrite after its end: " + refusal(overwrite),
+                         true);
+        for (const std::string name : {"histories.csv",
+                                       "fields.pvd",
+                                       "fields.txt",
+                                       "fields/fields-00000001.vtu",
+                                       "checkpoint",
+                                       "notes.txt",
+                                       "a/parameters.prm",
+                                       "a/histories.csv",
+                                       "a/fields/fields-00000001.vtu"})
+          verdicts.is_true(name + (fs::exists("results/" + name) ?
+                                     " stays" :
+                                     " is removed"),
+                           true);
+      }
+    };
+
+    const Registry<Check>::Add<ResultFolders>
+      registered("result folders", "Who may write to which folder.");
+  } // namespace
+} // namespace Voussoir

@@ -15,278 +15,280 @@ namespace Voussoir
     // Between two looks at the clock and at what is asked from outside [s]:
     // those who ask may kill a second later.
     constexpr double look_interval = 0.05;
-  }
-} // namespace
+  } // namespace
 
 
-Run::Run(const Model        &model,
-         const RestState    &rest,
-         const Modes        &modes,
-         const ResultFolder &folder,
-         Log                &log)
-  : Run(rest,
-        modes,
-        folder,
-        std::make_unique<RunSetup>(model, modes, folder, log),
-        log)
-{}
+  Run::Run(const Model        &model,
+           const RestState    &rest,
+           const Modes        &modes,
+           const ResultFolder &folder,
+           Log                &log)
+    : Run(rest,
+          modes,
+          folder,
+          std::make_unique<RunSetup>(model, modes, folder, log),
+          log)
+  {}
 
 
-Run::Run(const RestState          &rest,
-         const Modes              &modes,
-         const ResultFolder       &folder,
-         std::unique_ptr<RunSetup> made,
-         Log                      &log)
-  : setup(std::move(made))
-  , model(setup->model)
-  , rest(rest)
-  , modes(modes)
-  , folder(folder)
-  , log(log)
-  , damping(setup->damping)
-  , time_step(setup->time_step)
-  , earthquake(setup->earthquake)
-  , water(setup->water)
-  , contact(rest.contact)
-  , equation{model.discretization,
-             model.internal_force,
-             model.mass,
-             model.terms,
-             damping,
-             rest.initial,
-             nodal_loads(),
-             projections(),
-             earthquake.base.moves() ? &earthquake.base : nullptr,
-             time_step.closing_viscosity}
-  , scheme(equation, time_step.leap_frog())
-  , state(scheme.state_at_rest())
-  , observed(setup->observed(folder.path(),
-                             rest.initial,
-                             state.material_memory,
-                             contact ? &*contact : nullptr,
-                             log))
-  , energy(equation, time_step.length)
-  , checkpoint(folder.checkpoints(), log.communicator())
-  , timer(std::cout, TimerOutput::never, TimerOutput::wall_times)
-{
-  if (folder.exists())
-    open_output();
-  if (folder.exists() && folder.restarts())
-    read_checkpoint();
-  for (Projection *projection : equation.projections)
-    projection->start(state);
-  // the table has its line of a checkpoint between two
-  if (!folder.restarts() || energy_schedule().due(state.step))
-    energy.evaluate(state);
-  keep_last_good();
-}
-
-
-std::vector<NodalLoad *>
-Run::nodal_loads() const
-{
-  std::vector<NodalLoad *> list;
-  if (earthquake.wave)
-    list.push_back(earthquake.wave.get());
-  list.insert(list.end(),
-              model.running_loads.begin(),
-              model.running_loads.end());
-  if (water)
-    list.push_back(water.get());
-  return list;
-}
-
-
-std::vector<Projection *>
-Run::projections()
-{
-  std::vector<Projection *> list = model.constraints;
-  if (contact)
-    list.push_back(&*contact);
-  return list;
-}
-
-
-Schedule
-Run::energy_schedule() const
-{
-  return {model.parameters.output.energy_interval, time_step.length};
-}
-
-
-unsigned long long
-Run::n_steps() const
-{
-  return time_step.steps_to(model.parameters.time.end_time);
-}
-
-
-void
-Run::march()
-{
-  const OutputParameters &output       = model.parameters.output;
-  const Schedule          energy_lines = energy_schedule(),
-                 checkpoints(output.checkpoint_time, time_step.length);
-  first_step = last_look = next_look = state.step;
-  clock.restart();
-  since_report.restart();
-  since_checkpoint.restart();
-  since_look.restart();
-  if (folder.exists() && output.has_checkpoints() && !folder.restarts())
-    write_checkpoint();
-  if (state.step < n_steps() && !model.parameters.moves())
-    log.warn("nothing moves the model, neither an earthquake nor a constraint "
-             "nor a load outside the static stages: its time steps show it "
-             "at rest; give one of these, or \"End time = 0\" in section "
-             "\"Time\"");
-  observe(); // after a restart what they saw last, once more
-
-  while (state.step < n_steps())
-    {
-      {
-        TimerOutput::Scope scope(timer, "step");
-        scheme.step(state);
-      }
-      observe();
-      if (energy_lines.due(state.step) || state.step == n_steps())
-        {
-          check_energy();
-          keep_last_good();
-        }
-      if (folder.exists() && output.checkpoint_time > 0. &&
-          checkpoints.due(state.step))
-        write_checkpoint();
-      if (state.step >= next_look)
-        attend();
-    }
-  finish();
-  refuse_missing_files();
-}
-
-
-void
-Run::observe()
-{
-  if (!folder.exists())
-    return;
-  TimerOutput::Scope scope(timer, "output");
-  for (const auto &observer : model.parameters.observers)
-    observer.second->observe(state);
-}
-
-
-void
-Run::check_energy()
-{
-  TimerOutput::Scope scope(timer, "energy balance");
-  energy.evaluate(state);
-  if (const std::string reason =
-        energy.alarm(model.parameters.output.energy_limit);
-      !reason.empty())
-    abort(reason);
-  const double error =
-    std::max(energy.relative_error(), energy.error_of_losses());
-  if (error > 0.01 && !warned_of_energy)
-    {
-      std::ostringstream text;
-      text << std::setprecision(3) << "from t = " << state.time
-           << " s on more than 1 % of the energy comes from nowhere: "
-           << 100. * energy.relative_error() << " % of what came in, "
-           << 100. * energy.error_of_losses()
-           << " % of what damping, cracks, friction and impacts took";
-      warned_of_energy = true;
-      log.warn(text.str());
-    }
-}
-
-
-void
-Run::keep_last_good()
-{
-  last_good.displacement = state.displacement;
-  last_good.velocity     = state.velocity;
-  last_good.time         = state.time;
-}
-
-
-void
-Run::attend()
-{
-  const OutputParameters &output = model.parameters.output;
-  const bool first = Utilities::MPI::this_mpi_process(log.communicator()) == 0;
-  const std::string stop_file = folder.path() + "/stop";
-
-  // the first rank looks at the clock and the folder; anybody may have got a
-  // signal
-  enum
+  Run::Run(const RestState          &rest,
+           const Modes              &modes,
+           const ResultFolder       &folder,
+           std::unique_ptr<RunSetup> made,
+           Log                      &log)
+    : setup(std::move(made))
+    , model(setup->model)
+    , rest(rest)
+    , modes(modes)
+    , folder(folder)
+    , log(log)
+    , damping(setup->damping)
+    , time_step(setup->time_step)
+    , earthquake(setup->earthquake)
+    , water(setup->water)
+    , contact(rest.contact)
+    , equation{model.discretization,
+               model.internal_force,
+               model.mass,
+               model.terms,
+               damping,
+               rest.initial,
+               nodal_loads(),
+               projections(),
+               earthquake.base.moves() ? &earthquake.base : nullptr,
+               time_step.closing_viscosity}
+    , scheme(equation, time_step.leap_frog())
+    , state(scheme.state_at_rest())
+    , observed(setup->observed(folder.path(),
+                               rest.initial,
+                               state.material_memory,
+                               contact ? &*contact : nullptr,
+                               log))
+    , energy(equation, time_step.length)
+    , checkpoint(folder.checkpoints(), log.communicator())
+    , timer(std::cout, TimerOutput::never, TimerOutput::wall_times)
   {
-    report,
-    save,
-    stop_now,
-    steps,
-    n_wishes
-  };
-  std::vector<double> mine(n_wishes), wanted(n_wishes);
-  mine[stop_now] = stop_requested();
-  mine[save]     = take_checkpoint_request();
-  if (first)
-    {
-      mine[report] = since_report.wall_time() > 5.;
-      if (output.checkpoint_interval > 0. &&
-          since_checkpoint.wall_time() > 60. * output.checkpoint_interval)
-        mine[save] = 1.;
-      if (folder.exists() && std::filesystem::remove(stop_file))
-        mine[stop_now] = 1.;
-      const double of_step =
-        since_look.wall_time() / std::max<double>(state.step - last_look, 1.);
-      mine[steps] = std::min(look_interval / std::max(of_step, 1e-9), 1e6);
-    }
-  Utilities::MPI::max(mine, log.communicator(), wanted);
-  last_look = state.step;
-  next_look = state.step + 1 + static_cast<unsigned long long>(wanted[steps]);
-  since_look.restart();
-
-  if (wanted[report] > 0.)
-    {
-      report_progress();
-      since_report.restart();
-    }
-  const bool stops = wanted[stop_now] > 0.;
-  const bool saved =
-    folder.exists() && (stops || wanted[save] > 0.) && write_checkpoint();
-  if (stops)
-    {
-      std::ostringstream text;
-      text << "Stopped on request at t = " << state.time << " s"
-           << (saved ? "; \"--restart\" goes on from here." :
-                       ", without a checkpoint of this time.");
-      stop(text.str());
-    }
-}
+    if (folder.exists())
+      open_output();
+    if (folder.exists() && folder.restarts())
+      read_checkpoint();
+    for (Projection *projection : equation.projections)
+      projection->start(state);
+    // the table has its line of a checkpoint between two
+    if (!folder.restarts() || energy_schedule().due(state.step))
+      energy.evaluate(state);
+    keep_last_good();
+  }
 
 
-void
-Run::abort(const std::string &reason)
-{
-  std::string written;
-  if (folder.exists())
+  std::vector<NodalLoad *>
+  Run::nodal_loads() const
+  {
+    std::vector<NodalLoad *> list;
+    if (earthquake.wave)
+      list.push_back(earthquake.wave.get());
+    list.insert(list.end(),
+                model.running_loads.begin(),
+                model.running_loads.end());
+    if (water)
+      list.push_back(water.get());
+    return list;
+  }
+
+
+  std::vector<Projection *>
+  Run::projections()
+  {
+    std::vector<Projection *> list = model.constraints;
+    if (contact)
+      list.push_back(&*contact);
+    return list;
+  }
+
+
+  Schedule
+  Run::energy_schedule() const
+  {
+    return {model.parameters.output.energy_interval, time_step.length};
+  }
+
+
+  unsigned long long
+  Run::n_steps() const
+  {
+    return time_step.steps_to(model.parameters.time.end_time);
+  }
+
+
+  void
+  Run::march()
+  {
+    const OutputParameters &output       = model.parameters.output;
+    const Schedule          energy_lines = energy_schedule(),
+                   checkpoints(output.checkpoint_time, time_step.length);
+    first_step = last_look = next_look = state.step;
+    clock.restart();
+    since_report.restart();
+    since_checkpoint.restart();
+    since_look.restart();
+    if (folder.exists() && output.has_checkpoints() && !folder.restarts())
+      write_checkpoint();
+    if (state.step < n_steps() && !model.parameters.moves())
+      log.warn(
+        "nothing moves the model, neither an earthquake nor a constraint "
+        "nor a load outside the static stages: its time steps show it "
+        "at rest; give one of these, or \"End time = 0\" in section "
+        "\"Time\"");
+    observe(); // after a restart what they saw last, once more
+
+    while (state.step < n_steps())
+      {
+        {
+          TimerOutput::Scope scope(timer, "step");
+          scheme.step(state);
+        }
+        observe();
+        if (energy_lines.due(state.step) || state.step == n_steps())
+          {
+            check_energy();
+            keep_last_good();
+          }
+        if (folder.exists() && output.checkpoint_time > 0. &&
+            checkpoints.due(state.step))
+          write_checkpoint();
+        if (state.step >= next_look)
+          attend();
+      }
+    finish();
+    refuse_missing_files();
+  }
+
+
+  void
+  Run::observe()
+  {
+    if (!folder.exists())
+      return;
+    TimerOutput::Scope scope(timer, "output");
+    for (const auto &observer : model.parameters.observers)
+      observer.second->observe(state);
+  }
+
+
+  void
+  Run::check_energy()
+  {
+    TimerOutput::Scope scope(timer, "energy balance");
+    energy.evaluate(state);
+    if (const std::string reason =
+          energy.alarm(model.parameters.output.energy_limit);
+        !reason.empty())
+      abort(reason);
+    const double error =
+      std::max(energy.relative_error(), energy.error_of_losses());
+    if (error > 0.01 && !warned_of_energy)
+      {
+        std::ostringstream text;
+        text << std::setprecision(3) << "from t = " << state.time
+             << " s on more than 1 % of the energy comes from nowhere: "
+             << 100. * energy.relative_error() << " % of what came in, "
+             << 100. * energy.error_of_losses()
+             << " % of what damping, cracks, friction and impacts took";
+        warned_of_energy = true;
+        log.warn(text.str());
+      }
+  }
+
+
+  void
+  Run::keep_last_good()
+  {
+    last_good.displacement = state.displacement;
+    last_good.velocity     = state.velocity;
+    last_good.time         = state.time;
+  }
+
+
+  void
+  Run::attend()
+  {
+    const OutputParameters &output = model.parameters.output;
+    const bool              first =
+      Utilities::MPI::this_mpi_process(log.communicator()) == 0;
+    const std::string stop_file = folder.path() + "/stop";
+
+    // the first rank looks at the clock and the folder; anybody may have got a
+    // signal
+    enum
     {
-      const std::string picture =
-        write_fields(observed,
-                     {{&last_good.displacement, {"displacement"}},
-                      {&last_good.velocity, {"velocity"}}},
-                     &last_good.displacement,
-                     "last_good",
-                     last_good.time);
-      if (!picture.empty())
-        written =
-          "; the last good state is in " + folder.path() + "/" + picture;
-      write_summary(summary(), "stopped: " + reason);
-    }
-  std::ostringstream text;
-  text << "Stopped at t = " << state.time << " s, because " << reason << written
-       << ". The time step may be too large for the model: take a smaller "
-          "\"Safety factor\" in section \"Time\".";
-  throw UserError(text.str());
-}
+      report,
+      save,
+      stop_now,
+      steps,
+      n_wishes
+    };
+    std::vector<double> mine(n_wishes), wanted(n_wishes);
+    mine[stop_now] = stop_requested();
+    mine[save]     = take_checkpoint_request();
+    if (first)
+      {
+        mine[report] = since_report.wall_time() > 5.;
+        if (output.checkpoint_interval > 0. &&
+            since_checkpoint.wall_time() > 60. * output.checkpoint_interval)
+          mine[save] = 1.;
+        if (folder.exists() && std::filesystem::remove(stop_file))
+          mine[stop_now] = 1.;
+        const double of_step =
+          since_look.wall_time() / std::max<double>(state.step - last_look, 1.);
+        mine[steps] = std::min(look_interval / std::max(of_step, 1e-9), 1e6);
+      }
+    Utilities::MPI::max(mine, log.communicator(), wanted);
+    last_look = state.step;
+    next_look = state.step + 1 + static_cast<unsigned long long>(wanted[steps]);
+    since_look.restart();
+
+    if (wanted[report] > 0.)
+      {
+        report_progress();
+        since_report.restart();
+      }
+    const bool stops = wanted[stop_now] > 0.;
+    const bool saved =
+      folder.exists() && (stops || wanted[save] > 0.) && write_checkpoint();
+    if (stops)
+      {
+        std::ostringstream text;
+        text << "Stopped on request at t = " << state.time << " s"
+             << (saved ? "; \"--restart\" goes on from here." :
+                         ", without a checkpoint of this time.");
+        stop(text.str());
+      }
+  }
+
+
+  void
+  Run::abort(const std::string &reason)
+  {
+    std::string written;
+    if (folder.exists())
+      {
+        const std::string picture =
+          write_fields(observed,
+                       {{&last_good.displacement, {"displacement"}},
+                        {&last_good.velocity, {"velocity"}}},
+                       &last_good.displacement,
+                       "last_good",
+                       last_good.time);
+        if (!picture.empty())
+          written =
+            "; the last good state is in " + folder.path() + "/" + picture;
+        write_summary(summary(), "stopped: " + reason);
+      }
+    std::ostringstream text;
+    text << "Stopped at t = " << state.time << " s, because " << reason
+         << written
+         << ". The time step may be too large for the model: take a smaller "
+            "\"Safety factor\" in section \"Time\".";
+    throw UserError(text.str());
+  }
 } // namespace Voussoir

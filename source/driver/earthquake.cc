@@ -60,8 +60,7 @@ namespace Voussoir
               log.warn(text.str(), ", more than was ever recorded; ", remedy);
             if (g < 1e-3)
               log.warn(text.str(), ", which nobody would feel; ", remedy);
-            if (end_time > 0. &&
-                reached.acceleration < 0.99 * whole.acceleration)
+            if (reached.acceleration < 0.99 * whole.acceleration)
               log.warn(text.str(),
                        ", but reaches ",
                        reached.acceleration / standard_gravity,
@@ -138,7 +137,8 @@ namespace Voussoir
     const double        end_time = parameters.time.end_time;
     GroundMotionSignals motion = ground_motion.build(parameters.file.folder());
     log(ground_motion.summary(motion, end_time));
-    check_peaks(motion, end_time, log);
+    if (end_time > 0.)
+      check_peaks(motion, end_time, log);
     if (model.rigid_base())
       {
         if (std::all_of(model.materials.begin(),

@@ -413,29 +413,22 @@ namespace Voussoir
   Model::check_source_point(Log &log) const
   {
     const AbsorbingParameters &absorbing = parameters.boundaries.absorbing;
-    if (split_list(absorbing.face_sets).empty() || absorbing.type == "viscous")
+    if (split_list(absorbing.face_sets).empty() ||
+        absorbing.type == "viscous" || absorbing.radius > 0.)
       return;
     const auto &[lower, upper] = boundary.extent();
-    double distance            = absorbing.radius;
-    if (distance == 0.)
-      {
-        Tensor<1, 3> outside;
-        for (unsigned int d = 0; d < 3; ++d)
-          outside[d] = std::max({0.,
-                                 lower[d] - absorbing.source[d],
-                                 absorbing.source[d] - upper[d]});
-        distance = outside.norm();
-      }
-    if (distance > 3. * upper.distance(lower))
-      log.warn("the springs of the absorbing boundary hardly hold, as \"",
-               absorbing.radius > 0. ? "Radius" : "Source point",
-               "\" in section \"Boundaries\" puts the source of waves ",
-               distance,
-               " m from it, but the model reaches only from (",
+    Tensor<1, 3> outside;
+    for (unsigned int d = 0; d < 3; ++d)
+      outside[d] = std::max(
+        {0., lower[d] - absorbing.source[d], absorbing.source[d] - upper[d]});
+    if (outside.norm() > 3. * upper.distance(lower))
+      log.warn("\"Source point\" in section \"Boundaries\" is ",
+               outside.norm(),
+               " m outside the model, which reaches from (",
                lower,
                ") to (",
                upper,
-               ") m");
+               ") m; springs so far from it hardly hold");
   }
 
 

@@ -70,10 +70,7 @@ namespace Voussoir
       lowest                      = Utilities::MPI::min(lowest, communicator);
       top                         = Utilities::MPI::max(top, communicator);
       bottom                      = Utilities::MPI::min(bottom, communicator);
-      if (sets.empty())
-        log.warn("\"Free surface\" in section \"Reservoir\" names no face "
-                 "sets, so that the water is shut in as if under a rigid lid");
-      else if (top - lowest > 0.25 * (top - bottom)) // rows of cells may slope
+      if (top - lowest > 0.25 * (top - bottom)) // rows of cells may slope
         log.warn(
           "\"Free surface\" in section \"Reservoir\" reaches down to z = ",
           lowest,

@@ -156,7 +156,7 @@ namespace Voussoir
                    largest,
                    " K; give changes since the joints were closed, not the "
                    "temperature itself");
-        if (!elevations.empty() &&
+        if (elevations.size() > 1 && // one row is the same everywhere
             (elevations.front() > top || elevations.back() < bottom))
           log.warn("\"Table\"",
                    section,

@@ -20,11 +20,13 @@ namespace Voussoir
                      parameters.discretization,
                      parameters.boundaries.supports.list(),
                      [](const Grid::Cell &) { return 0U; })
+    , log(communicator, true)
     , reservoir(water_mesh,
                 parameters.grid,
                 parameters.reservoir,
                 discretization,
-                terms)
+                terms,
+                log)
     , time_step(parameters.time.time_step > 0. ?
                   parameters.time.time_step :
                   parameters.time.safety_factor * reservoir.stable_step())

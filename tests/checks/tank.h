@@ -19,6 +19,7 @@ namespace Voussoir
     const Grid           grid;
     const Discretization discretization;
     NodalTerms           terms;
+    Log                  log;
     const Reservoir      reservoir;
     const RigidBase      base;
     const double         time_step;

@@ -126,7 +126,7 @@ namespace Voussoir
       run()
       {
         Sample             result  = pick(samples);
-        const unsigned int n_times = 1 + below(6);
+        const unsigned int n_times = 1 + below(3);
         for (unsigned int i = 0; i < n_times; ++i)
           damage(result.text);
         return result;
@@ -189,7 +189,7 @@ namespace Voussoir
                                                     std::string(5000, '9'),
                                                     std::string(20000, ' ')};
         const std::size_t                     at = below(text.size() + 1);
-        switch (below(10))
+        switch (below(12))
           {
             case 0: // a byte
               if (at < text.size())
@@ -243,6 +243,12 @@ namespace Voussoir
                     text[at + i] = static_cast<char>(value >> (8 * i));
                 break;
               }
+            case 7: // a digit
+            case 8:
+              if (const auto digit = text.find_first_of("0123456789", at);
+                  digit != std::string::npos)
+                text[digit] = static_cast<char>('0' + below(10));
+              break;
             default: // a word
               {
                 const std::string white_space = " \t\n,;:=";

@@ -54,8 +54,6 @@ namespace Voussoir
         write_and_read("comment in Latin-1.prm", with("\xC3\xBC", "\xFC"));
         write_and_read("M\xC3\xBChle.prm", text);
 
-        write_and_read("line of a Mac.prm",
-                       with("set Type = box", "set Type = bo"));
         write_and_read("name in Latin-1.prm", with("rock\n", "F\xEBls\n"));
         write_and_read("M\xFChle.prm", text);
         write_and_read("zero byte.prm", with("box", std::string("b\0x", 3)));

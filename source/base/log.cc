@@ -48,8 +48,6 @@ namespace Voussoir
       return;
     all_warnings.push_back(text);
     line("Warning: ", text);
-    if (speaks && quiet)
-      std::cout << "Warning: " << text << std::endl;
   }
 
 

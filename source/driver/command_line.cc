@@ -105,17 +105,21 @@ namespace Voussoir
       Utilities::System::get_memory_stats(memory);
       const double megabytes =
         Utilities::MPI::max(memory.VmHWM / 1024., communicator);
-      if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        std::cout
-          << "Valid: " << simulation.model.discretization.dof_handler.n_dofs()
-          << " unknowns, time step " << run.time_step.length << " s, "
-          << run.n_steps() << " steps.\nThe steps take about "
-          << duration_text(seconds) << " on "
-          << counted(Utilities::MPI::n_mpi_processes(communicator),
-                     "rank",
-                     "ranks")
-          << ", static state, modes and output not counted, and at least "
-          << std::lround(megabytes) << " MB of memory on each." << std::endl;
+      if (Utilities::MPI::this_mpi_process(communicator) > 0)
+        return;
+      for (const std::string &warning : simulation.log.warnings())
+        std::cout << "Warning: " << warning << '\n';
+      std::cout << "Valid: "
+                << simulation.model.discretization.dof_handler.n_dofs()
+                << " unknowns, time step " << run.time_step.length << " s, "
+                << run.n_steps() << " steps.\nThe steps take about "
+                << duration_text(seconds) << " on "
+                << counted(Utilities::MPI::n_mpi_processes(communicator),
+                           "rank",
+                           "ranks")
+                << ", static state, modes and output not counted, and at least "
+                << std::lround(megabytes) << " MB of memory on each."
+                << std::endl;
     }
 
 

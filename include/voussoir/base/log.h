@@ -38,9 +38,9 @@ namespace Voussoir
       (*this)(text.str());
     }
 
-    /** Says what the results must not be read without: also if the log is
-     *  quiet, and again at the end and in the summary of a run. Warnings that
-     *  were said before are not repeated. */
+    /** Says what the results must not be read without, and again at the end and
+     * in the summary of a run. Warnings that were said before are not repeated.
+     */
     template <typename... Parts>
     void
     warn(const Parts &...parts)

@@ -112,8 +112,12 @@ namespace Voussoir
       std::cout << "Valid: "
                 << simulation.model.discretization.dof_handler.n_dofs()
                 << " unknowns, time step " << run.time_step.length << " s, "
-                << run.n_steps() << " steps.\nThe steps take about "
-                << duration_text(seconds) << " on "
+                << run.n_steps() << " steps"
+                << (parameters.damping.modes.empty() ?
+                      "" :
+                      ", more with the damping that comes from the modes")
+                << ".\nThe steps take about " << duration_text(seconds)
+                << " on "
                 << counted(Utilities::MPI::n_mpi_processes(communicator),
                            "rank",
                            "ranks")

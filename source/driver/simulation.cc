@@ -41,6 +41,8 @@ namespace Voussoir
                   const RunOptions &options,
                   Log              &log)
     {
+      if (!model.parameters.damping.modes.empty())
+        log.line("Before the modes are known, without damping:");
       auto setup = std::make_unique<RunSetup>(model, Modes(), folder, log);
       check_modes(model);
       if (folder.wanted() && !options.validate)

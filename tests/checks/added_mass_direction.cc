@@ -9,10 +9,10 @@ namespace Voussoir
   namespace
   {
     /**
-     * A wall that may be turned in plan and lean along the river, between
-     * upright ends: its vertices lie at
-     *   x = u cos b ,  y = u sin b + s z - d
-     * with the way u along it, the height z and the depth d behind its face.
+     * A wall that may be turned in plan and lean: its vertices lie at
+     *   u t + (s z - d) m + z e_z
+     * with the way u along it, t = (cos b, sin b, 0), the height z, the depth d
+     * behind its face and m = (-sin b, cos b, 0).
      */
     class TurnedWall : public MeshGenerator
     {
@@ -22,7 +22,7 @@ namespace Voussoir
       {
         prm.add_parameter("Length", length, "[m]");
         prm.add_parameter("Height", height, "[m]");
-        prm.add_parameter("Thickness", thickness, "Along y [m].");
+        prm.add_parameter("Thickness", thickness, "Across [m].");
         prm.add_parameter("Bearing", bearing, "b [degrees].");
         prm.add_parameter("Slope", slope, "s, run over rise.");
         prm.add_parameter("Cells", cells, "Along, through, upwards.");
@@ -49,7 +49,9 @@ namespace Voussoir
                 const double u = i * length / cells[0],
                              d = thickness - j * thickness / cells[1],
                              z = k * height / cells[2];
-                mesh.vertices.emplace_back(u * c, u * s + slope * z - d, z);
+                mesh.vertices.emplace_back(u * c - (slope * z - d) * s,
+                                           u * s + (slope * z - d) * c,
+                                           z);
               }
         for (unsigned int k = 0; k < cells[2]; ++k)
           for (unsigned int j = 0; j < cells[1]; ++j)
@@ -130,7 +132,7 @@ namespace Voussoir
       normal_of(const double bearing, const double slope)
       {
         const double b = bearing * numbers::PI / 180.;
-        return Tensor<1, 3>({-std::sin(b), std::cos(b), -slope * std::cos(b)});
+        return Tensor<1, 3>({-std::sin(b), std::cos(b), -slope});
       }
 
 
@@ -196,7 +198,8 @@ namespace Voussoir
           {
             const Point<3> &x     = discretization.node_positions[node];
             const auto      added = added_at(simulation->model.terms, node);
-            const double    along = x[0] / (length * direction[1]);
+            const double    along =
+              (x[0] * direction[1] - x[1] * direction[0]) / length;
             // on the plane of the face, and below the level
             const bool   wet = std::abs(n * x) < 1e-9 && x[2] < level;
             const double mass =

@@ -115,19 +115,25 @@ namespace Voussoir
     };
 
 
+    /** Rows of zeros are not kept. */
+    bool
+    is_kept(const double *row, const unsigned int width)
+    {
+      return std::any_of(row, row + width, [](const double x) {
+        return x != 0. || std::signbit(x);
+      });
+    }
+
+
     Rows
     rows_of(const KeyedValues &values)
     {
       Rows rows(values.width);
-      for (const auto &[key, numbers] : values.items)
-        if (std::any_of(numbers, numbers + values.width, [](const double x) {
-              return x != 0. || std::signbit(x);
-            }))
+      for (const auto &[key, row] : values.items)
+        if (is_kept(row, rows.width))
           {
             rows.keys.push_back(key);
-            rows.numbers.insert(rows.numbers.end(),
-                                numbers,
-                                numbers + values.width);
+            rows.numbers.insert(rows.numbers.end(), row, row + rows.width);
           }
       return rows;
     }
@@ -250,7 +256,8 @@ namespace Voussoir
     {
     public:
       Writer(const std::string &name, const MPI_Comm communicator)
-        : communicator(communicator)
+        : name(name)
+        , communicator(communicator)
         , file(create(name, communicator), H5Fclose, not_written)
       {}
 
@@ -262,8 +269,8 @@ namespace Voussoir
             const unsigned int         width)
       {
         // the ranks go on together or not at all, as the next call needs all
-        const Selection   selection(part, width, not_written);
-        const Handle      data(H5Dcreate2(file,
+        const Selection selection(part, width, not_written);
+        const Handle    data(H5Dcreate2(file,
                                      name.c_str(),
                                      type_of<Number>(),
                                      selection.in_file,
@@ -272,7 +279,7 @@ namespace Voussoir
                                      H5P_DEFAULT),
                           H5Dclose,
                           not_written);
-        const std::string problem = problem_of(communicator, [&] {
+        together([&] {
           check(H5Dwrite(data,
                          type_of<Number>(),
                          selection.in_memory,
@@ -281,8 +288,6 @@ namespace Voussoir
                          numbers.data()),
                 not_written);
         });
-        if (!problem.empty())
-          throw Problem{problem};
       }
 
       /** Written by the first rank. */
@@ -296,7 +301,7 @@ namespace Voussoir
       void
       flush()
       {
-        check(H5Fflush(file, H5F_SCOPE_GLOBAL), not_written);
+        together([&] { check(H5Fflush(file, H5F_SCOPE_GLOBAL), not_written); });
       }
 
     private:
@@ -310,8 +315,27 @@ namespace Voussoir
         return H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
       }
 
-      const MPI_Comm communicator;
-      const Handle   file;
+      /** Throws on all ranks if one has a problem. What has been written is
+       *  given up then, as the library cannot close a file whose end finds no
+       *  room, and crashes later. */
+      void
+      together(const std::function<void()> &action)
+      {
+        const std::string problem = problem_of(communicator, action);
+        if (problem.empty())
+          return;
+        if (Utilities::MPI::this_mpi_process(communicator) == 0)
+          {
+            std::error_code ignored;
+            std::filesystem::resize_file(name, 0, ignored);
+          }
+        MPI_Barrier(communicator);
+        throw Problem{problem};
+      }
+
+      const std::string name;
+      const MPI_Comm    communicator;
+      const Handle      file;
     };
 
 
@@ -556,6 +580,28 @@ namespace Voussoir
     }
 
 
+    /** Whether the disk has room for the rows, as far as that can be known. */
+    void
+    check_room(const std::string  &file,
+               const StateContent &content,
+               const MPI_Comm      communicator)
+    {
+      double bytes = 0.;
+      for (const auto &[name, values] : content.values)
+        for (const auto &item : values.items)
+          if (is_kept(item.second, values.width))
+            bytes += 8. * (values.width + 1.);
+      bytes = Utilities::MPI::sum(bytes, communicator);
+      std::error_code none;
+      const auto      space =
+        std::filesystem::space(std::filesystem::path(file).parent_path(), none);
+      if (!none && bytes > space.available)
+        throw Problem{"it needs " + std::to_string(std::lround(1e-6 * bytes)) +
+                      " MB, and the disk has " +
+                      std::to_string(space.available / 1000000) + " MB left"};
+    }
+
+
     /** Lets the file appear under its name once it is on the disk. */
     void
     put_in_place(const std::string &unfinished, const std::string &file)
@@ -593,6 +639,7 @@ namespace Voussoir
     MPI_Barrier(communicator);
 
     std::string problem = problem_of(communicator, [&] {
+      check_room(file, content, communicator);
       nlohmann::json contents{{"format", format},
                               {"header", header},
                               {"values", nlohmann::json::array()},

@@ -78,7 +78,9 @@ namespace Voussoir
           throw UserError(entry + "zero, so that nothing weighs; give that of "
                                   "gravity, 0, 0, -9.81, or leave the load "
                                   "out.");
-        if (acceleration[2] > -9.7 || acceleration.norm() > 9.9)
+        // it may be inclined, or more than one g by an earthquake's share
+        if (acceleration[2] > 0. || acceleration.norm() < 5. ||
+            acceleration.norm() > 20.)
           log.warn(entry,
                    acceleration,
                    " m/s2, but gravity on earth is 0 0 -9.81 m/s2");

@@ -26,10 +26,10 @@ namespace Voussoir
               const std::string &place) override
       {
         factor.prepare("\"Time function\" in section \"" + place + "\"");
-        if (force.norm() == 0.)
-          throw UserError("\"Force\" in section \"" + place +
-                          "\" is zero; give its components, or leave the load "
-                          "out.");
+        if (model.file.given(place + "/Force").empty())
+          throw UserError("Section \"" + place +
+                          "\" has no \"Force\"; give its components, or leave "
+                          "the load out.");
         const PointWeights weights(model.discretization,
                                    {{"load", point}},
                                    "\"Point\" in section \"" + place + "\"");

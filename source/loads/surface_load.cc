@@ -31,11 +31,11 @@ namespace Voussoir
               const std::string &place) override
       {
         factor.prepare("\"Time function\" in section \"" + place + "\"");
-        if (traction.norm() == 0. && pressure == 0.)
-          throw UserError(
-            "Section \"" + place +
-            "\" loads nothing, as its \"Traction\" and \"Pressure\" "
-            "are zero; give one of them, or leave the load out.");
+        if (model.file.given(place + "/Traction").empty() &&
+            model.file.given(place + "/Pressure").empty())
+          throw UserError("Section \"" + place +
+                          "\" has neither a \"Traction\" nor a \"Pressure\"; "
+                          "give one of them, or leave the load out.");
         for (const auto &[node, force] :
              face_forces(model.discretization,
                          split_list(face_sets),

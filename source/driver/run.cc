@@ -14,7 +14,7 @@ namespace Voussoir
   {
     // Between two looks at the clock and at what is asked from outside [s]:
     // those who ask may kill a second later.
-    constexpr double look_interval = 0.05;
+    constexpr double look_interval = 0.01;
   } // namespace
 
 
@@ -236,8 +236,13 @@ namespace Voussoir
         if (output.checkpoint_interval > 0. &&
             since_checkpoint.wall_time() > 60. * output.checkpoint_interval)
           mine[save] = 1.;
-        if (folder.exists() && std::filesystem::remove(stop_file))
-          mine[stop_now] = 1.;
+        if (folder.exists() && since_stop_file.wall_time() > 0.5)
+          {
+            std::error_code none;
+            mine[stop_now] =
+              std::filesystem::remove(stop_file, none) || mine[stop_now] > 0.;
+            since_stop_file.restart();
+          }
         const double of_step =
           since_look.wall_time() / std::max<double>(state.step - last_look, 1.);
         mine[steps] = std::min(look_interval / std::max(of_step, 1e-9), 1e6);

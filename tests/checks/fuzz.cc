@@ -307,10 +307,10 @@ namespace Voussoir
               ++n_lost;
               ++progress->number;
             }
-        std::clog << name << ": " << n_inputs << " inputs, "
-                  << progress->n_refused << " refused, " << n_lost
-                  << " lost, the slowest took " << progress->slowest << " s"
-                  << std::endl;
+        std::ofstream("figures.txt")
+          << name << ": " << n_inputs << " inputs, " << progress->n_refused
+          << " refused, " << n_lost << " lost, the slowest took "
+          << progress->slowest << " s" << std::endl;
         verdicts.is_true(std::to_string(n_inputs) + " damaged files are read "
                                                     "or refused by a sentence",
                          n_lost == 0);

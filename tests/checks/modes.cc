@@ -236,9 +236,10 @@ namespace Voussoir
         };
         const Modes without  = with_rock({}),
                     held     = with_rock({"Modes/Held materials=rock"}),
-                    massless = with_rock({"Modes/Massless materials=rock"}),
-                    fixed    = with_rock({"Modes/Massless materials=rock",
-                                          "Boundaries/Fixed=base"});
+                    massless = with_rock({"Modes/Massless materials=rock"});
+        Case dam_alone(
+          ParameterFile(file.resolve("../data/koyna_section.prm")));
+        const Modes fixed = make_simulation(dam_alone, communicator)->modes;
         verdicts.near("rigid rock, mode 1 of a fixed base",
                       held.list[0].frequency,
                       fixed.list[0].frequency,

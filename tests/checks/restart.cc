@@ -22,7 +22,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Time", time, "When to interrupt [s].");
+        prm.add_parameter("Times", time, "When to interrupt [s].");
       }
 
       void
@@ -196,8 +196,8 @@ namespace Voussoir
              const bool           interrupted)
       {
         return file.with({"Output/Folder=" + name,
-                          std::string("Output/interruption/Time=") +
-                            (interrupted ? "0.2" : "1e300")});
+                          std::string("Output/interruption/Times=") +
+                            (interrupted ? "0.2" : "1e9")});
       }
 
 

@@ -60,7 +60,11 @@ namespace Voussoir
           {
             sentence = error.what();
           }
-        verdicts.is_true("another record is refused by name",
+        verdicts.is_true("another record is refused by name" +
+                           std::string(sentence.find("surface.txt") !=
+                                           std::string::npos ?
+                                         "" :
+                                         ", not: " + sentence),
                          sentence.find("surface.txt") != std::string::npos);
       }
 
@@ -72,6 +76,7 @@ namespace Voussoir
       {
         std::vector<std::string> changes{
           "Output/Folder=" + folder,
+          "Ground motion/Type=record",
           "Ground motion/Record/File x=" +
             std::filesystem::absolute("surface.txt").string()};
         if (end_time > 0.)

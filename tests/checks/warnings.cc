@@ -42,9 +42,12 @@ namespace Voussoir
         options.quiet     = true;
         options.no_output = true;
         options.validate  = true;
-        return Simulation(*parameters, options, communicator)
-          .log.warnings()
-          .size();
+        const Simulation simulation(*parameters, options, communicator);
+        const auto      &said = simulation.log.warnings();
+        if (Utilities::MPI::this_mpi_process(communicator) == 0)
+          for (const std::string &warning : said)
+            std::cout << "Warning: " << warning << std::endl;
+        return said.size();
       }
 
       std::string mistakes;

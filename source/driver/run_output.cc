@@ -139,7 +139,8 @@ namespace Voussoir
   void
   Run::finish()
   {
-    loop_seconds          = clock.wall_time();
+    loop_seconds = clock.wall_time();
+    check_contact();
     nlohmann::json result = summary();
     if (folder.exists())
       {
@@ -157,7 +158,8 @@ namespace Voussoir
     if (contact)
       text << "Contact: "
            << 100. * result.at("contact share of the loop").get<double>()
-           << " % of the loop\n";
+           << " % of the loop, " << contact->effort().paths
+           << " clusters by path following\n";
     for (const std::string &warning : warnings)
       text << "Warning: " << warning << '\n';
     log(text.str());

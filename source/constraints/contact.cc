@@ -237,6 +237,8 @@ namespace Voussoir
     total.sweeps      = std::max(total.sweeps, effort.sweeps);
     total.all_sweeps += effort.all_sweeps;
     total.clusters += effort.clusters;
+    total.paths += effort.paths;
+    total.unsolved += effort.unsolved;
 
     Result result;
     result.violation       = effort.penetration;
@@ -303,10 +305,20 @@ namespace Voussoir
   }
 
 
-  const ContactSolver::Effort &
+  ContactSolver::Effort
   Contact::effort() const
   {
-    return total;
+    ContactSolver::Effort result;
+    for (const auto largest : {&ContactSolver::Effort::penetration,
+                               &ContactSolver::Effort::residual})
+      result.*largest = Utilities::MPI::max(total.*largest, communicator);
+    result.sweeps = Utilities::MPI::max(total.sweeps, communicator);
+    for (const auto sum : {&ContactSolver::Effort::all_sweeps,
+                           &ContactSolver::Effort::clusters,
+                           &ContactSolver::Effort::paths,
+                           &ContactSolver::Effort::unsolved})
+      result.*sum = Utilities::MPI::sum(total.*sum, communicator);
+    return result;
   }
 
 

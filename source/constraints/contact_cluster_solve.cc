@@ -1,11 +1,13 @@
 // The contact of clusters of several points.
 
+#include <voussoir/constraints/contact_path.h>
 #include <voussoir/constraints/contact_solver.h>
 
 #include <deal.II/lac/lapack_full_matrix.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace Voussoir
 {
@@ -16,6 +18,13 @@ namespace Voussoir
     // Forces are found when they change by less than this part, or move their
     // points by less than this part of the displacement, which is round-off.
     constexpr double accuracy = 1e-12, round_off = 1e-13;
+
+    // Sweeps before another way is tried.
+    constexpr unsigned int max_sweeps = 100;
+
+    // Forces that would move a point this many times as far as the widest gap
+    // have run away: the nodes are jammed.
+    constexpr double too_large = 1e4;
 
     // Part of a point's own flexibility by which Newton's iteration softens it:
     // forces between more points than the nodes can tell apart stay finite.
@@ -91,39 +100,63 @@ namespace Voussoir
     if (find_gaps(cluster, displacement) && hold_all(cluster))
       return;
 
-    double size = 0.;
+    double size = 0., widest = 0., softest = 0.;
     for (unsigned int i = 0; i < cluster.n_nodes; ++i)
       size = std::max(size, displacement[cluster.first_node + i].norm());
+    for (unsigned int k = 0; k < cluster.n_points; ++k)
+      widest = std::max(widest, gaps[k].norm());
+    for (unsigned int i = 0; i < 3 * cluster.n_points; ++i)
+      softest =
+        std::max(softest, cluster.flexibility[i * (3 * cluster.n_points + 1)]);
     Sweep      last;
     const auto found = [&] {
       return last.change <= accuracy * last.largest ||
              last.moved <= round_off * size;
     };
+    const auto run_away = [&] {
+      return softest * last.largest > too_large * widest;
+    };
 
     find_moves(cluster); // from the forces of the step before
     unsigned int n_sweeps = 0;
-    for (; n_sweeps < max_sweeps && !found(); ++n_sweeps)
-      {
-        // Cohesion that ends at opening may leave no solution: a point opens
-        // with it and closes without. Then there is none in this step.
-        if (n_sweeps == max_sweeps / 2)
-          for (unsigned int k = 0; k < cluster.n_points; ++k)
-            points[cluster.first_point + k].limits.cohesion = 0.;
-        last = n_sweeps % sweeps_per_jump == sweeps_per_jump - 1 ?
-                 sweep_after_jump(cluster, last) :
-                 sweep(cluster);
-      }
-    // friction may leave no solution either; then at least nothing penetrates
-    if (!found())
-      iterate_newton(cluster, false, last.largest);
-    if (n_sweeps > max_sweeps / 2)
-      for (unsigned int k = 0; k < cluster.n_points; ++k)
-        update_limits(points[cluster.first_point + k]);
+    for (; n_sweeps < max_sweeps && !found() && !run_away(); ++n_sweeps)
+      last = n_sweeps % sweeps_per_jump == sweeps_per_jump - 1 ?
+               sweep_after_jump(cluster, last) :
+               sweep(cluster);
     effort.sweeps = std::max(effort.sweeps, n_sweeps);
     effort.all_sweeps += n_sweeps;
     ++effort.clusters;
-    if (last.largest > 0.)
+    if (!found() || run_away())
+      follow_path(cluster, size, effort);
+    else if (last.largest > 0.)
       effort.residual = std::max(effort.residual, last.change / last.largest);
+  }
+
+
+  void
+  ContactSolver::follow_path(const Cluster &cluster,
+                             const double   size,
+                             Effort        &effort)
+  {
+    std::vector<ContactLimits> limits;
+    for (unsigned int k = 0; k < cluster.n_points; ++k)
+      limits.push_back(points[cluster.first_point + k].limits);
+    const ContactForces found =
+      solve_contact(cluster.flexibility,
+                    {gaps.begin(), gaps.begin() + cluster.n_points},
+                    limits,
+                    10. * round_off * size); // of several sweeps
+    ++effort.paths;
+    effort.residual = std::max(effort.residual, found.residual);
+    if (found.residual > unsolved_contact)
+      ++effort.unsolved;
+    if (found.residual == 1.) // the forces of the sweeps are better than none
+      return;
+    for (unsigned int k = 0; k < cluster.n_points; ++k)
+      {
+        points[cluster.first_point + k].force  = found.points[k].force;
+        points[cluster.first_point + k].status = found.points[k].status;
+      }
   }
 
 
@@ -215,7 +248,8 @@ namespace Voussoir
   ContactSolver::Sweep
   ContactSolver::sweep(const Cluster &cluster)
   {
-    Sweep result{0., 0., 0.};
+    Sweep  result{0., 0., 0.};
+    double sum = 0.;
     for (unsigned int k = 0; k < cluster.n_points; ++k)
       {
         const unsigned int number = cluster.first_point + k;
@@ -226,11 +260,16 @@ namespace Voussoir
                       relative_motion(number, before));
         const Tensor<1, 3> change = point.force - before;
         add_to_moves(cluster, point, change);
-        result.change = std::max(result.change, change.norm());
+        const double size = change.norm();
+        result.change     = std::max(result.change, size);
         result.moved =
           std::max(result.moved, relative_motion(number, change).norm());
         result.largest = std::max(result.largest, point.force.norm());
+        sum += size;
       }
+    if (!std::isfinite(sum)) // std::max drops what is not a number
+      result.change = result.moved = result.largest =
+        std::numeric_limits<double>::infinity();
     return result;
   }
 
@@ -240,7 +279,7 @@ namespace Voussoir
   {
     for (unsigned int k = 0; k < cluster.n_points; ++k)
       holding[k] = points[cluster.first_point + k].force;
-    iterate_newton(cluster, true, before.largest);
+    iterate_newton(cluster, before.largest);
     find_moves(cluster);
     Sweep result = sweep(cluster);
     if (!(result.change <= before.change)) // it led astray
@@ -257,11 +296,10 @@ namespace Voussoir
 
   void
   ContactSolver::iterate_newton(const Cluster &cluster,
-                                const bool     shear_too,
                                 const double   largest_force)
   {
     for (unsigned int i = 0; i < max_newton_steps; ++i)
-      if (newton_step(cluster, shear_too) <= accuracy * largest_force)
+      if (newton_step(cluster) <= accuracy * largest_force)
         return;
   }
 
@@ -345,7 +383,7 @@ namespace Voussoir
   // exceeds the tension, and slides if the tangential one exceeds its limit L,
   // against which it then is F_t = L trial / |trial|.
   double
-  ContactSolver::newton_step(const Cluster &cluster, const bool shear_too)
+  ContactSolver::newton_step(const Cluster &cluster)
   {
     const unsigned int       n = 3 * cluster.n_points;
     LAPACKFullMatrix<double> system(n);
@@ -368,8 +406,7 @@ namespace Voussoir
         const NewtonPoint rows{
           k, points[cluster.first_point + k], W, gap, 1. / D, system, change};
         rows.set_normal_row();
-        if (shear_too)
-          rows.set_tangential_rows();
+        rows.set_tangential_rows();
       }
 
     try

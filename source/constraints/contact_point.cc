@@ -15,6 +15,10 @@ namespace Voussoir
 
   namespace
   {
+    // Parts of a motion: that is none, and that a singular flexibility leaves.
+    constexpr double round_off = 1e-14, left_over = 1e-9;
+
+
     /** The normal force if the gap without it is @p gap. */
     double
     normal_force(const double         gap,
@@ -106,7 +110,7 @@ namespace Voussoir
 
     /**
      * Evaluates a gap(force) last at the force that closes it, between two
-     * forces with these gaps. If they have one sign, at the second one.
+     * forces with these gaps. If they have one sign, at the one that is nearer.
      */
     template <typename Gap>
     void
@@ -118,7 +122,7 @@ namespace Voussoir
     {
       if (x0 == x1 || !(g0 * g1 < 0.))
         {
-          gap(x1);
+          gap(std::abs(g0) < std::abs(g1) ? x0 : x1);
           return;
         }
       const double size   = std::max(std::abs(g0), std::abs(g1));
@@ -206,7 +210,7 @@ namespace Voussoir
       {
         F             = -(flexibility.inverse * b);
         result.status = ContactStatus::sticking;
-        return (D[0][0] > 0. || b[0] <= 0.) && F[0] >= lowest &&
+        return (b + D * F).norm() <= left_over * b.norm() && F[0] >= lowest &&
                std::hypot(F[1], F[2]) <= limits.shear(false, F[0]);
       }
 
@@ -230,7 +234,9 @@ namespace Voussoir
 
         double above     = lowest - gap_below / D[0][0],
                gap_above = closed_gap(above);
-        for (unsigned int i = 0; i < 100 && gap_above < 0.; ++i)
+        // where a singular flexibility lets it stick, the gap stays zero
+        for (unsigned int i = 0; i < 100 && gap_above < -round_off * b.norm();
+             ++i)
           {
             below     = above;
             gap_below = gap_above;
@@ -245,18 +251,31 @@ namespace Voussoir
       open()
       {
         // bond and shear in turn; once is enough if they are not coupled
-        bool is_open = true;
+        bool is_open = true, found = false;
         F[1] = F[2] = 0.;
-        for (unsigned int i = 0; i < 200; ++i)
+        for (unsigned int i = 0; i < 20 && !found; ++i)
           {
             const Tensor<1, 3> before = F;
             const double       normal = normal_force(
               b[0] + D[0][1] * F[1] + D[0][2] * F[2], D[0][0], limits, is_open);
             gap(std::min(normal, 0.), limits.shear(true, normal));
-            if ((F - before).norm() <= 1e-15 * F.norm())
-              break;
+            found = (F - before).norm() <= 1e-15 * F.norm();
           }
-        if (b[0] + D[0] * F < 0. && !limits.locked)
+        if (!found && is_open && limits.opening > 0.) // an opened bond
+          {
+            const double limit    = limits.shear(true, 0.);
+            const auto   too_much = [&](const double normal) {
+              return normal +
+                     limits.tension *
+                       std::min(gap(normal, limit) / limits.opening, 1.);
+            };
+            close_gap(too_much,
+                      -limits.tension,
+                      too_much(-limits.tension),
+                      0.,
+                      too_much(0.));
+          }
+        if ((!is_open || b[0] + D[0] * F < 0.) && !limits.locked)
           close_with_cohesion();
         else
           result.status = ContactStatus::open;

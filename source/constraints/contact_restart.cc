@@ -64,15 +64,15 @@ namespace Voussoir
                                            surface.energy.bars,
                                            surface.energy.uplift},
                        communicator));
-    const auto largest = [&](const auto value) {
-      return Utilities::MPI::max(value, communicator);
-    };
+    const ContactSolver::Effort made = effort();
     return {{"energies", energies},
-            {"penetration", largest(total.penetration)},
-            {"residual", largest(total.residual)},
-            {"sweeps", largest(total.sweeps)},
-            {"all sweeps", Utilities::MPI::sum(total.all_sweeps, communicator)},
-            {"clusters", Utilities::MPI::sum(total.clusters, communicator)}};
+            {"penetration", made.penetration},
+            {"residual", made.residual},
+            {"sweeps", made.sweeps},
+            {"all sweeps", made.all_sweeps},
+            {"clusters", made.clusters},
+            {"paths", made.paths},
+            {"unsolved", made.unsolved}};
   }
 
 
@@ -117,5 +117,7 @@ namespace Voussoir
     total.sweeps      = saved.at("sweeps");
     total.all_sweeps  = saved.at("all sweeps");
     total.clusters    = saved.at("clusters");
+    total.paths       = saved.at("paths");
+    total.unsolved    = saved.at("unsolved");
   }
 } // namespace Voussoir

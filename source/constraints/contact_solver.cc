@@ -47,6 +47,8 @@ namespace Voussoir
         point.second += number_of_nodes;
         point.history.opening =
           std::max(point.history.opening, point.initial_gap[0]);
+        if (point.initial_gap[0] > 0.)
+          point.status = ContactStatus::open;
         update_limits(point);
         points.push_back(point);
       }
@@ -301,7 +303,9 @@ namespace Voussoir
           std::max(extension - elastic,
                    std::min(extension + elastic, point.bar_extension));
       }
-    if (point.status != ContactStatus::sticking || surface.bar_stiffness > 0.)
+    // keys may have closed
+    if (point.status != ContactStatus::sticking || surface.bar_stiffness > 0. ||
+        (surface.key_depth > 0. && !point.limits.locked))
       update_limits(point);
     return std::max(0., -point.gap[0]);
   }

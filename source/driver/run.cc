@@ -201,6 +201,25 @@ namespace Voussoir
 
 
   void
+  Run::check_contact()
+  {
+    if (!contact)
+      return;
+    const ContactSolver::Effort effort = contact->effort();
+    if (effort.unsolved == 0)
+      return;
+    std::ostringstream text;
+    text << std::setprecision(3) << "the contact of " << effort.unsolved
+         << " clusters of nodes was not solved: gaps miss the laws of their "
+            "interfaces by up to "
+         << 100. * effort.residual
+         << " % of the motion in a step; compare with a run with a smaller "
+            "\"Safety factor\" in section \"Time\"";
+    log.warn(text.str());
+  }
+
+
+  void
   Run::keep_last_good()
   {
     last_good.displacement = state.displacement;
@@ -275,6 +294,7 @@ namespace Voussoir
   Run::abort(const std::string &reason)
   {
     std::string written;
+    check_contact();
     if (folder.exists())
       {
         const std::string picture =

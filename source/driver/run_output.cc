@@ -116,7 +116,8 @@ namespace Voussoir
   void
   Run::finish()
   {
-    loop_seconds          = clock.wall_time();
+    loop_seconds = clock.wall_time();
+    check_contact();
     nlohmann::json result = summary();
     if (folder.exists())
       {
@@ -139,9 +140,11 @@ namespace Voussoir
     if (contact)
       text << "Contact: "
            << 100. * result.at("contact share of the loop").get<double>()
-           << " % of the loop\n";
-    for (const std::string &warning : log.warnings())
-      text << "Warning: " << warning << '\n';
+           << " % of the loop, " << contact->effort().paths
+           << " clusters by path following
+              ";
+        for (const std::string &warning : log.warnings()) text
+           << "Warning: " << warning << '\n';
     log(text.str());
     log(timer_table());
   }

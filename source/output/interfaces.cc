@@ -328,19 +328,15 @@ namespace Voussoir
       nlohmann::json
       effort() const
       {
-        const auto &effort = contact->effort();
-        const auto  n_clusters =
-          Utilities::MPI::sum(effort.clusters, communicator);
+        const auto effort = contact->effort();
         return {{"largest penetration over cell size",
-                 Utilities::MPI::max(effort.penetration, communicator) /
-                   contact->cell_size},
-                {"largest residual",
-                 Utilities::MPI::max(effort.residual, communicator)},
-                {"most sweeps",
-                 Utilities::MPI::max(effort.sweeps, communicator)},
+                 effort.penetration / contact->cell_size},
+                {"largest residual", effort.residual},
+                {"most sweeps", effort.sweeps},
                 {"mean sweeps",
-                 double(Utilities::MPI::sum(effort.all_sweeps, communicator)) /
-                   std::max(n_clusters, 1ULL)}};
+                 double(effort.all_sweeps) / std::max(effort.clusters, 1ULL)},
+                {"clusters by path following", effort.paths},
+                {"unsolved clusters", effort.unsolved}};
       }
 
       std::string points_text, blocks_text;

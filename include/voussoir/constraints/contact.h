@@ -74,8 +74,9 @@ namespace Voussoir
     void
     grout(const std::vector<std::string> &loads, const Vector &displacement);
 
-    /** What the steps took; the largest values and sums since the start. */
-    const ContactSolver::Effort &
+    /** What the steps took; the largest values and sums over all ranks since
+     *  the start. Called on all ranks. */
+    ContactSolver::Effort
     effort() const;
 
     /** Wall time of this rank in the steps since the static state [s]. */

@@ -64,7 +64,8 @@ namespace Voussoir
    * opening that the interfaces resist. Exact, without penalty: a cluster of
    * two nodes in closed form, others by their dense system if nothing slips or
    * opens, else by projected Gauss-Seidel over their points and, where that
-   * goes slowly, Newton's iteration.
+   * goes slowly, Newton's iteration. Where these do not converge, by following
+   * a path that leads to a solution (see contact_path.h).
    *
    * Knows neither mesh nor ranks: its nodes are those of the clusters of one
    * rank.
@@ -103,6 +104,8 @@ namespace Voussoir
       double       residual    = 0.; // change of force in the last sweep, rel.
       unsigned int sweeps      = 0;  // largest
       unsigned long long all_sweeps = 0, clusters = 0; // with sweeps
+      unsigned long long paths    = 0; // clusters that needed one
+      unsigned long long unsolved = 0; // clusters whose forces break their laws
     };
 
     /**
@@ -125,8 +128,6 @@ namespace Voussoir
      *  stay below one for stability. */
     double
     bar_share_of_stable_step(const unsigned int point) const;
-
-    static constexpr unsigned int max_sweeps = 200;
 
   private:
     struct Cluster
@@ -198,17 +199,19 @@ namespace Voussoir
     Sweep
     sweep(const Cluster &cluster);
 
+    /** Finds the forces of a cluster that the sweeps did not find.
+     *  @param size of the displacement of its nodes */
+    void
+    follow_path(const Cluster &cluster, const double size, Effort &effort);
+
     /** The same after Newton's iteration, which is undone if the sweep then
      *  changes more than the one @p before. */
     Sweep
     sweep_after_jump(const Cluster &cluster, const Sweep &before);
 
-    /** Newton's iteration for the forces of a cluster together, or for the
-     *  normal ones only. */
+    /** Newton's iteration for the forces of a cluster together. */
     void
-    iterate_newton(const Cluster &cluster,
-                   const bool     shear_too,
-                   const double   largest_force);
+    iterate_newton(const Cluster &cluster, const double largest_force);
 
     /** Flexibility of a point times a force in its frame. */
     dealii::Tensor<1, 3>
@@ -222,7 +225,7 @@ namespace Voussoir
     /** One step of it; returns the largest change of a component, or zero if
      *  the linear system is singular [N]. */
     double
-    newton_step(const Cluster &cluster, const bool shear_too);
+    newton_step(const Cluster &cluster);
 
     void
     make_matrices(Cluster &cluster) const;

@@ -89,6 +89,10 @@ namespace Voussoir
     void
     check_energy();
 
+    /** Warns of contact that was not solved. */
+    void
+    check_contact();
+
     /** Keeps what a picture of the last good state needs. */
     void
     keep_last_good();

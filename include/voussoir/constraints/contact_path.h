@@ -1,0 +1,68 @@
+#ifndef voussoir_constraints_contact_path_h
+#define voussoir_constraints_contact_path_h
+
+#include <voussoir/constraints/contact_point.h>
+
+#include <vector>
+
+namespace Voussoir
+{
+  /** Forces of points that share nodes. */
+  struct ContactForces
+  {
+    std::vector<ContactForce> points;
+
+    /** By how much the gaps of these forces miss those that the laws have with
+     *  them, over the largest overlap or slip without forces; one if none were
+     * found. */
+    double residual;
+  };
+
+  /** Forces with a larger residual do not solve their contact. */
+  constexpr double unsolved_contact = 1e-9;
+
+  /**
+   * Solves the contact of points that share nodes: the gaps after the step are
+   *   g = b + W F .
+   *
+   * The law of a point is the one of `solve_contact`. Where it opens, the line
+   * of normal force over opening has a corner; there the cohesion goes from all
+   * to none, so that a point that would open with it and close without stays
+   * closed with a part of it. Opening, normal force and limit of the shear are
+   * then continuous functions of one number, and slip and shear of their trial:
+   * 3 n equations H(x) = 0 in as many unknowns.
+   *
+   * They have a solution. Let the gaps be wider by (1 - t) K, and the shear
+   * that bonds bear across an opening t times as large. For large K all points
+   * are then open at t = 0, which is the only solution. All solutions are
+   * bounded: the state before the step is admissible (nothing penetrates or
+   * slips), and from there the forces can do no more work than the bonds store,
+   * so that the nodes are, in the norm of their masses, not much farther from
+   * the predicted motion than that state is. Hence a connected set of solutions
+   * leads from t = 0 to t = 1 (Leray and Schauder).
+   *
+   * It is a curve of smooth pieces, on each of which every point is open or
+   * closed and sticks or slips. We follow it from piece to piece in the
+   * direction in which the determinant keeps its sign, as Lemke's algorithm
+   * does where all is linear; it may turn back in t, since Coulomb friction may
+   * have several solutions.
+   *
+   * W is singular where nodes are held or there are more points than the nodes
+   * can tell apart; forces are then bounded no more, but the motion still is.
+   * The points are softened a little, and the solution then moved until nothing
+   * is left of that (proximal point method). Round-off may lose the path; it is
+   * then sought from other starts.
+   *
+   * @param flexibility W, row by row
+   * @param gaps        b; their tangential parts are the slip since the last
+   *   stick
+   * @param round_off   of gaps, the residual of which counts as solved
+   */
+  ContactForces
+  solve_contact(const std::vector<double>               &flexibility,
+                const std::vector<dealii::Tensor<1, 3>> &gaps,
+                const std::vector<ContactLimits>        &limits,
+                const double                             round_off);
+} // namespace Voussoir
+
+#endif

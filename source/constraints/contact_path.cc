@@ -1,0 +1,803 @@
+#include <voussoir/constraints/contact_path.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <random>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // All in the units of a path, in which the largest gap without forces and
+    // the largest flexibility of a point are one.
+
+    // A residual this large is round-off.
+    constexpr double round_off = 1e-12;
+
+    // Parts of a point's own flexibility by which it is softened, and strengths
+    // that are as good as infinite; tried in turn.
+    constexpr std::array<double, 4> softnesses{{1e-6, 1e-8, 1e-7, 1e-10}};
+    constexpr std::array<double, 3> caps{
+      {1e2, 1e4, std::numeric_limits<double>::infinity()}};
+
+    constexpr unsigned int max_starts = 8, max_corrections = 10,
+                           max_steps = 2000;
+
+    constexpr double smallest_step = 1e-14;
+
+
+    using Vector = std::vector<double>;
+
+    double
+    largest(const Vector &v)
+    {
+      double result = 0.;
+      for (const double value : v)
+        result = std::max(result, std::abs(value));
+      return result;
+    }
+
+
+    double
+    product(const Vector &a, const Vector &b)
+    {
+      return std::inner_product(a.begin(), a.end(), b.begin(), 0.);
+    }
+
+
+    /** a + factor b */
+    Vector
+    sum(Vector a, const double factor, const Vector &b)
+    {
+      for (std::size_t i = 0; i < a.size(); ++i)
+        a[i] += factor * b[i];
+      return a;
+    }
+
+
+    double
+    distance(const Vector &a, const Vector &b)
+    {
+      const Vector difference = sum(a, -1., b);
+      return std::sqrt(product(difference, difference));
+    }
+
+
+    /** What n equations in n + 1 unknowns leave free. */
+    struct Line
+    {
+      Vector nearest;   // to zero
+      Vector direction; // the determinant with it as last row is positive
+    };
+
+    /** By elimination with complete pivoting. */
+    Line
+    solve(std::vector<Vector> matrix, Vector right)
+    {
+      const unsigned int        n = right.size();
+      std::vector<unsigned int> column(n + 1);
+      std::iota(column.begin(), column.end(), 0);
+      double sign = 1.;
+      for (unsigned int p = 0; p < n; ++p)
+        {
+          unsigned int row = p, place = p;
+          for (unsigned int i = p; i < n; ++i)
+            for (unsigned int j = p; j <= n; ++j)
+              if (std::abs(matrix[i][column[j]]) >
+                  std::abs(matrix[row][column[place]]))
+                {
+                  row   = i;
+                  place = j;
+                }
+          std::swap(matrix[row], matrix[p]);
+          std::swap(right[row], right[p]);
+          std::swap(column[place], column[p]);
+          const double pivot = matrix[p][column[p]];
+          if ((row != p) != (place != p))
+            sign = -sign;
+          if (pivot < 0.)
+            sign = -sign;
+          for (unsigned int i = p + 1; i < n; ++i)
+            if (const double factor = matrix[i][column[p]] / pivot;
+                factor != 0.)
+              {
+                matrix[i] = sum(std::move(matrix[i]), -factor, matrix[p]);
+                right[i] -= factor * right[p];
+              }
+        }
+      Line result{Vector(n + 1), Vector(n + 1)};
+      result.direction[column[n]] = sign;
+      for (unsigned int p = n; p-- > 0;)
+        {
+          double along = 0., rest = right[p];
+          for (unsigned int j = p + 1; j <= n; ++j)
+            {
+              along -= matrix[p][column[j]] * result.direction[column[j]];
+              rest -= matrix[p][column[j]] * result.nearest[column[j]];
+            }
+          result.direction[column[p]] = along / matrix[p][column[p]];
+          result.nearest[column[p]]   = rest / matrix[p][column[p]];
+        }
+      const double size =
+        std::sqrt(product(result.direction, result.direction));
+      for (double &value : result.direction)
+        value /= size;
+      result.nearest = sum(result.nearest,
+                           -product(result.nearest, result.direction),
+                           result.direction);
+      return result;
+    }
+
+
+    /** Part of the line of a point's law from some number z on, linear in it.
+     */
+    struct Segment
+    {
+      double from;
+      double at; // where force, gap and limit have these values
+      double force, force_slope;
+      double gap, gap_slope;
+      double limit, limit_slope; // of shear, without the bond
+      bool   open;
+    };
+
+
+    /** The line from closed to open.
+     *  @param stiffness by which a gap counts as z */
+    std::vector<Segment>
+    make_segments(const ContactLimits &limits, const double stiffness)
+    {
+      const double lowest   = limits.opening > 0. ? 0. : -limits.tension,
+                   friction = limits.locked ? 0. : limits.friction,
+                   cohesion = limits.locked ? 0. : limits.cohesion;
+      std::vector<Segment> segments;
+      if (friction > 0.)
+        segments.push_back({0., 0., 0., 1., 0., 0., cohesion, friction, false});
+      if (friction == 0. || lowest < 0.)
+        segments.push_back({lowest, 0., 0., 1., 0., 0., cohesion, 0., false});
+      double z = lowest, gap = 0.;
+      if (cohesion > 0.)
+        {
+          segments.push_back(
+            {z - cohesion, z, lowest, 0., 0., 0., cohesion, 1., false});
+          z -= cohesion;
+        }
+      if (limits.opening > 0. && limits.tension > 0.)
+        {
+          // the secant of an opened bond
+          const double secant = limits.tension / limits.opening,
+                       slope  = 1. / (stiffness + secant);
+          gap                 = limits.opening;
+          segments.push_back(
+            {z - gap / slope, z, 0., secant * slope, 0., -slope, 0., 0., true});
+          z -= gap / slope;
+        }
+      segments.push_back({-std::numeric_limits<double>::infinity(),
+                          z,
+                          -limits.tension,
+                          0.,
+                          gap,
+                          -1. / stiffness,
+                          0.,
+                          0.,
+                          true});
+      return segments;
+    }
+
+
+    /** A point, and on which piece of its law it is. */
+    struct Point
+    {
+      Point(const ContactLimits &given,
+            const double         flexibility,
+            const double         cap)
+        : stiffness(flexibility > 0. ? 1. / flexibility : 1.)
+        , bond(std::min(given.bond, cap))
+        , locked(given.locked)
+        , tension_capped(given.tension > cap)
+        , bond_capped(given.bond > cap)
+        , cohesion_capped(given.cohesion > cap)
+      {
+        ContactLimits limits = given;
+        limits.cohesion      = std::min(given.cohesion, cap);
+        if (tension_capped)
+          {
+            limits.tension = cap;
+            limits.opening *= cap / given.tension;
+          }
+        segments = make_segments(limits, stiffness);
+        segment  = segments.size() - 1;
+        slips    = !locked;
+      }
+
+      const Segment &
+      now() const
+      {
+        return segments[segment];
+      }
+
+      /** Whether it is where its law has been cut off. */
+      bool
+      at_cap() const
+      {
+        return (tension_capped && segment + 1 == segments.size()) ||
+               (slips && (bond_capped || (cohesion_capped && !now().open)));
+      }
+
+      ContactStatus
+      status() const
+      {
+        return now().open ? ContactStatus::open :
+               slips      ? ContactStatus::sliding :
+                            ContactStatus::sticking;
+      }
+
+      double               stiffness, bond;
+      bool                 locked, tension_capped, bond_capped, cohesion_capped;
+      std::vector<Segment> segments;
+      unsigned int         segment;
+      bool                 slips;
+    };
+
+
+    /** Force and gap of a point, with derivatives by its unknowns and t. */
+    struct State
+    {
+      Tensor<1, 3>                force, gap;
+      std::array<Tensor<1, 3>, 4> force_by, gap_by;
+    };
+
+
+    /** Where a piece of the path ends: t is one, or a point leaves its segment
+     *  or changes between stick and slip. */
+    struct End
+    {
+      enum Kind
+      {
+        time,
+        opening,
+        closing,
+        shear
+      } kind;
+      unsigned int point;
+    };
+
+
+    /**
+     * The unknowns x are, of each point, the number z of its law's line and the
+     * trial y = F_t - stiffness g_t of the shear; the last one is t.
+     */
+    class Path
+    {
+    public:
+      Path(const std::vector<double>        &given_flexibility,
+           const std::vector<Tensor<1, 3>>  &given_gaps,
+           const std::vector<ContactLimits> &limits,
+           const double                      round_off_of_gaps,
+           const double                      cap)
+        : n(3 * limits.size())
+        , flexibility(given_flexibility)
+        , gaps(n)
+      {
+        double length = round_off_of_gaps / unsolved_contact, softest = 0.;
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            // the width of an open gap is no measure for the accuracy
+            const double gap = given_gaps[i / 3][i % 3];
+            length =
+              std::max(length,
+                       i % 3 == 0 ? std::max(-gap, 1e-3 * gap) : std::abs(gap));
+            softest = std::max(softest, flexibility[i * n + i]);
+          }
+        if (softest == 0.)
+          return;
+        if (length == 0.)
+          length = 1.;
+        force_unit = length / softest;
+        for (double &value : flexibility)
+          value /= softest;
+        for (unsigned int i = 0; i < n; ++i)
+          gaps[i] = given_gaps[i / 3][i % 3] / length;
+        for (unsigned int k = 0; k < limits.size(); ++k)
+          {
+            double own = 0.;
+            for (unsigned int i = 3 * k; i < 3 * k + 3; ++i)
+              own = std::max(own, flexibility[i * n + i]);
+            ContactLimits scaled = limits[k];
+            scaled.tension /= force_unit;
+            scaled.bond /= force_unit;
+            scaled.cohesion /= force_unit;
+            scaled.opening /= length;
+            points.emplace_back(scaled, own, cap);
+          }
+      }
+
+      ContactForces
+      find()
+      {
+        ContactForces best{std::vector<ContactForce>(n / 3), 1.};
+        if (points.empty()) // all nodes are held
+          best.residual = 0.;
+        for (unsigned int i = 0;
+             i < (best.residual > unsolved_contact ? max_starts : 2) &&
+             best.residual > round_off;
+             ++i)
+          {
+            softness = softnesses[i % softnesses.size()];
+            start();
+            for (unsigned int j = 0; j < max_corrections; ++j)
+              {
+                // a path that gets lost is near its end, more often than not
+                const bool arrived = follow();
+                finish(best);
+                if (!arrived || best.residual <= round_off)
+                  break;
+                correct_softness();
+              }
+          }
+        return best;
+      }
+
+    private:
+      /** All points are farther open than bonds can pull them, with random
+       * pulls and gaps on the way, so that no two of them reach the end of a
+       * piece at once. */
+      void
+      start()
+      {
+        const auto random = [&] { return generator() / 4294967296.; };
+        Vector     pull(n);
+        for (double &value : pull)
+          value = random() - 0.5;
+        shift.assign(n, 0.);
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j < n; ++j)
+            shift[i] += flexibility[i * n + j] * pull[j];
+        widening.assign(n, 0.);
+        bond_slope = 0.;
+        x.assign(n + 1, 0.);
+        for (unsigned int k = 0; k < points.size(); ++k)
+          {
+            Point &point  = points[k];
+            point.segment = point.segments.size() - 1;
+            point.slips   = !point.locked;
+            x[3 * k]      = point.now().at;
+          }
+        double reach = 1.;
+        for (const Point &point : points)
+          reach += point.bond - point.now().force;
+        // this is linear, and t takes no part
+        x          = sum(x, 1., linearize(x).nearest);
+        x.back()   = 0.;
+        widening   = shift;
+        bond_slope = 1.;
+        shift.assign(n, 0.);
+        for (unsigned int k = 0; k < points.size(); ++k)
+          {
+            const Point &point = points[k];
+            const double open =
+              point.now().at - point.stiffness * reach * (1. + random());
+            widening[3 * k] += std::max(0., x[3 * k] - open) / point.stiffness;
+            x[3 * k] = std::min(x[3 * k], open);
+          }
+      }
+
+      /** Lets a path begin where the last one ended, at whose end the forces do
+       *  not soften the points. */
+      void
+      correct_softness()
+      {
+        shift      = softening();
+        bond_slope = 0.;
+        widening.assign(n, 0.);
+        x.back() = 1.;
+        widening = residual(x, true);
+        x.back() = 0.;
+      }
+
+      /** What the softness does now, to be undone. */
+      Vector
+      softening() const
+      {
+        const auto now = states(x);
+        Vector     result(n);
+        for (unsigned int i = 0; i < n; ++i)
+          result[i] =
+            -softness / points[i / 3].stiffness * now[i / 3].force[i % 3];
+        return result;
+      }
+
+      /** Largest shear of a point. */
+      double
+      limit(const unsigned int k, const Vector &x) const
+      {
+        const Segment &s = points[k].now();
+        return s.limit + s.limit_slope * (x[3 * k] - s.at) +
+               points[k].bond * (1. - bond_slope * (1. - x.back()));
+      }
+
+      State
+      state(const unsigned int k, const Vector &x) const
+      {
+        const Point   &point = points[k];
+        const Segment &s     = point.now();
+        const double   z     = x[3 * k] - s.at;
+        State          result;
+        result.force[0]       = s.force + s.force_slope * z;
+        result.force_by[0][0] = s.force_slope;
+        result.gap[0]         = s.gap + s.gap_slope * z;
+        result.gap_by[0][0]   = s.gap_slope;
+        if (!point.slips)
+          {
+            for (unsigned int d = 1; d < 3; ++d)
+              {
+                result.force[d]       = x[3 * k + d];
+                result.force_by[d][d] = 1.;
+              }
+            return result;
+          }
+        const Tensor<1, 2> y({x[3 * k + 1], x[3 * k + 2]});
+        const double       size = y.norm(), L = limit(k, x);
+        for (unsigned int d = 1; d < 3; ++d)
+          {
+            const double direction = size > 0. ? y[d - 1] / size : 0.;
+            result.force[d]        = L * direction;
+            result.force_by[0][d]  = s.limit_slope * direction;
+            result.force_by[3][d]  = bond_slope * point.bond * direction;
+            for (unsigned int e = 1; e < 3; ++e)
+              if (size > 0.)
+                result.force_by[e][d] =
+                  L / size * ((d == e ? 1. : 0.) - direction * y[e - 1] / size);
+            result.gap[d] = (result.force[d] - y[d - 1]) / point.stiffness;
+            for (unsigned int j = 0; j < 4; ++j)
+              result.gap_by[j][d] =
+                (result.force_by[j][d] - (d == j ? 1. : 0.)) / point.stiffness;
+          }
+        return result;
+      }
+
+      std::vector<State>
+      states(const Vector &x) const
+      {
+        std::vector<State> result;
+        for (unsigned int k = 0; k < points.size(); ++k)
+          result.push_back(state(k, x));
+        return result;
+      }
+
+      /** H, on the path or of the points themselves. */
+      Vector
+      residual(const Vector &x, const bool on_path) const
+      {
+        const auto now = states(x);
+        Vector     result(n);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            result[i] = now[i / 3].gap[i % 3] - gaps[i];
+            for (unsigned int j = 0; j < n; ++j)
+              result[i] -= flexibility[i * n + j] * now[j / 3].force[j % 3];
+            if (on_path)
+              result[i] -=
+                (1. - x.back()) * widening[i] + shift[i] +
+                softness / points[i / 3].stiffness * now[i / 3].force[i % 3];
+          }
+        return result;
+      }
+
+      Line
+      linearize(const Vector &x) const
+      {
+        const auto          now = states(x);
+        std::vector<Vector> matrix(n, Vector(n + 1));
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            for (unsigned int k = 0; k < points.size(); ++k)
+              for (unsigned int j = 0; j < 4; ++j)
+                {
+                  double &entry = matrix[i][j < 3 ? 3 * k + j : n];
+                  entry -= Tensor<1, 3>({flexibility[i * n + 3 * k],
+                                         flexibility[i * n + 3 * k + 1],
+                                         flexibility[i * n + 3 * k + 2]}) *
+                           now[k].force_by[j];
+                  if (k == i / 3)
+                    entry +=
+                      now[k].gap_by[j][i % 3] - softness / points[k].stiffness *
+                                                  now[k].force_by[j][i % 3];
+                }
+            matrix[i][n] += widening[i];
+          }
+        Vector right = residual(x, true);
+        for (double &value : right)
+          value = -value;
+        return solve(std::move(matrix), std::move(right));
+      }
+
+      std::vector<End>
+      ends() const
+      {
+        std::vector<End> result{{End::time, 0}};
+        for (unsigned int k = 0; k < points.size(); ++k)
+          {
+            if (points[k].segment + 1 < points[k].segments.size())
+              result.push_back({End::opening, k});
+            if (points[k].segment > 0)
+              result.push_back({End::closing, k});
+            if (!points[k].locked)
+              result.push_back({End::shear, k});
+          }
+        return result;
+      }
+
+      /** Positive on the piece at hand. */
+      double
+      way_to(const End &end, const Vector &x, Vector &gradient) const
+      {
+        const unsigned int k     = end.point;
+        const Point       &point = points[k];
+        gradient.assign(n + 1, 0.);
+        switch (end.kind)
+          {
+            case End::time:
+              gradient[n] = -1.;
+              return 1. - x.back();
+            case End::opening:
+              gradient[3 * k] = 1.;
+              return x[3 * k] - point.now().from;
+            case End::closing:
+              gradient[3 * k] = -1.;
+              return point.segments[point.segment - 1].from - x[3 * k];
+            default:
+              const Tensor<1, 2> y({x[3 * k + 1], x[3 * k + 2]});
+              const double       sign = point.slips ? 1. : -1., size = y.norm();
+              gradient[3 * k] = -sign * point.now().limit_slope;
+              for (unsigned int d = 0; d < 2 && size > 0.; ++d)
+                gradient[3 * k + 1 + d] = sign * y[d] / size;
+              gradient[n] = -sign * bond_slope * point.bond;
+              return sign * (size - limit(k, x));
+          }
+      }
+
+      double
+      way_to(const End &end, const Vector &x) const
+      {
+        Vector gradient;
+        return way_to(end, x, gradient);
+      }
+
+      /** To which the unknowns can be found where only softness holds them. */
+      double
+      tolerance(const Vector &x) const
+      {
+        return 1e-15 / softness * (1. + largest(x));
+      }
+
+      /** Newton's iteration to the nearest place of the path, or to the end of
+       *  its piece; returns whether it is found. */
+      bool
+      approach(Vector &x, const End *end = nullptr) const
+      {
+        for (unsigned int i = 0; i < 12; ++i)
+          {
+            const Line line   = linearize(x);
+            Vector     change = line.nearest;
+            if (end)
+              {
+                Vector       gradient;
+                const double way = way_to(*end, x, gradient);
+                change           = sum(change,
+                             -(way + product(gradient, change)) /
+                               product(gradient, line.direction),
+                             line.direction);
+              }
+            x = sum(x, 1., change);
+            if (!std::isfinite(product(x, x)))
+              return false;
+            if (largest(change) <= tolerance(x))
+              return true;
+          }
+        return false;
+      }
+
+      /** Whether the shear of no point turns much. */
+      bool
+      keeps_direction(const Vector &next) const
+      {
+        for (unsigned int k = 0; k < points.size(); ++k)
+          if (points[k].slips && limit(k, next) != 0.)
+            {
+              const Tensor<1, 2> before({x[3 * k + 1], x[3 * k + 2]}),
+                after({next[3 * k + 1], next[3 * k + 2]});
+              if (!(before * after >= 0.7 * before.norm() * after.norm()))
+                return false;
+            }
+        return true;
+      }
+
+      /** Goes a step along the path, or to the end of its piece if that comes
+       *  first; returns whether the step was short enough to be sure. */
+      bool
+      advance(const Vector       &direction,
+              const double        step,
+              Vector             &next,
+              std::optional<End> &reached) const
+      {
+        reached.reset();
+        const double tolerated = tolerance(x);
+        const Vector predicted = sum(x, step, direction);
+        next                   = predicted;
+        if (!approach(next) ||
+            distance(next, predicted) > 0.1 * step + tolerated ||
+            !keeps_direction(next))
+          return false;
+
+        const auto all   = ends();
+        const End *first = nullptr;
+        for (std::size_t i = 0; i < all.size(); ++i)
+          {
+            const End *nearer = nullptr;
+            double     part   = 1.;
+            for (const End &end : all)
+              {
+                const double after = way_to(end, next);
+                Vector       gradient;
+                const double before = way_to(end, x, gradient);
+                if (&end == first || after >= (first ? -tolerated : 0.))
+                  continue;
+                // a piece that has just begun
+                if (before < tolerated && product(gradient, direction) > 0.)
+                  {
+                    if (after < -tolerated)
+                      return false;
+                    continue;
+                  }
+                if (const double fraction =
+                      std::max(before, 0.) / (std::max(before, 0.) - after);
+                    !nearer || fraction < part)
+                  {
+                    nearer = &end;
+                    part   = fraction;
+                  }
+              }
+            if (!nearer)
+              break;
+            const Vector between = sum(x, part, sum(next, -1., x));
+            first                = nearer;
+            next                 = between;
+            if (!approach(next, first) ||
+                distance(next, between) >
+                  0.1 * distance(x, between) + 100. * tolerated)
+              return false;
+          }
+        if (first)
+          reached = *first;
+        return true;
+      }
+
+      /** Follows the path from t = 0 to t = 1; returns whether it gets there.
+       */
+      bool
+      follow()
+      {
+        double orientation = 0., step = 0.1;
+        for (unsigned int i = 0; i < max_steps; ++i)
+          {
+            Vector direction = linearize(x).direction;
+            if (orientation == 0.)
+              orientation = direction.back() > 0. ? 1. : -1.;
+            for (double &value : direction)
+              value *= orientation;
+            if (!std::isfinite(product(direction, direction)) || x.back() < -1.)
+              return false;
+
+            Vector             next;
+            std::optional<End> reached;
+            while (!advance(direction, step, next, reached))
+              if ((step *= 0.25) < smallest_step)
+                return false;
+            x = next;
+            if (!reached)
+              step *= 2.;
+            else if (reached->kind == End::time)
+              return true;
+            else
+              cross(*reached);
+          }
+        return false;
+      }
+
+      void
+      cross(const End &end)
+      {
+        Point &point = points[end.point];
+        if (end.kind == End::opening)
+          ++point.segment;
+        else if (end.kind == End::closing)
+          --point.segment;
+        else
+          point.slips = !point.slips;
+      }
+
+      /** Newton's iteration from the end of a path, on the pieces where the
+       *  points are, until softness and round-off of the path are gone. */
+      void
+      finish(ContactForces &best)
+      {
+        const auto   points_there = points;
+        const Vector there        = x;
+        x.back()                  = 1.;
+        bond_slope                = 0.;
+        widening.assign(n, 0.);
+        for (unsigned int i = 0; i < max_corrections; ++i)
+          {
+            for (unsigned int k = 0; k < points.size(); ++k)
+              {
+                Point &point  = points[k];
+                point.segment = 0;
+                while (x[3 * k] < point.now().from)
+                  ++point.segment;
+                point.slips =
+                  !point.locked &&
+                  std::hypot(x[3 * k + 1], x[3 * k + 2]) > limit(k, x);
+              }
+            keep_better(best);
+            if (best.residual <= round_off)
+              return;
+            shift = softening();
+            x     = sum(x, 1., linearize(x).nearest);
+            if (!std::isfinite(product(x, x)))
+              break;
+          }
+        points = points_there;
+        x      = there;
+      }
+
+      void
+      keep_better(ContactForces &best) const
+      {
+        const double size = largest(residual(x, false));
+        if (!(size < best.residual) ||
+            std::any_of(points.begin(), points.end(), [](const Point &point) {
+              return point.at_cap();
+            }))
+          return;
+        best.residual = size;
+        for (unsigned int k = 0; k < points.size(); ++k)
+          best.points[k] = {force_unit * state(k, x).force, points[k].status()};
+      }
+
+      const unsigned int n; // forces
+      Vector             flexibility, gaps;
+      std::vector<Point> points;
+      double             force_unit = 1.;
+
+      // the gaps of the path are wider by (1 - t) widening + shift, the bonds
+      // weaker by (1 - t) bond_slope
+      Vector widening, shift, x;
+      double bond_slope = 0., softness = 0.;
+
+      std::mt19937 generator;
+    };
+  } // namespace
+
+
+  ContactForces
+  solve_contact(const std::vector<double>        &flexibility,
+                const std::vector<Tensor<1, 3>>  &gaps,
+                const std::vector<ContactLimits> &limits,
+                const double                      round_off)
+  {
+    ContactForces best{{}, std::numeric_limits<double>::infinity()};
+    for (const double cap : caps)
+      if (best.residual > unsolved_contact)
+        if (auto found = Path(flexibility, gaps, limits, round_off, cap).find();
+            found.residual < best.residual)
+          best = std::move(found);
+    return best;
+  }
+} // namespace Voussoir

@@ -141,10 +141,9 @@ namespace Voussoir
       text << "Contact: "
            << 100. * result.at("contact share of the loop").get<double>()
            << " % of the loop, " << contact->effort().paths
-           << " clusters by path following
-              ";
-        for (const std::string &warning : log.warnings()) text
-           << "Warning: " << warning << '\n';
+           << " clusters by path following\n";
+    for (const std::string &warning : log.warnings())
+      text << "Warning: " << warning << '\n';
     log(text.str());
     log(timer_table());
   }

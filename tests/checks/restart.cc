@@ -72,7 +72,6 @@ namespace Voussoir
                {"straight", "together", "older", "alone", "metis"})
             std::filesystem::remove_all(folder);
         MPI_Barrier(communicator);
-        listen_to_signals();
 
         const auto straight = make_case(folder(file, "straight", false));
         Simulation uninterrupted(*straight, options(false), communicator);
@@ -217,6 +216,7 @@ namespace Voussoir
                 Verdicts      &verdicts)
       {
         bool stopped = false;
+        listen_to_signals(); // a second SIGINT would kill
         try
           {
             Simulation(parameters, options(false), communicator).run.march();
@@ -243,7 +243,7 @@ namespace Voussoir
       }
 
 
-      /** Changes one byte in the middle of the newest checkpoint. */
+      /** Fills the middle of the newest checkpoint with zeros. */
       static void
       damage(const std::string &folder, const MPI_Comm communicator)
       {
@@ -256,11 +256,9 @@ namespace Voussoir
                 newest = std::max(newest, file.path().string());
             std::fstream file(newest,
                               std::ios::in | std::ios::out | std::ios::binary);
-            const auto   middle = std::filesystem::file_size(newest) / 2;
-            file.seekg(middle);
-            const char byte = file.get();
-            file.seekp(middle);
-            file.put(byte ^ 1);
+            const auto   size = std::filesystem::file_size(newest);
+            file.seekp(size / 4);
+            file << std::string(size / 2, '\0');
           }
         MPI_Barrier(communicator);
       }

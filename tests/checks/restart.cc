@@ -69,7 +69,7 @@ namespace Voussoir
         const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
         if (first)
           for (const std::string folder :
-               {"straight", "together", "older", "alone", "metis"})
+               {"straight", "together", "older", "refused", "alone", "metis"})
             std::filesystem::remove_all(folder);
         MPI_Barrier(communicator);
 
@@ -81,6 +81,7 @@ namespace Voussoir
         const auto stopped = make_case(folder(file, "together", true));
         interrupt(*stopped, communicator, verdicts);
         copy("together", "older", communicator);
+        copy("together", "refused", communicator);
         const auto continued = make_case(folder(file, "together", false));
         Simulation going_on(*continued, options(true), communicator);
         verdicts.is_true("it goes on from a time between start and end",
@@ -174,16 +175,15 @@ namespace Voussoir
         dealt_run.run.march();
         compare_tables("straight", "metis", verdicts);
 
-        refuse(
-          folder(file, "together", false).with({"Discretization/Degree=3"}),
-          communicator,
-          verdicts);
-        refuse(folder(file, "together", false)
+        refuse(folder(file, "refused", false).with({"Discretization/Degree=3"}),
+               communicator,
+               verdicts);
+        refuse(folder(file, "refused", false)
                  .with({"Output/histories/Points=top: 1 1 1"}),
                communicator,
                verdicts);
         refuse(folder(file, "nowhere", false), communicator, verdicts);
-        refuse(folder(file, "together", false).with({"Time/End time=0.1"}),
+        refuse(folder(file, "refused", false).with({"Time/End time=0.1"}),
                communicator,
                verdicts);
       }

@@ -69,7 +69,7 @@ def page():
         if not case.exists():
             continue
         name = f"{output.parent.name}/{output.stem}"
-        lines = output.read_text().splitlines()
+        lines = output.read_text(errors="replace").splitlines()
         count, worst = worst_comparison(lines)
         if worst:
             compared.append(

@@ -72,7 +72,14 @@ namespace Voussoir
     , earthquake(model, damping, time_step, log)
     , water(make_water(model, earthquake, time_step))
   {
-    const RestState     unloaded(model);
+    RestState unloaded(model);
+    if (unloaded.contact) // refuses bars that are too stiff for the step
+      unloaded.contact->prepare_step(
+        [&](const unsigned int node) {
+          return model.mass.inverse.local_element(3 * node) *
+                 dealii::Tensor<2, 3>(dealii::unit_symmetric_tensor<3>());
+        },
+        time_step.length);
     const ObservedModel seen = observed("",
                                         unloaded.initial,
                                         unloaded.initial.material_memory,

@@ -330,7 +330,7 @@ namespace Voussoir
         for (const double anisotropy : {0., 2.})
           {
             Random       random;
-            double       worst  = 0.;
+            double       worst    = 0.;
             unsigned int unsolved = 0;
             unsigned int number[3]{0, 0, 0};
             for (unsigned int trial = 0; trial < 400; ++trial)
@@ -446,7 +446,7 @@ namespace Voussoir
       struct Worst
       {
         double       penetration = 0.;
-        unsigned int unsolved = 0, number[3]{0, 0, 0};
+        unsigned int unsolved    = 0, number[3]{0, 0, 0};
 
         void
         add(Random &random, Made &made)

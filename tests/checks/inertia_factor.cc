@@ -87,16 +87,21 @@ namespace Voussoir
               const double         factor,
               const MPI_Comm       communicator) const
       {
-        const auto  parameters = make_case(file.with({entry(factor)}));
-        const auto  simulation = make_simulation(*parameters, communicator);
-        const Mode &mode       = simulation->modes.list[0];
+        const auto  still = make_case(file.with({entry(factor)}));
+        const auto  modes = make_simulation(*still, communicator);
+        const Mode &mode  = modes->modes.list[0];
+
+        // modes alone take no steps
+        const auto parameters =
+          make_case(file.with({entry(factor), "Modes/Number=0"}));
+        const auto simulation = make_simulation(*parameters, communicator);
         simulation->run.state.displacement = mode.shape;
         const auto histories =
           run_and_record(*simulation, {{"tip", Point<3>(0.5, 0.5, -length)}});
         return {1. / mode.frequency,
                 period_of(histories.times, histories.component(0, 2)),
                 simulation->run.time_step.length,
-                simulation->modes.moving_mass[2]};
+                modes->modes.moving_mass[2]};
       }
 
 

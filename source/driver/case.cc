@@ -179,6 +179,9 @@ namespace Voussoir
   }
 
 
+  Case::~Case() = default;
+
+
   void
   Case::declare()
   {

@@ -341,6 +341,9 @@ namespace Voussoir
   }
 
 
+  Model::~Model() = default;
+
+
   unsigned int
   Model::material_of(const Grid::Cell &cell) const
   {

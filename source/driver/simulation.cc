@@ -136,4 +136,7 @@ namespace Voussoir
           adapted_setup(std::move(setup), modes, folder, log),
           log)
   {}
+
+
+  Simulation::~Simulation() = default;
 } // namespace Voussoir

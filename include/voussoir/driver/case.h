@@ -90,6 +90,8 @@ namespace Voussoir
       const ParameterFile                                   &file,
       const std::function<void(dealii::ParameterHandler &)> &declare_more = {});
 
+    ~Case();
+
     ParameterFile            file;
     dealii::ParameterHandler prm;
 

@@ -22,6 +22,8 @@ namespace Voussoir
     /** Throws UserError if the case does not fit its mesh. */
     Model(Case &parameters, Log &log);
 
+    ~Model();
+
     /** Index of a cell's material. */
     unsigned int
     material_of(const Grid::Cell &cell) const;

@@ -18,6 +18,8 @@ namespace Voussoir
                const RunOptions &options,
                const MPI_Comm    communicator);
 
+    ~Simulation(); // not in each file that has one: that takes long to compile
+
     Log          log;
     ResultFolder folder;
     Model        model;

@@ -16,22 +16,48 @@ namespace Voussoir
     };
 
 
+    /** The highest peak at least @p away from a time [s]. */
     Peak
-    find_peak(const Signal &motion, const double end)
+    find_peak(const Signal &motion,
+              const double  end,
+              const double  time = 0.,
+              const double  away = 0.)
     {
       constexpr double resolution = 1e-3;
       Peak             peak;
       for (std::size_t i = 0; i * resolution <= end; ++i)
         if (const double now = std::abs(motion.acceleration(i * resolution));
-            !(now <= peak.acceleration))
+            !(now <= peak.acceleration) &&
+            std::abs(i * resolution - time) >= away)
           peak = {now, i * resolution};
       return peak;
+    }
+
+
+    /** A wrong digit in a record is made its peak, and the earthquake small. */
+    void
+    check_single_sample(const Signal      &motion,
+                        const Peak        &peak,
+                        const std::string &text,
+                        Log               &log)
+    {
+      constexpr double away = 0.05;
+      const double     rest =
+        find_peak(motion, motion.end(), peak.time, away).acceleration;
+      if (rest < 0.2 * peak.acceleration)
+        log.warn(text,
+                 ", but stays below ",
+                 rest / standard_gravity,
+                 " g where this is more than ",
+                 away,
+                 " s away; look whether a sample of the record is wrong");
     }
 
 
     // What hardly is the earthquake that was meant.
     void
     check_peaks(const GroundMotionSignals &motion,
+                const bool                 recorded,
                 const double               end_time,
                 Log                       &log)
     {
@@ -60,6 +86,8 @@ namespace Voussoir
               log.warn(text.str(), ", more than was ever recorded; ", remedy);
             if (g < 1e-3)
               log.warn(text.str(), ", which nobody would feel; ", remedy);
+            if (recorded)
+              check_single_sample(*motion[d], whole, text.str(), log);
             if (reached.acceleration < 0.99 * whole.acceleration)
               log.warn(text.str(),
                        ", but reaches ",
@@ -138,7 +166,7 @@ namespace Voussoir
     GroundMotionSignals motion = ground_motion.build(parameters.file.folder());
     log(ground_motion.summary(motion, end_time));
     if (end_time > 0.)
-      check_peaks(motion, end_time, log);
+      check_peaks(motion, ground_motion.type == "record", end_time, log);
     if (model.rigid_base())
       {
         if (std::all_of(model.materials.begin(),

@@ -596,9 +596,13 @@ namespace Voussoir
       const auto      space =
         std::filesystem::space(std::filesystem::path(file).parent_path(), none);
       if (!none && bytes > space.available)
-        throw Problem{"it needs " + std::to_string(std::lround(1e-6 * bytes)) +
-                      " MB, and the disk has " +
-                      std::to_string(space.available / 1000000) + " MB left"};
+        {
+          std::ostringstream problem;
+          problem << std::fixed << std::setprecision(1) << "it needs "
+                  << 1e-6 * bytes << " MB, and the disk has "
+                  << 1e-6 * space.available << " MB left";
+          throw Problem{problem.str()};
+        }
     }
 
 

@@ -62,13 +62,13 @@ def fresh(folder):
     folder.mkdir(parents=True)
 
 
-def finish(process, folder):
-    """Exit code; everything that is left of the run is gone afterwards."""
+def finish(process):
+    """Exit code; everything that is left of the run is gone afterwards: the ranks
+    of a killed mpirun, which have groups of their own in its session, live on."""
     code = process.wait()
-    try:
-        os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
+    session = ["-s", str(process.pid)]
+    while subprocess.run(["pkill", "-KILL"] + session).returncode == 0:
+        time.sleep(0.05)
     return code
 
 
@@ -89,7 +89,7 @@ def main():
     straight = options.folder / "straight"
     fresh(straight)
     began = time.monotonic()
-    if finish(start(options, straight, False), straight) != 0:
+    if finish(start(options, straight, False)) != 0:
         sys.exit("the run that nobody disturbs fails; see " + str(straight))
     duration = time.monotonic() - began
     reference = contents(straight)
@@ -115,7 +115,7 @@ def main():
                         kind = signal.SIGKILL
                     os.killpg(process.pid, kind)
                     kills += 1
-            code = finish(process, disturbed)
+            code = finish(process)
             if code == 0:
                 break
             if code not in (STOPPED, 137, -signal.SIGKILL, -signal.SIGTERM,

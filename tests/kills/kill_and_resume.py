@@ -105,7 +105,7 @@ def main():
             process = start(options, disturbed, restart)
             code = None
             if kills < options.kills:
-                wait = chance.uniform(0.0, 0.7 * duration)
+                wait = chance.uniform(0.0, duration)
                 try:
                     code = process.wait(wait)
                 except subprocess.TimeoutExpired:

@@ -12,9 +12,9 @@ namespace Voussoir
 
   namespace
   {
-    // Between two looks at the clock and at what is asked from outside [s]:
-    // those who ask may kill a second later.
-    constexpr double look_interval = 0.01;
+    // Between two looks at the clock and at what is asked from outside [s],
+    // and in steps: those who ask may kill a second later.
+    constexpr double look_interval = 0.01, look_steps = 100.;
   } // namespace
 
 
@@ -264,7 +264,8 @@ namespace Voussoir
           }
         const double of_step =
           since_look.wall_time() / std::max<double>(state.step - last_look, 1.);
-        mine[steps] = std::min(look_interval / std::max(of_step, 1e-9), 1e6);
+        mine[steps] =
+          std::min(look_interval / std::max(of_step, 1e-9), look_steps);
       }
     Utilities::MPI::max(mine, log.communicator(), wanted);
     last_look = state.step;

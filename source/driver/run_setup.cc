@@ -24,9 +24,11 @@ namespace Voussoir
     check_band(const Model &model, Log &log)
     {
       const DampingParameters &damping = model.parameters.damping;
-      const double             carried = model.carried_frequency();
-      if (damping.model != "none" && damping.ratio > 0. &&
-          damping.modes.empty() && damping.lowest_frequency > carried)
+      if (damping.model == "none" || damping.ratio == 0. ||
+          !damping.modes.empty())
+        return;
+      const double carried = model.carried_frequency();
+      if (damping.lowest_frequency > carried)
         log.warn("\"Lowest frequency\" in section \"Damping\" is ",
                  damping.lowest_frequency,
                  " Hz, but the cells carry waves up to ",
@@ -88,8 +90,7 @@ namespace Voussoir
     , earthquake(model, damping, time_step, log)
     , water(make_water(model, earthquake, time_step))
   {
-    if (modes.list.empty()) // else it was looked at before
-      check_band(model, log);
+    check_band(model, log);
     RestState unloaded(model);
     if (unloaded.contact) // refuses bars that are too stiff for the step
       unloaded.contact->prepare_step(

@@ -10,7 +10,9 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <iomanip>
 #include <numeric>
+#include <sstream>
 #include <unordered_map>
 
 namespace Voussoir

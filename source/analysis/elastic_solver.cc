@@ -145,7 +145,9 @@ namespace Voussoir
     const std::vector<const Material *>                   &materials,
     const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
     const AffineConstraints<double>                       &constraints,
-    const NodalTerms                                      *springs)
+    const NodalTerms                                      *springs,
+    Contact                                               *contact,
+    const Vector                                          *displacement)
     : discretization(discretization)
     , internal_force(internal_force)
     , springs(springs)
@@ -155,7 +157,9 @@ namespace Voussoir
       if (constraints.is_constrained(
             discretization.owned_dofs.nth_index_in_set(i)))
         held.push_back(i);
-    assemble(materials, material_of_cell);
+    assemble(materials, material_of_cell, contact);
+    if (contact != nullptr)
+      tie(*contact, *displacement);
     set_up_multigrid();
   }
 
@@ -163,18 +167,31 @@ namespace Voussoir
   void
   ElasticSolver::assemble(
     const std::vector<const Material *>                   &materials,
-    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell)
+    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
+    const Contact                                         *contact)
   {
+    IndexSet rows = discretization.relevant_dofs;
+    if (contact != nullptr)
+      for (const auto node : contact->cluster_nodes())
+        rows.add_range(3 * node, 3 * node + 3);
     TrilinosWrappers::SparsityPattern pattern(
       discretization.owned_dofs,
       discretization.owned_dofs,
-      discretization.relevant_dofs,
+      rows,
       discretization.grid.communicator(),
       81);
     for_each_trilinear_cell(
       discretization, [&](const auto &, const auto &, const auto &dofs) {
         constraints.add_entries_local_to_global(dofs, pattern, true);
       });
+    if (contact != nullptr)
+      for (const ContactPoint &point : contact->points())
+        for (const unsigned int a : {point.first, point.second})
+          for (const unsigned int b : {point.first, point.second})
+            for (unsigned int d = 0; d < 3; ++d)
+              for (unsigned int e = 0; e < 3; ++e)
+                pattern.add(3 * contact->cluster_nodes()[a] + d,
+                            3 * contact->cluster_nodes()[b] + e);
     pattern.compress();
     matrix.reinit(pattern);
 
@@ -208,6 +225,45 @@ namespace Voussoir
 
 
   void
+  ElasticSolver::tie(Contact &contact, const Vector &displacement)
+  {
+    Vector diagonal = discretization.create_vector();
+    for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
+      diagonal.local_element(i) =
+        matrix.diag_element(discretization.owned_dofs.nth_index_in_set(i));
+    clear_held(diagonal);
+    static_contact.emplace(contact, diagonal);
+    static_contact->tie(displacement);
+
+    const auto add = [&](const auto          first,
+                         const auto          second,
+                         const auto         &first_held,
+                         const auto         &second_held,
+                         const Tensor<2, 3> &values) {
+      for (unsigned int d = 0; d < 3; ++d)
+        for (unsigned int e = 0; e < 3; ++e)
+          if (!first_held[d] && !second_held[e])
+            matrix.add(3 * first + d, 3 * second + e, values[d][e]);
+    };
+    for (const StaticContact::Pair &p : static_contact->pairs())
+      {
+        add(p.first, p.first, p.first_held, p.first_held, p.tangent);
+        add(p.second, p.second, p.second_held, p.second_held, p.tangent);
+        add(p.first, p.second, p.first_held, p.second_held, -p.tangent);
+        add(p.second, p.first, p.second_held, p.first_held, -p.tangent);
+      }
+    matrix.compress(VectorOperation::add);
+  }
+
+
+  StaticContact *
+  ElasticSolver::tangent_contact()
+  {
+    return static_contact ? &*static_contact : nullptr;
+  }
+
+
+  void
   ElasticSolver::set_up_multigrid()
   {
     // translations, and rotations about the origin
@@ -237,6 +293,8 @@ namespace Voussoir
     list.set("null space: type", "pre-computed");
     list.set("null space: dimension", 6);
     list.set("null space: vectors", rigid_modes.Values());
+    // eigenvalues are estimated from random vectors: the same ones every time
+    ML_set_random_seed(1);
     multigrid.initialize(matrix, list);
   }
 
@@ -256,6 +314,8 @@ namespace Voussoir
     internal_force.apply(force, displacement);
     if (springs != nullptr)
       springs->add_to(force, displacement, 0.);
+    if (static_contact)
+      static_contact->add_tangent(force, displacement);
   }
 
 

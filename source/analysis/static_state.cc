@@ -1,4 +1,4 @@
-#include <voussoir/analysis/elastic_solver.h>
+#include <voussoir/analysis/contact_equilibrium.h>
 #include <voussoir/analysis/relaxation.h>
 #include <voussoir/analysis/static_state.h>
 #include <voussoir/fem/nodal_values.h>
@@ -109,10 +109,20 @@ namespace Voussoir
       void
       add_load(const std::string &name, Load &load, nlohmann::json &report);
 
+      /** The linear equations, with the parts tied where they touch now. */
+      void
+      make_solver();
+
       /** Equilibrium of materials that are elastic, or the state as it is once
        *  they have cracked or yielded; returns the iterations or steps. */
       unsigned int
       find_elastic_equilibrium(const Vector &force);
+
+      /** Equilibrium with contact: by multigrid, then looked at by damped
+       *  motion, which also finds it where multigrid does not.
+       *  @param memory of the materials; null: they are elastic */
+      unsigned int
+      find_contact_equilibrium(const Vector &force, MaterialMemory *memory);
 
       /** Brings the memory of the materials to this state, and where they crack
        *  or yield the state to equilibrium again. */
@@ -135,7 +145,7 @@ namespace Voussoir
       const InternalForce             internal_force; // with static moduli
       const bool                      on_springs;
       const AffineConstraints<double> constraints;
-      std::unique_ptr<ElasticSolver>  solver;     // without contact
+      std::unique_ptr<ElasticSolver>  solver;
       std::unique_ptr<Relaxation>     relaxation; // with contact or memory
       Vector                          loads;      // so far [N]
     };
@@ -161,14 +171,9 @@ namespace Voussoir
       , loads(model.discretization.create_vector())
     {
       const Timer clock;
-      if (model.contact == nullptr)
-        solver =
-          std::make_unique<ElasticSolver>(model.discretization,
-                                          internal_force,
-                                          model.materials,
-                                          model.material_of_cell,
-                                          constraints,
-                                          on_springs ? &model.terms : nullptr);
+      state.displacement = state.temperature = state.force = loads;
+      state.material_memory = internal_force.new_memory();
+      make_solver();
       if (model.contact != nullptr || internal_force.has_memory())
         relaxation = std::make_unique<Relaxation>(model.discretization,
                                                   internal_force,
@@ -177,13 +182,23 @@ namespace Voussoir
                                                   constraints,
                                                   on_springs,
                                                   model.contact);
-      log.line("Static state by ",
-               solver ? "multigrid" : "damped motion with contact",
-               ", set up in ",
+      log.line("Static state by multigrid, set up in ",
                duration_text(clock.wall_time()));
+    }
 
-      state.displacement = state.temperature = state.force = loads;
-      state.material_memory = internal_force.new_memory();
+
+    void
+    StaticStages::make_solver()
+    {
+      solver =
+        std::make_unique<ElasticSolver>(model.discretization,
+                                        internal_force,
+                                        model.materials,
+                                        model.material_of_cell,
+                                        constraints,
+                                        on_springs ? &model.terms : nullptr,
+                                        model.contact,
+                                        &state.displacement);
     }
 
 
@@ -193,6 +208,8 @@ namespace Voussoir
     {
       const Timer    clock;
       nlohmann::json report;
+      if (!solver)
+        make_solver();
       for (const std::string &name : stage)
         add_load(name, *load_of.at(name), report);
       Vector force = loads;
@@ -210,8 +227,9 @@ namespace Voussoir
       if (model.contact != nullptr)
         model.contact->add_forces(-1., state.force);
       report_equilibrium(stage, iterations, clock.wall_time(), report);
-      if (model.contact != nullptr)
-        model.contact->grout(stage, state.displacement);
+      if (model.contact != nullptr &&
+          model.contact->grout(stage, state.displacement))
+        solver.reset(); // other parts hold together now
       return report;
     }
 
@@ -233,10 +251,8 @@ namespace Voussoir
     unsigned int
     StaticStages::find_elastic_equilibrium(const Vector &force)
     {
-      MaterialMemory none;
-      if (!solver)
-        return relaxation->find_equilibrium(
-          state.displacement, none, force, parameters.rest, log);
+      if (model.contact != nullptr)
+        return find_contact_equilibrium(force, nullptr);
       if (dissipated()) // a state with cracks goes on from where it is
         return 0;
       return solver->solve(state.displacement, force, parameters.tolerance);
@@ -255,8 +271,12 @@ namespace Voussoir
       if (!dissipated())
         return;
       log.line("  cracks or yields");
-      if (solver &&
-          correct_by_initial_stresses(*solver,
+      if (model.contact != nullptr)
+        {
+          iterations += find_contact_equilibrium(force, &state.material_memory);
+          return;
+        }
+      if (correct_by_initial_stresses(*solver,
                                       internal_force,
                                       state.material_memory,
                                       on_springs ? &model.terms : nullptr,
@@ -272,6 +292,37 @@ namespace Voussoir
                                             parameters.rest,
                                             log),
                " steps");
+    }
+
+
+    unsigned int
+    StaticStages::find_contact_equilibrium(const Vector   &force,
+                                           MaterialMemory *memory)
+    {
+      const ContactEquilibrium::Effort effort =
+        ContactEquilibrium(*solver,
+                           internal_force,
+                           on_springs ? &model.terms : nullptr,
+                           log)
+          .find(state.displacement, memory, force, parameters.rest);
+      log.line("    by multigrid: ",
+               effort.iterations,
+               " iterations in ",
+               effort.steps,
+               " steps, forces of contact to ",
+               effort.last.force,
+               ", equilibrium to ",
+               effort.residual,
+               effort.found ? "" : "; not found, so by damped motion");
+      MaterialMemory none;
+      log.line("    at rest after ",
+               relaxation->find_equilibrium(state.displacement,
+                                            memory == nullptr ? none : *memory,
+                                            force,
+                                            parameters.rest,
+                                            log),
+               " steps of damped motion");
+      return effort.iterations;
     }
 
 
@@ -293,8 +344,8 @@ namespace Voussoir
       const double       largest   = largest_amount(state.displacement);
       std::ostringstream text;
       text << std::setprecision(4) << "  stage \"" << join(stage, ", ")
-           << "\": " << iterations << (solver ? " iterations, " : " steps, ")
-           << duration_text(seconds) << "; reactions " << meganewtons(reactions)
+           << "\": " << iterations << " iterations, " << duration_text(seconds)
+           << "; reactions " << meganewtons(reactions)
            << ", largest displacement " << 1e3 * largest << " mm";
       log.line(text.str());
       report["iterations"]               = iterations;

@@ -54,7 +54,7 @@ namespace Voussoir
                           [](const ContactCluster &cluster) {
                             return cluster.pairs.size() == 1;
                           });
-    std::vector<types::global_dof_index> nodes;
+    std::vector<types::global_dof_index> &nodes = global_nodes;
     for (const ContactCluster &cluster : clusters)
       {
         std::vector<ContactPoint> points;
@@ -156,16 +156,21 @@ namespace Voussoir
   }
 
 
-  void
+  bool
   Contact::grout(const std::vector<std::string> &loads,
                  const Vector                   &at_displacement)
   {
     exchange->to_clusters(at_displacement, displacement);
+    bool joined = false;
     for (unsigned int i = 0; i < interfaces.list.size(); ++i)
       if (std::find(loads.begin(),
                     loads.end(),
                     interfaces.list[i].grouted_after) != loads.end())
-        join(i);
+        {
+          join(i);
+          joined = true;
+        }
+    return joined;
   }
 
 
@@ -361,6 +366,13 @@ namespace Voussoir
   Contact::keys() const
   {
     return point_keys;
+  }
+
+
+  const std::vector<types::global_dof_index> &
+  Contact::cluster_nodes() const
+  {
+    return global_nodes;
   }
 
 

@@ -19,15 +19,6 @@ namespace Voussoir
       return true;
     }
 
-
-    /** All that acts on the second node, in global coordinates. */
-    Tensor<1, 3>
-    total_force(const ContactPoint &point)
-    {
-      Tensor<1, 3> force = point.force;
-      force[0] += point.given_force;
-      return force * point.frame;
-    }
   } // namespace
 
 
@@ -148,6 +139,29 @@ namespace Voussoir
       bars = surface.bar_stiffness *
              (point.gap[0] - point.initial_gap[0] - point.bar_extension);
     point.given_force = (point.uplift - bars) * point.area;
+  }
+
+
+  void
+  ContactSolver::yield_bars(ContactPoint &point) const
+  {
+    const ContactSurface &surface = surfaces[point.surface];
+    if (surface.bar_stiffness == 0.)
+      return;
+    const double extension = point.gap[0] - point.initial_gap[0],
+                 elastic   = surface.bar_strength / surface.bar_stiffness;
+    point.bar_extension =
+      std::max(extension - elastic,
+               std::min(extension + elastic, point.bar_extension));
+  }
+
+
+  Tensor<1, 3>
+  ContactSolver::total_force(const ContactPoint &point)
+  {
+    Tensor<1, 3> force = point.force;
+    force[0] += point.given_force;
+    return force * point.frame;
   }
 
 
@@ -295,14 +309,7 @@ namespace Voussoir
         point.largest_slip =
           std::max(point.largest_slip, tangential_norm(point.gap));
       }
-    if (surface.bar_stiffness > 0.)
-      {
-        const double extension = point.gap[0] - point.initial_gap[0],
-                     elastic   = surface.bar_strength / surface.bar_stiffness;
-        point.bar_extension =
-          std::max(extension - elastic,
-                   std::min(extension + elastic, point.bar_extension));
-      }
+    yield_bars(point);
     // keys may have closed
     if (point.status != ContactStatus::sticking || surface.bar_stiffness > 0. ||
         (surface.key_depth > 0. && !point.limits.locked))

@@ -8,6 +8,8 @@ namespace Voussoir
 
   namespace
   {
+    constexpr unsigned int n_blocks = 3;
+
     /** Blocks in a row along x, "left wall", "block 1" and so on, "right wall",
      *  which are as wide as long; y runs across the row. */
     class Row : public MeshGenerator
@@ -79,7 +81,7 @@ namespace Voussoir
       }
 
     private:
-      static constexpr unsigned int n_blocks = 3, n_layers = 4;
+      static constexpr unsigned int n_layers = 4;
 
       double length = 2., height = 8.;
     };
@@ -139,7 +141,9 @@ namespace Voussoir
             {
               keep_largest(opening, std::abs(point.gap[0]));
               if (point.surface < 2) // between blocks
-                keep_largest(slip, std::hypot(point.gap[1], point.gap[2]));
+                keep_largest(slip,
+                             std::abs(point.gap[1] * point.frame[1][2] +
+                                      point.gap[2] * point.frame[2][2]));
             }
           opening = Utilities::MPI::max(opening, communicator);
           slip    = Utilities::MPI::max(slip, communicator);
@@ -161,19 +165,32 @@ namespace Voussoir
           verdicts.below(name + "opening or overlap of the joints [m]",
                          opening,
                          1e-12);
-          verdicts.below(name + "slip between the blocks [m]", slip, 1e-9);
+          verdicts.below(name + "vertical slip between the blocks [m]",
+                         slip,
+                         1e-9);
 
-          // the gap begins where the blocks were when they met; away from
-          // the base it is the growth of one of them, nu sigma L / E
-          double overlap = 0.;
+          // The gap begins where the blocks were when they met; away from
+          // the base all of them together grow by nu sigma L / E each. Where
+          // they stand between the walls nothing says.
+          const unsigned int n_surfaces =
+            simulation->run.contact->surface_names().size();
+          std::vector<double> overlap(n_surfaces), points(n_surfaces);
           for (unsigned int k = 0; k < simulation->run.contact->points().size();
                ++k)
             if (const ContactPoint &point =
                   simulation->run.contact->points()[k];
                 std::abs(simulation->run.contact->positions()[k][2] - 0.5 * H) <
                 1e-6)
-              keep_largest(overlap, point.initial_gap[0]);
-          return Utilities::MPI::max(overlap, communicator);
+              {
+                overlap[point.surface] += point.initial_gap[0];
+                points[point.surface] += 1.;
+              }
+          Utilities::MPI::sum(overlap, communicator, overlap);
+          Utilities::MPI::sum(points, communicator, points);
+          double sum = 0.;
+          for (unsigned int s = 0; s < n_surfaces; ++s)
+            sum += overlap[s] / points[s];
+          return sum;
         };
 
         compare("joined from the start, weight: ",
@@ -181,9 +198,9 @@ namespace Voussoir
                 thrust_of_weight);
         const double overlap =
           compare("free-standing, weight: ", after("weight", "weight"), 0.);
-        verdicts.near("  overlap in the middle when they are grouted [mm]",
+        verdicts.near("  overlap at half the height when they are grouted [mm]",
                       1e3 * overlap,
-                      0.5e3 * nu * rho * gravity * H * L / E,
+                      0.5e3 * n_blocks * nu * rho * gravity * H * L / E,
                       0.001);
         compare(
           "then water: ", after("weight; water", "weight"), thrust_of_water);

@@ -1,6 +1,7 @@
 #ifndef voussoir_analysis_elastic_solver_h
 #define voussoir_analysis_elastic_solver_h
 
+#include <voussoir/constraints/static_contact.h>
 #include <voussoir/fem/internal_force.h>
 #include <voussoir/fem/nodal_terms.h>
 #include <voussoir/materials/material.h>
@@ -25,6 +26,9 @@ namespace Voussoir
      * @param constraints hanging nodes and all that is held, see
      *   Discretization::make_constraints()
      * @param springs     of the absorbing boundary, or null if it is held
+     * @param contact     between parts of the model, which hold together where
+     *   they touch at @p displacement until `tangent_contact` says otherwise,
+     *   or null
      */
     ElasticSolver(
       const Discretization                                  &discretization,
@@ -32,7 +36,13 @@ namespace Voussoir
       const std::vector<const Material *>                   &materials,
       const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
       const dealii::AffineConstraints<double>               &constraints,
-      const NodalTerms                                      *springs);
+      const NodalTerms                                      *springs,
+      Contact                                               *contact = nullptr,
+      const Vector *displacement                                     = nullptr);
+
+    /** The contact whose tangent is part of the stiffness, or null. */
+    StaticContact *
+    tangent_contact();
 
     /** Zero on entries that are held. */
     void
@@ -62,7 +72,12 @@ namespace Voussoir
     void
     assemble(
       const std::vector<const Material *>                   &materials,
-      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell);
+      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
+      const Contact                                         *contact);
+
+    /** Lets the parts hold together where they touch. */
+    void
+    tie(Contact &contact, const Vector &displacement);
 
     void
     set_up_multigrid();
@@ -72,6 +87,7 @@ namespace Voussoir
     const NodalTerms                         *springs;
     const dealii::AffineConstraints<double>  &constraints;
     std::vector<unsigned int>                 held; // owned entries
+    std::optional<StaticContact>              static_contact;
     dealii::TrilinosWrappers::SparseMatrix    matrix;
     dealii::TrilinosWrappers::PreconditionAMG multigrid;
   };

@@ -57,12 +57,13 @@ namespace Voussoir
    * here only included, so that without an earthquake nothing moves. Forces of
    * contact are no part of it, as the run finds them by itself.
    *
-   * Each stage is solved with elastic materials first, without interfaces by
-   * multigrid, with them by damped motion. Where materials crack or yield under
-   * that state, equilibrium is found again by the method of initial stresses;
-   * with interfaces, or where that fails, by damped motion. From then on a
-   * model without interfaces goes on from the cracked state. An interface is
-   * grouted at the end of the stage that names its load.
+   * Each stage is solved with elastic materials first, by multigrid, with
+   * interfaces in Newton steps. Where materials crack or yield under that
+   * state, equilibrium is found again by the method of initial stresses. Where
+   * that fails, it is found by damped motion, which also looks whether a state
+   * with interfaces is at rest. From then on a model without interfaces goes on
+   * from the cracked state. An interface is grouted at the end of the stage
+   * that names its load.
    *
    * Throws UserError if no equilibrium is found.
    *

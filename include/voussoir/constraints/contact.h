@@ -68,10 +68,10 @@ namespace Voussoir
     void
     forget_approach();
 
-    /** Joins the interfaces that are grouted after one of these loads. Called
-     *  on all ranks.
+    /** Joins the interfaces that are grouted after one of these loads; returns
+     *  whether there are any. Called on all ranks.
      *  @param displacement at which their gap and slip begin */
-    void
+    bool
     grout(const std::vector<std::string> &loads, const Vector &displacement);
 
     /** What the steps took; the largest values and sums over all ranks since
@@ -109,7 +109,14 @@ namespace Voussoir
     /** Smallest side of a cell at the interfaces [m]. */
     double cell_size = 0.;
 
+    /** Global nodes of the clusters of this rank, which are those that its
+     *  points name. */
+    const std::vector<dealii::types::global_dof_index> &
+    cluster_nodes() const;
+
   private:
+    friend class StaticContact; // finds the same forces in its own way
+
     static constexpr unsigned int memory_width = 13;
     using PointMemory = std::array<double, memory_width>;
 
@@ -127,7 +134,7 @@ namespace Voussoir
     std::optional<ContactSolver>                 solver;
     std::optional<ContactExchange>               exchange;
     std::vector<dealii::Point<3>>                point_positions;
-    std::vector<dealii::types::global_dof_index> first_node;
+    std::vector<dealii::types::global_dof_index> first_node, global_nodes;
     std::vector<std::uint64_t>                   point_keys;
     std::vector<double>                          uplift; // of each point [Pa]
     std::vector<PointMemory>                     point_memory;

@@ -124,6 +124,15 @@ namespace Voussoir
     void
     update_limits(ContactPoint &point) const;
 
+    /** Lets the bars at a point flow that its gap has stretched too far. */
+    void
+    yield_bars(ContactPoint &point) const;
+
+    /** All that acts on the second node of a point, in global coordinates [N].
+     */
+    static dealii::Tensor<1, 3>
+    total_force(const ContactPoint &point);
+
     /** Part that the bars at a point may take of dt^2 lambda / 4, which must
      *  stay below one for stability. */
     double

@@ -1,0 +1,107 @@
+#ifndef voussoir_constraints_static_contact_h
+#define voussoir_constraints_static_contact_h
+
+#include <voussoir/constraints/contact.h>
+
+namespace Voussoir
+{
+  /**
+   * The interfaces in static equilibrium, by the augmented Lagrangian of Alart
+   * and Curnier (1991): the force of a point is what its law makes of
+   *   F - r g ,
+   * with the gap g, a spring r and the multiplier F. Once F equals that force,
+   * the law holds exactly, whatever r is. Slip counts from the last stick, as
+   * in a step of the run.
+   */
+  class StaticContact
+  {
+  public:
+    /**
+     * @param contact   whose points and laws these are
+     * @param stiffness of the body at the owned nodes [N/m], zero where held
+     */
+    StaticContact(Contact &contact, const Vector &stiffness);
+
+    /** A stage starts from the forces and slips of now. */
+    void
+    start_stage();
+
+    /** Adds the forces at a displacement [N]; `add_tangent` is then that
+     *  there. */
+    void
+    respond(Vector &force, const Vector &displacement);
+
+    /**
+     * Moves the tangent towards that of points which all hold together, of the
+     * bodies as one: by a share of the way, 1 is all of it. Under such a
+     * tangent no part is loose, and no step goes too far.
+     */
+    void
+    stiffen(const double share);
+
+    /** Leaves the tangent to points that touch, which hold together. */
+    void
+    tie(const Vector &displacement);
+
+    /** force += C displacement, where -C is the derivative of the forces,
+     *  without that of the friction by the pressure. */
+    void
+    add_tangent(Vector &force, const Vector &displacement) const;
+
+    /** Two nodes of a tangent: C on the diagonal, -C beside it. */
+    struct Pair
+    {
+      dealii::types::global_dof_index first, second; // global nodes
+      dealii::Tensor<2, 3>            tangent;       // [N/m]
+      std::array<bool, 3>             first_held, second_held;
+    };
+
+    /** The pairs of this rank, whose nodes may be those of others. */
+    std::vector<Pair>
+    pairs() const;
+
+    /** What an update of the multipliers changed, on all ranks. */
+    struct Change
+    {
+      double force = 0.;       // norm of the change over that of the forces
+      double gap   = 0.;       // largest penetration, or slip of a point that
+                               // sticks [m]
+      unsigned int broken = 0; // points whose strength has changed
+      unsigned int open = 0, slide = 0, all = 0; // points
+    };
+
+    /** The forces of the last response become the multipliers, and points
+     *  remember how far they opened and slipped. */
+    Change
+    update();
+
+    /** The slip of the next stage counts from here. */
+    void
+    finish_stage();
+
+    /** Takes back all that was found in this stage. */
+    void
+    restore();
+
+  private:
+    void
+    find_gaps(const Vector &displacement);
+
+    /** Adds the forces at the nodes of the clusters. */
+    void
+    add_forces(Vector &force) const;
+
+    Contact                          &contact;
+    std::vector<double>               spring; // of each point [N/m]
+    std::vector<dealii::Tensor<1, 3>> multiplier;
+    std::vector<dealii::Tensor<2, 3>> tangent; // in global axes
+    std::vector<double>               path;    // slip before this stage [m]
+    std::vector<ContactPoint>         before;  // this stage
+
+    // at the nodes of the clusters and at the owned ones
+    mutable std::vector<dealii::Tensor<1, 3>> at_nodes, forces, at_owned;
+    std::vector<std::array<bool, 3>>          held; // nodes of the clusters
+  };
+} // namespace Voussoir
+
+#endif

@@ -9,8 +9,6 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <Epetra_MultiVector.h>
-#include <Teuchos_ParameterList.hpp>
-#include <ml_MultiLevelPreconditioner.h>
 
 namespace Voussoir
 {
@@ -227,12 +225,9 @@ namespace Voussoir
   void
   ElasticSolver::tie(Contact &contact, const Vector &displacement)
   {
-    Vector diagonal = discretization.create_vector();
-    for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
-      diagonal.local_element(i) =
-        matrix.diag_element(discretization.owned_dofs.nth_index_in_set(i));
-    clear_held(diagonal);
-    static_contact.emplace(contact, diagonal);
+    Vector stiffness = diagonal();
+    clear_held(stiffness);
+    static_contact.emplace(contact, stiffness);
     static_contact->tie(displacement);
 
     const auto add = [&](const auto          first,
@@ -281,21 +276,26 @@ namespace Voussoir
           }
       }
 
-    Teuchos::ParameterList list;
-    ML_Epetra::SetDefaults("SA", list);
-    list.set("ML output", 0);
-    list.set("PDE equations", 3);
-    list.set("aggregation: type", "Uncoupled");
-    list.set("aggregation: threshold", 0.02);
-    list.set("smoother: type", "Chebyshev");
-    list.set("smoother: sweeps", 3);
-    list.set("coarse: type", "Amesos-KLU");
-    list.set("null space: type", "pre-computed");
-    list.set("null space: dimension", 6);
-    list.set("null space: vectors", rigid_modes.Values());
-    // eigenvalues are estimated from random vectors: the same ones every time
-    ML_set_random_seed(1);
-    multigrid.initialize(matrix, list);
+    multigrid.emplace(
+      [this](Vector &force, const Vector &displacement) {
+        multiply(force, displacement);
+        clear_held(force);
+      },
+      matrix,
+      diagonal(),
+      held,
+      rigid_modes.Values());
+  }
+
+
+  Vector
+  ElasticSolver::diagonal() const
+  {
+    Vector result = discretization.create_vector();
+    for (unsigned int i = 0; i < result.locally_owned_size(); ++i)
+      result.local_element(i) =
+        matrix.diag_element(discretization.owned_dofs.nth_index_in_set(i));
+    return result;
   }
 
 
@@ -311,6 +311,13 @@ namespace Voussoir
   ElasticSolver::apply(Vector &force, const Vector &displacement) const
   {
     stop_if_requested(discretization.grid.communicator());
+    multiply(force, displacement);
+  }
+
+
+  void
+  ElasticSolver::multiply(Vector &force, const Vector &displacement) const
+  {
     internal_force.apply(force, displacement);
     if (springs != nullptr)
       springs->add_to(force, displacement, 0.);
@@ -322,7 +329,7 @@ namespace Voussoir
   void
   ElasticSolver::precondition(Vector &displacement, const Vector &force) const
   {
-    multigrid.vmult(displacement, force);
+    multigrid->vmult(displacement, force);
     clear_held(displacement);
   }
 

@@ -1,23 +1,23 @@
 #ifndef voussoir_analysis_elastic_solver_h
 #define voussoir_analysis_elastic_solver_h
 
+#include <voussoir/analysis/multigrid.h>
 #include <voussoir/constraints/static_contact.h>
 #include <voussoir/fem/internal_force.h>
 #include <voussoir/fem/nodal_terms.h>
 #include <voussoir/materials/material.h>
 
-#include <deal.II/lac/trilinos_precondition.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <optional>
 
 namespace Voussoir
 {
   /**
    * Solves K u = f for the elastic stiffness of the materials, with the factors
-   * of the internal force, by conjugate gradients: its matrix-free operator,
-   * preconditioned by Trilinos' smoothed aggregation with the six
-   * rigid-body modes, on trilinear cells between neighbouring Gauss-Lobatto
-   * nodes (for degree 1 the cells themselves). Such a low-order matrix is
-   * spectrally equivalent to that of any degree (Orszag 1980).
+   * of the internal force, by conjugate gradients with multigrid: its
+   * matrix-free operator, and coarser levels by smoothed aggregation with the
+   * six rigid-body modes, made from trilinear cells between neighbouring
+   * Gauss-Lobatto nodes (for degree 1 the cells themselves). Such a low-order
+   * matrix is spectrally equivalent to that of any degree (Orszag 1980).
    */
   class ElasticSolver
   {
@@ -82,14 +82,22 @@ namespace Voussoir
     void
     set_up_multigrid();
 
-    const Discretization                     &discretization;
-    const InternalForce                      &internal_force;
-    const NodalTerms                         *springs;
-    const dealii::AffineConstraints<double>  &constraints;
-    std::vector<unsigned int>                 held; // owned entries
-    std::optional<StaticContact>              static_contact;
-    dealii::TrilinosWrappers::SparseMatrix    matrix;
-    dealii::TrilinosWrappers::PreconditionAMG multigrid;
+    /** `apply` without a look whether to stop. */
+    void
+    multiply(Vector &force, const Vector &displacement) const;
+
+    /** Of the matrix, at owned entries. */
+    Vector
+    diagonal() const;
+
+    const Discretization                    &discretization;
+    const InternalForce                     &internal_force;
+    const NodalTerms                        *springs;
+    const dealii::AffineConstraints<double> &constraints;
+    std::vector<unsigned int>                held; // owned entries
+    std::optional<StaticContact>             static_contact;
+    dealii::TrilinosWrappers::SparseMatrix   matrix; // until `multigrid` is
+    std::optional<Multigrid>                 multigrid;
   };
 } // namespace Voussoir
 

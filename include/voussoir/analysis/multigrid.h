@@ -1,0 +1,102 @@
+#ifndef voussoir_analysis_multigrid_h
+#define voussoir_analysis_multigrid_h
+
+#include <voussoir/fem/discretization.h>
+
+#include <deal.II/base/subscriptor.h>
+#include <deal.II/lac/diagonal_matrix.h>
+#include <deal.II/lac/precondition.h>
+#include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <functional>
+
+struct ML_Struct; // of Trilinos
+
+namespace Voussoir
+{
+  /**
+   * A multigrid cycle whose finest level is a matrix-free operator, with
+   * Chebyshev smoothing by its diagonal (Adams et al. 2003); the coarser ones
+   * are Trilinos' smoothed aggregation of a matrix that is spectrally
+   * equivalent. Products with that matrix would take most of the time, so that
+   * it is let go once the coarser levels are made.
+   */
+  class Multigrid
+  {
+  public:
+    /** dst = A src, symmetric and zero on entries that are held. */
+    using Operator = std::function<void(Vector &dst, const Vector &src)>;
+
+    /**
+     * @param apply    on the finest level
+     * @param matrix   with any entries where held; empty afterwards
+     * @param diagonal of the matrix
+     * @param held     owned entries
+     * @param rigid_body_modes six, of the owned entries, one after the other
+     */
+    Multigrid(const Operator                         &apply,
+              dealii::TrilinosWrappers::SparseMatrix &matrix,
+              const Vector                           &diagonal,
+              const std::vector<unsigned int>        &held,
+              double                                 *rigid_body_modes);
+
+    /** One cycle from zero. */
+    void
+    vmult(Vector &dst, const Vector &src) const;
+
+  private:
+    struct FinestLevel : public dealii::Subscriptor
+    {
+      FinestLevel(const Operator                       &apply,
+                  const dealii::types::global_dof_index size)
+        : apply(apply)
+        , size(size)
+      {}
+
+      void
+      vmult(Vector &dst, const Vector &src) const
+      {
+        apply(dst, src);
+      }
+
+      // the smoother wants these, too
+      dealii::types::global_dof_index
+      m() const
+      {
+        return size;
+      }
+
+      double
+      el(const dealii::types::global_dof_index,
+         const dealii::types::global_dof_index) const
+      {
+        AssertThrow(false, dealii::ExcNotImplemented());
+        return 0.;
+      }
+
+      Operator                        apply;
+      dealii::types::global_dof_index size;
+    };
+
+    using Smoother =
+      dealii::PreconditionChebyshev<FinestLevel,
+                                    Vector,
+                                    dealii::DiagonalMatrix<Vector>>;
+
+    /** dst += what the coarser levels make of the residual. */
+    void
+    correct(Vector &dst, const Vector &residual) const;
+
+    FinestLevel                               finest;
+    const std::vector<unsigned int>          &held;
+    Smoother                                  smoother;
+    dealii::TrilinosWrappers::PreconditionAMG coarser;
+    ML_Struct                                *levels = nullptr; // of `coarser`
+    bool           single_level = false; // so small that it is solved at once
+    mutable Vector residual, change;
+    mutable std::vector<double> coarse_residual, coarse_change;
+  };
+} // namespace Voussoir
+
+#endif

@@ -10,9 +10,6 @@ namespace Voussoir
   {
     constexpr unsigned int max_steps = 300;
 
-    // of the linear equations of a step; a smaller one costs more than it saves
-    constexpr double linear_tolerance = 0.05;
-
     // of points that all hold together in the tangent: with nothing of it parts
     // that lie loose move away
     constexpr double tied_share = 1e-3;
@@ -39,6 +36,9 @@ namespace Voussoir
                            const Vector   &force,
                            const double    tolerance)
   {
+    // Of the linear equations of a step: smaller ones cost more than they save,
+    // the more so if the elastic stiffness is not the tangent.
+    const double linear_tolerance = memory == nullptr ? 0.05 : 0.3;
     Effort       effort;
     Timer        since_report;
     const Vector start  = displacement;

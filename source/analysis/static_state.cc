@@ -148,6 +148,8 @@ namespace Voussoir
       std::unique_ptr<ElasticSolver>  solver;
       std::unique_ptr<Relaxation>     relaxation; // with contact or memory
       Vector                          loads;      // so far [N]
+      bool                            by_multigrid = true; // this stage
+      unsigned int                    damped_steps = 0;    // of this stage
     };
 
 
@@ -208,6 +210,8 @@ namespace Voussoir
     {
       const Timer    clock;
       nlohmann::json report;
+      by_multigrid = true;
+      damped_steps = 0;
       if (!solver)
         make_solver();
       for (const std::string &name : stage)
@@ -285,12 +289,11 @@ namespace Voussoir
                                       std::max(parameters.tolerance, 1e-8),
                                       iterations))
         return;
+      by_multigrid = false;
+      damped_steps += relaxation->find_equilibrium(
+        state.displacement, state.material_memory, force, parameters.rest, log);
       log.line("  by damped motion at rest again after ",
-               relaxation->find_equilibrium(state.displacement,
-                                            state.material_memory,
-                                            force,
-                                            parameters.rest,
-                                            log),
+               damped_steps,
                " steps");
     }
 
@@ -314,14 +317,16 @@ namespace Voussoir
                ", equilibrium to ",
                effort.residual,
                effort.found ? "" : "; not found, so by damped motion");
-      MaterialMemory none;
-      log.line("    at rest after ",
-               relaxation->find_equilibrium(state.displacement,
-                                            memory == nullptr ? none : *memory,
-                                            force,
-                                            parameters.rest,
-                                            log),
-               " steps of damped motion");
+      MaterialMemory     none;
+      const unsigned int steps =
+        relaxation->find_equilibrium(state.displacement,
+                                     memory == nullptr ? none : *memory,
+                                     force,
+                                     parameters.rest,
+                                     log);
+      log.line("    at rest after ", steps, " steps of damped motion");
+      damped_steps += steps;
+      by_multigrid = by_multigrid && effort.found;
       return effort.iterations;
     }
 
@@ -349,6 +354,8 @@ namespace Voussoir
            << ", largest displacement " << 1e3 * largest << " mm";
       log.line(text.str());
       report["iterations"]               = iterations;
+      report["found by multigrid"]       = by_multigrid;
+      report["steps of damped motion"]   = damped_steps;
       report["sum of loads so far [N]"]  = to_json(resultant(loads));
       report["sum of reactions [N]"]     = to_json(reactions);
       report["largest displacement [m]"] = largest;

@@ -128,7 +128,10 @@ namespace Voussoir
                                  const double         expected) {
           const auto parameters = make_case(stages);
           const auto simulation = make_simulation(*parameters, communicator);
-          double     largest = 0., smallest = 1e300, opening = 0., slip = 0.;
+          for (const auto &stage : simulation->rest.summary.at("stages"))
+            verdicts.is_true(name + "found by multigrid",
+                             stage.at("found by multigrid").get<bool>());
+          double largest = 0., smallest = 1e300, opening = 0., slip = 0.;
           for (unsigned int s = 0;
                s < simulation->run.contact->surface_names().size();
                ++s)

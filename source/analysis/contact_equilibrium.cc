@@ -51,7 +51,10 @@ namespace Voussoir
     while (effort.steps < max_steps)
       {
         double left = find_residual(displacement, memory, force);
-        while (left > accuracy * size && effort.steps < max_steps)
+        for (bool first = true;
+             left > (first ? 0.1 * tolerance : accuracy) * size &&
+             effort.steps < max_steps;
+             first = false)
           {
             contact.stiffen(effort.steps == 0 ? 1. : tied_share);
             change = 0.;
@@ -70,7 +73,9 @@ namespace Voussoir
             effort.found = true;
             return effort;
           }
-        accuracy = std::clamp(effort.last.force, 0.1 * tolerance, accuracy);
+        // less, or multipliers and displacements run after each other
+        accuracy =
+          std::clamp(0.2 * effort.last.force, 0.1 * tolerance, accuracy);
         if (since_report.wall_time() > report_interval)
           {
             log.line("    after ",

@@ -216,27 +216,30 @@ namespace Voussoir
         verdicts.below("motion while the load leaves a safety of 1.05 [mm]",
                        1e3 * before,
                        0.05);
-        verdicts.near("starts to slide at a safety under the load",
-                      0.01 * std::round(100. * at_start),
-                      1.,
-                      0.02);
-        verdicts.near("sliding: resistance over driving weight",
-                      resisting / samples / (mass * along),
-                      safety,
-                      0.01);
-        verdicts.near("  normal force on the left [MN]",
-                      1e-6 * N_left / samples,
-                      1e-6 * N1,
-                      0.01);
-        verdicts.near("  normal force on the right [MN]",
-                      1e-6 * N_right / samples,
-                      1e-6 * N2,
-                      0.01);
-        verdicts.near("  acceleration [m/s2]",
-                      (motion[2 * half] - 2. * motion[half] + motion[0]) /
-                        (step * step),
-                      excess / mass,
-                      0.01);
+        // Where points stick under the weight is not unique, and on other ranks
+        // other by some thousandths of the forces.
+        const auto off = [&](const std::string &name,
+                             const double       value,
+                             const double       reference,
+                             const double       tolerance) {
+          verdicts.below(name + ", off its reference by",
+                         std::abs(value / reference - 1.),
+                         tolerance);
+        };
+        off("starts to slide at a safety under the load of 1",
+            at_start,
+            1.,
+            0.02);
+        off("sliding: resistance over driving weight",
+            resisting / samples / (mass * along),
+            safety,
+            0.01);
+        off("  normal force on the left", N_left / samples, N1, 0.01);
+        off("  normal force on the right", N_right / samples, N2, 0.01);
+        off("  acceleration",
+            (motion[2 * half] - 2. * motion[half] + motion[0]) / (step * step),
+            excess / mass,
+            0.01);
         verdicts.below(
           "penetration over cell size",
           Utilities::MPI::max(simulation->run.contact->effort().penetration,

@@ -8,7 +8,7 @@ namespace Voussoir
 
   namespace
   {
-    constexpr unsigned int max_steps = 300;
+    constexpr unsigned int max_steps = 300, max_updates = 300;
 
     // of points that all hold together in the tangent: with nothing of it parts
     // that lie loose move away
@@ -48,7 +48,9 @@ namespace Voussoir
     const double size     = change.l2_norm();
     double       accuracy = 0.01;
     contact.start_stage();
-    while (effort.steps < max_steps)
+    for (unsigned int update = 0;
+         update < max_updates && effort.steps < max_steps;
+         ++update)
       {
         double left = find_residual(displacement, memory, force);
         for (bool first = true;

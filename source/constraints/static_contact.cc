@@ -64,9 +64,12 @@ namespace Voussoir
     for (unsigned int k = 0; k < multiplier.size(); ++k)
       {
         const ContactPoint &point = contact.points()[k];
-        const double first  = at_nodes[point.first].norm() / std::sqrt(3.),
-                     second = at_nodes[point.second].norm() / std::sqrt(3.);
-        spring.push_back(first == 0. || second == 0. ? std::max(first, second) :
+        const double first   = at_nodes[point.first].norm() / std::sqrt(3.),
+                     second  = at_nodes[point.second].norm() / std::sqrt(3.);
+        const double stiffer = std::max(first, second);
+        // held on both sides nothing depends on it
+        spring.push_back(stiffer == 0.               ? 1. :
+                         first == 0. || second == 0. ? stiffer :
                                                        std::min(first, second));
       }
   }

@@ -30,7 +30,7 @@ STOPPED = 75
 def command(options, restart):
     program = [str(options.program), str(options.case), "--set", "Output/Folder=run"]
     if options.ranks > 1:
-        program = ["mpirun", "-q", "-n", str(options.ranks)] + program
+        program = ["mpirun", "-n", str(options.ranks)] + program
     return program + (["--restart"] if restart else [])
 
 

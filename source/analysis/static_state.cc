@@ -129,6 +129,10 @@ namespace Voussoir
       void
       crack_and_yield(const Vector &force, unsigned int &iterations);
 
+      /** By damped motion. */
+      void
+      come_to_rest(const Vector &force, MaterialMemory &memory);
+
       /** Whether materials have cracked or yielded on any rank. */
       bool
       dissipated() const;
@@ -290,11 +294,17 @@ namespace Voussoir
                                       iterations))
         return;
       by_multigrid = false;
-      damped_steps += relaxation->find_equilibrium(
-        state.displacement, state.material_memory, force, parameters.rest, log);
-      log.line("  by damped motion at rest again after ",
-               damped_steps,
-               " steps");
+      come_to_rest(force, state.material_memory);
+    }
+
+
+    void
+    StaticStages::come_to_rest(const Vector &force, MaterialMemory &memory)
+    {
+      const unsigned int steps = relaxation->find_equilibrium(
+        state.displacement, memory, force, parameters.rest, log);
+      log.line("    at rest after ", steps, " steps of damped motion");
+      damped_steps += steps;
     }
 
 
@@ -317,15 +327,8 @@ namespace Voussoir
                ", equilibrium to ",
                effort.residual,
                effort.found ? "" : "; not found, so by damped motion");
-      MaterialMemory     none;
-      const unsigned int steps =
-        relaxation->find_equilibrium(state.displacement,
-                                     memory == nullptr ? none : *memory,
-                                     force,
-                                     parameters.rest,
-                                     log);
-      log.line("    at rest after ", steps, " steps of damped motion");
-      damped_steps += steps;
+      MaterialMemory none;
+      come_to_rest(force, memory == nullptr ? none : *memory);
       by_multigrid = by_multigrid && effort.found;
       return effort.iterations;
     }

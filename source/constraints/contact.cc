@@ -54,7 +54,6 @@ namespace Voussoir
                           [](const ContactCluster &cluster) {
                             return cluster.pairs.size() == 1;
                           });
-    std::vector<types::global_dof_index> &nodes = global_nodes;
     for (const ContactCluster &cluster : clusters)
       {
         std::vector<ContactPoint> points;
@@ -74,16 +73,18 @@ namespace Voussoir
             first_node.push_back(cluster.nodes[pair.first]);
           }
         solver->add_cluster(cluster.nodes.size(), points);
-        nodes.insert(nodes.end(), cluster.nodes.begin(), cluster.nodes.end());
+        global_nodes.insert(global_nodes.end(),
+                            cluster.nodes.begin(),
+                            cluster.nodes.end());
       }
     find_uplift(discretization);
 
-    exchange.emplace(discretization, nodes);
-    displacement.resize(nodes.size());
+    exchange.emplace(discretization, global_nodes);
+    displacement.resize(global_nodes.size());
     for (unsigned int i = 0; i < interfaces.list.size(); ++i)
       if (interfaces.list[i].grouted_after.empty())
         join(i);
-    force.resize(nodes.size());
+    force.resize(global_nodes.size());
     applied.resize(exchange->owned_nodes().size());
     last_velocity.resize(applied.size());
 
@@ -296,10 +297,7 @@ namespace Voussoir
   void
   Contact::add_forces(const double factor, Vector &vector) const
   {
-    const auto &owned = exchange->owned_nodes();
-    for (unsigned int i = 0; i < owned.size(); ++i)
-      for (unsigned int d = 0; d < 3; ++d)
-        vector.local_element(3 * owned[i] + d) += factor * applied[i][d];
+    exchange->add(vector, factor, applied);
   }
 
 

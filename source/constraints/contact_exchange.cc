@@ -117,4 +117,15 @@ namespace Voussoir
       for (unsigned int d = 0; d < 3; ++d)
         at_owned_nodes[place][d] = shared.local_element(3 * owned[place] + d);
   }
+
+
+  void
+  ContactExchange::add(Vector                          &vector,
+                       const double                     factor,
+                       const std::vector<Tensor<1, 3>> &at_owned_nodes) const
+  {
+    for (unsigned int i = 0; i < owned.size(); ++i)
+      for (unsigned int d = 0; d < 3; ++d)
+        vector.local_element(3 * owned[i] + d) += factor * at_owned_nodes[i][d];
+  }
 } // namespace Voussoir

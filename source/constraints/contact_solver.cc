@@ -18,7 +18,6 @@ namespace Voussoir
             return false;
       return true;
     }
-
   } // namespace
 
 
@@ -108,18 +107,26 @@ namespace Voussoir
 
 
   void
-  ContactSolver::start(const std::vector<Tensor<1, 3>> &displacement,
-                       const std::vector<Tensor<1, 3>> &velocity)
+  ContactSolver::find_gaps(const std::vector<Tensor<1, 3>> &displacement)
   {
     for (ContactPoint &point : points)
       {
         point.gap = point.frame *
                       (displacement[point.second] - displacement[point.first]) +
                     point.initial_gap;
-        point.velocity =
-          point.frame * (velocity[point.second] - velocity[point.first]);
         update_limits(point);
       }
+  }
+
+
+  void
+  ContactSolver::start(const std::vector<Tensor<1, 3>> &displacement,
+                       const std::vector<Tensor<1, 3>> &velocity)
+  {
+    find_gaps(displacement);
+    for (ContactPoint &point : points)
+      point.velocity =
+        point.frame * (velocity[point.second] - velocity[point.first]);
   }
 
 

@@ -91,13 +91,7 @@ namespace Voussoir
   StaticContact::find_gaps(const Vector &displacement)
   {
     contact.exchange->to_clusters(displacement, at_nodes);
-    for (ContactPoint &point : contact.solver->points)
-      {
-        point.gap =
-          point.frame * (at_nodes[point.second] - at_nodes[point.first]) +
-          point.initial_gap;
-        contact.solver->update_limits(point); // keys and bars follow the gap
-      }
+    contact.solver->find_gaps(at_nodes);
   }
 
 
@@ -176,10 +170,7 @@ namespace Voussoir
   StaticContact::add_forces(Vector &force) const
   {
     contact.exchange->to_owners(forces, at_owned);
-    const auto &owned = contact.nodes();
-    for (unsigned int i = 0; i < owned.size(); ++i)
-      for (unsigned int d = 0; d < 3; ++d)
-        force.local_element(3 * owned[i] + d) += at_owned[i][d];
+    contact.exchange->add(force, 1., at_owned);
   }
 
 
@@ -219,11 +210,8 @@ namespace Voussoir
                                   point.gap[2] - point.stick_point[1]});
         if (open)
           point.history.opening = std::max(point.history.opening, point.gap[0]);
-        else
-          change.gap = std::max(change.gap, std::abs(point.gap[0]));
-        if (point.status == ContactStatus::sticking)
-          change.gap = std::max(change.gap, slip.norm());
-        else if (!limits.locked && (!open || limits.bond > 0.))
+        if (point.status != ContactStatus::sticking && !limits.locked &&
+            (!open || limits.bond > 0.))
           point.history.slip =
             std::max(point.history.slip, path[k] + slip.norm());
         contact.solver->yield_bars(point);
@@ -241,7 +229,6 @@ namespace Voussoir
     const auto     sums =
       sum_over_ranks(std::vector<double>{changed, whole}, communicator);
     change.force  = sums[1] > 0. ? std::sqrt(sums[0] / sums[1]) : 0.;
-    change.gap    = Utilities::MPI::max(change.gap, communicator);
     number        = sum_over_ranks(number, communicator);
     change.broken = number[0];
     change.open   = number[1];

@@ -12,8 +12,9 @@ namespace Voussoir
 
   namespace
   {
-    // Between two looks at the clock and at what is asked from outside [s],
-    // and in steps: those who ask may kill a second later.
+    // Between two looks at the clock and at what is asked from outside [s]:
+    // those who ask may kill a second later. And in steps, as short runs of
+    // small models take less.
     constexpr double look_interval = 0.01, look_steps = 100.;
   } // namespace
 

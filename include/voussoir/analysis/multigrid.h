@@ -30,7 +30,8 @@ namespace Voussoir
 
     /**
      * @param apply    on the finest level
-     * @param matrix   with any entries where held; empty afterwards
+     * @param matrix   with any entries where held; afterwards empty, unless it
+     *   is so small that it is the only level
      * @param diagonal of the matrix
      * @param held     owned entries
      * @param rigid_body_modes six, of the owned entries, one after the other
@@ -93,8 +94,8 @@ namespace Voussoir
     Smoother                                  smoother;
     dealii::TrilinosWrappers::PreconditionAMG coarser;
     ML_Struct                                *levels = nullptr; // of `coarser`
-    bool           single_level = false; // so small that it is solved at once
-    mutable Vector residual, change;
+    bool                        single_level = false; // which is solved at once
+    mutable Vector              residual, change;
     mutable std::vector<double> coarse_residual, coarse_change;
   };
 } // namespace Voussoir

@@ -36,6 +36,12 @@ namespace Voussoir
     to_owners(const std::vector<dealii::Tensor<1, 3>> &at_cluster_nodes,
               std::vector<dealii::Tensor<1, 3>>       &at_owned_nodes);
 
+    /** vector += factor * values. */
+    void
+    add(Vector                                  &vector,
+        const double                             factor,
+        const std::vector<dealii::Tensor<1, 3>> &at_owned_nodes) const;
+
   private:
     template <typename Value>
     void

@@ -92,6 +92,10 @@ namespace Voussoir
     prepare_step(const std::vector<dealii::Tensor<2, 3>> &inverse_mass,
                  const double                             time_step);
 
+    /** Sets gaps to those of a displacement; keys and bars follow them. */
+    void
+    find_gaps(const std::vector<dealii::Tensor<1, 3>> &displacement);
+
     /** Sets gaps and velocities to those of a state. */
     void
     start(const std::vector<dealii::Tensor<1, 3>> &displacement,

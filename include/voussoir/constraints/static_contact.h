@@ -63,10 +63,8 @@ namespace Voussoir
     /** What an update of the multipliers changed, on all ranks. */
     struct Change
     {
-      double force = 0.;       // norm of the change over that of the forces
-      double gap   = 0.;       // largest penetration, or slip of a point that
-                               // sticks [m]
-      unsigned int broken = 0; // points whose strength has changed
+      double       force  = 0.; // norm of the change over that of the forces
+      unsigned int broken = 0;  // points whose strength has changed
       unsigned int open = 0, slide = 0, all = 0; // points
     };
 

@@ -1,5 +1,4 @@
 #include <voussoir/analysis/elastic_solver.h>
-#include <voussoir/base/error.h>
 #include <voussoir/base/interruption.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -378,7 +377,7 @@ namespace Voussoir
       }
     catch (const SolverControl::NoConvergence &)
       {
-        throw UserError(
+        throw NotSolved(
           "The static equations do not converge within 1000 iterations. Either "
           "a part of the model can move freely: hold it with \"Fixed\" or "
           "\"Roller\" in section \"Boundaries\"; or its cells are very flat: "

@@ -35,6 +35,12 @@ namespace Voussoir
                       "With interfaces: motion in a natural period over the "
                       "largest displacement at which the state is at rest.",
                       Patterns::Double(1e-12, 1e-2));
+    prm.add_parameter("Keep in",
+                      kept,
+                      "Folder, beside that of the results, in which the static "
+                      "state is kept for later runs with the same mesh, "
+                      "materials, interfaces, boundaries and static loads. "
+                      "Empty: it is not kept, and none is taken.");
   }
 
 

@@ -1,4 +1,5 @@
-#include <voussoir/analysis/contact_equilibrium.h>
+#include <voussoir/analysis/equilibrium_search.h>
+#include <voussoir/analysis/lost_equilibrium.h>
 #include <voussoir/analysis/relaxation.h>
 #include <voussoir/analysis/static_state.h>
 #include <voussoir/fem/nodal_values.h>
@@ -47,46 +48,6 @@ namespace Voussoir
     }
 
 
-    /**
-     * Equilibrium with cracks and plastic flow by the method of initial
-     * stresses (Zienkiewicz et al. 1969), u += K^-1 (F - f(u)) with the elastic
-     * K. It comes from the side of too little displacement, while damped motion
-     * overshoots and so brings more flow than slowly growing loads would.
-     *
-     * @param springs of the absorbing boundary, or null if it is held
-     * @return whether the residual is below the tolerance times the force; it
-     *   may not be close to collapse, or where cracks run
-     */
-    bool
-    correct_by_initial_stresses(const ElasticSolver &solver,
-                                const InternalForce &internal_force,
-                                MaterialMemory      &memory,
-                                const NodalTerms    *springs,
-                                Vector              &displacement,
-                                const Vector        &force,
-                                const double         tolerance,
-                                unsigned int        &iterations)
-    {
-      constexpr unsigned int max_corrections = 200;
-      Vector                 goal = force, residual = force, change = force;
-      solver.clear_held(goal);
-      for (unsigned int i = 0; i < max_corrections; ++i)
-        {
-          internal_force.respond(residual, displacement, memory);
-          if (springs != nullptr)
-            springs->add_to(residual, displacement, 0.);
-          residual.sadd(-1., 1., force);
-          solver.clear_held(residual);
-          if (residual.l2_norm() <= tolerance * goal.l2_norm())
-            return true;
-          change = 0.;
-          iterations += solver.solve(change, residual, 0.01);
-          displacement += change;
-        }
-      return false;
-    }
-
-
     /** The stages of the static state: each adds its loads to those before and
      *  finds the equilibrium with all of them. */
     class StaticStages
@@ -99,7 +60,7 @@ namespace Voussoir
       /** Applies a stage, whose loads are those of these names; returns what
        *  the summary says of it. */
       nlohmann::json
-      apply(const std::vector<std::string>      &stage,
+      apply(const std::vector<std::string>      &names,
             const std::map<std::string, Load *> &load_of);
 
       /** After the stages so far; its force is that of the supports. */
@@ -118,16 +79,17 @@ namespace Voussoir
       unsigned int
       find_elastic_equilibrium(const Vector &force);
 
-      /** Equilibrium with contact: by multigrid, then looked at by damped
-       *  motion, which also finds it where multigrid does not.
+      /** Equilibrium with contact or with memory: by multigrid; damped motion
+       *  finds it where multigrid does not, and looks whether parts between
+       *  interfaces are at rest.
        *  @param memory of the materials; null: they are elastic */
       unsigned int
-      find_contact_equilibrium(const Vector &force, MaterialMemory *memory);
+      search_equilibrium(const Vector &force, MaterialMemory *memory);
 
       /** Brings the memory of the materials to this state, and where they crack
-       *  or yield the state to equilibrium again. */
-      void
-      crack_and_yield(const Vector &force, unsigned int &iterations);
+       *  or yield the state to equilibrium again; returns the iterations. */
+      unsigned int
+      crack_and_yield(const Vector &force);
 
       /** By damped motion. */
       void
@@ -135,13 +97,12 @@ namespace Voussoir
 
       /** Whether materials have cracked or yielded on any rank. */
       bool
-      dissipated() const;
+      dissipated(const MaterialMemory &memory) const;
 
       void
-      report_equilibrium(const std::vector<std::string> &stage,
-                         const unsigned int              iterations,
-                         const double                    seconds,
-                         nlohmann::json                 &report) const;
+      report_equilibrium(const unsigned int iterations,
+                         const double       seconds,
+                         nlohmann::json    &report) const;
 
       const StaticModel              &model;
       const StaticParameters         &parameters;
@@ -152,6 +113,8 @@ namespace Voussoir
       std::unique_ptr<ElasticSolver>  solver;
       std::unique_ptr<Relaxation>     relaxation; // with contact or memory
       Vector                          loads;      // so far [N]
+      std::vector<std::string>        stage;      // names of its loads
+      Vector                          before;     // displacement before it [m]
       bool                            by_multigrid = true; // this stage
       unsigned int                    damped_steps = 0;    // of this stage
     };
@@ -209,9 +172,11 @@ namespace Voussoir
 
 
     nlohmann::json
-    StaticStages::apply(const std::vector<std::string>      &stage,
+    StaticStages::apply(const std::vector<std::string>      &names,
                         const std::map<std::string, Load *> &load_of)
     {
+      stage  = names;
+      before = state.displacement;
       const Timer    clock;
       nlohmann::json report;
       by_multigrid = true;
@@ -225,7 +190,7 @@ namespace Voussoir
 
       unsigned int iterations = find_elastic_equilibrium(force);
       if (internal_force.has_memory())
-        crack_and_yield(force, iterations);
+        iterations += crack_and_yield(force);
 
       // f(u) minus loads and contact is what the supports bring
       internal_force.respond(state.force,
@@ -234,7 +199,7 @@ namespace Voussoir
       state.force -= force;
       if (model.contact != nullptr)
         model.contact->add_forces(-1., state.force);
-      report_equilibrium(stage, iterations, clock.wall_time(), report);
+      report_equilibrium(iterations, clock.wall_time(), report);
       if (model.contact != nullptr &&
           model.contact->grout(stage, state.displacement))
         solver.reset(); // other parts hold together now
@@ -260,93 +225,100 @@ namespace Voussoir
     StaticStages::find_elastic_equilibrium(const Vector &force)
     {
       if (model.contact != nullptr)
-        return find_contact_equilibrium(force, nullptr);
-      if (dissipated()) // a state with cracks goes on from where it is
+        return search_equilibrium(force, nullptr);
+      if (dissipated(state.material_memory)) // goes on from where it is
         return 0;
       return solver->solve(state.displacement, force, parameters.tolerance);
     }
 
 
-    void
-    StaticStages::crack_and_yield(const Vector &force, unsigned int &iterations)
+    unsigned int
+    StaticStages::crack_and_yield(const Vector &force)
     {
       internal_force.set_static_state(state.displacement,
                                       state.temperature,
                                       state.material_memory);
-      internal_force.respond(state.force,
-                             state.displacement,
-                             state.material_memory);
-      if (!dissipated())
-        return;
-      log.line("  cracks or yields");
-      if (model.contact != nullptr)
+      MaterialMemory tried = state.material_memory;
+      internal_force.respond(state.force, state.displacement, tried);
+      if (!dissipated(tried))
         {
-          iterations += find_contact_equilibrium(force, &state.material_memory);
-          return;
+          state.material_memory = std::move(tried);
+          return 0;
         }
-      if (correct_by_initial_stresses(*solver,
-                                      internal_force,
-                                      state.material_memory,
-                                      on_springs ? &model.terms : nullptr,
-                                      state.displacement,
-                                      force,
-                                      std::max(parameters.tolerance, 1e-8),
-                                      iterations))
-        return;
-      by_multigrid = false;
-      come_to_rest(force, state.material_memory);
+      log.line("  cracks or yields");
+      return search_equilibrium(force, &state.material_memory);
     }
 
 
     void
     StaticStages::come_to_rest(const Vector &force, MaterialMemory &memory)
     {
-      const unsigned int steps = relaxation->find_equilibrium(
+      const Relaxation::Result motion = relaxation->find_equilibrium(
         state.displacement, memory, force, parameters.rest, log);
-      log.line("    at rest after ", steps, " steps of damped motion");
-      damped_steps += steps;
+      damped_steps += motion.steps;
+      if (!motion.at_rest)
+        throw LostEquilibrium(
+          "The static stage \"" + join(stage, ", ") +
+            "\" comes to no equilibrium: after " +
+            std::to_string(motion.steps) + " steps of damped motion " +
+            description_of_motion(model.discretization,
+                                  model.contact,
+                                  before,
+                                  state.displacement,
+                                  dissipated(memory)) +
+            ". Look at the strength of these interfaces and materials, at what "
+            "holds the blocks, and at the loads and the order of the "
+            "\"Stages\" in section \"Static state\".",
+          before,
+          state.displacement);
+      log.line("    at rest after ", motion.steps, " steps of damped motion");
     }
 
 
     unsigned int
-    StaticStages::find_contact_equilibrium(const Vector   &force,
-                                           MaterialMemory *memory)
+    StaticStages::search_equilibrium(const Vector   &force,
+                                     MaterialMemory *memory)
     {
-      const ContactEquilibrium::Effort effort =
-        ContactEquilibrium(*solver,
-                           internal_force,
-                           on_springs ? &model.terms : nullptr,
-                           log)
-          .find(state.displacement, memory, force, parameters.rest);
-      log.line("    by multigrid: ",
-               effort.iterations,
-               " iterations in ",
-               effort.steps,
-               " steps, forces of contact to ",
-               effort.last.force,
-               ", equilibrium to ",
-               effort.residual,
-               effort.found ? "" : "; not found, so by damped motion");
+      const double                    tolerance = model.contact != nullptr ?
+                                                    0.1 * parameters.rest :
+                                                    std::max(parameters.tolerance, 1e-8);
+      const EquilibriumSearch::Effort effort =
+        EquilibriumSearch(*solver,
+                          internal_force,
+                          on_springs ? &model.terms : nullptr,
+                          force,
+                          tolerance,
+                          log)
+          .find(state.displacement, memory);
+      std::ostringstream text;
+      text << std::setprecision(2) << "    by multigrid: " << effort.iterations
+           << " iterations in " << effort.steps << " steps, equilibrium to "
+           << effort.residual;
+      if (model.contact != nullptr)
+        text << ", forces of contact to " << effort.contact.force;
+      if (!effort.found)
+        text << "; not found, so by damped motion";
+      log.line(text.str());
       MaterialMemory none;
-      come_to_rest(force, memory == nullptr ? none : *memory);
+      if (model.contact != nullptr || !effort.found)
+        come_to_rest(force, memory == nullptr ? none : *memory);
       by_multigrid = by_multigrid && effort.found;
       return effort.iterations;
     }
 
 
     bool
-    StaticStages::dissipated() const
+    StaticStages::dissipated(const MaterialMemory &memory) const
     {
-      return Utilities::MPI::max(state.material_memory.losses().material,
+      return Utilities::MPI::max(memory.losses().material,
                                  model.discretization.grid.communicator()) > 0.;
     }
 
 
     void
-    StaticStages::report_equilibrium(const std::vector<std::string> &stage,
-                                     const unsigned int              iterations,
-                                     const double                    seconds,
-                                     nlohmann::json &report) const
+    StaticStages::report_equilibrium(const unsigned int iterations,
+                                     const double       seconds,
+                                     nlohmann::json    &report) const
     {
       const Tensor<1, 3> reactions = resultant(state.force);
       const double       largest   = largest_amount(state.displacement);

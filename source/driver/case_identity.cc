@@ -2,6 +2,8 @@
 #include <voussoir/base/text.h>
 #include <voussoir/driver/case_identity.h>
 
+#include <dlfcn.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
@@ -19,6 +21,7 @@ namespace Voussoir
                                               "Mesh/Partition",
                                               "Time/End time",
                                               "Output/Folder",
+                                              "Static state/Keep in",
                                               "Output/Energy interval",
                                               "Output/Energy limit",
                                               "Output/Checkpoint interval",
@@ -32,7 +35,7 @@ namespace Voussoir
     }
 
 
-    /** FNV-1a of what a file holds; empty if it is none. */
+    /** Of what a file holds; empty if it is none. */
     std::string
     checksum_of_file(const std::string &name)
     {
@@ -40,14 +43,43 @@ namespace Voussoir
       if (!std::filesystem::is_regular_file(name, none))
         return "";
       std::ifstream in(name, std::ios::binary);
-      std::uint64_t sum = 0xcbf29ce484222325;
-      for (char byte; in.get(byte);)
-        sum = (sum ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
-      std::ostringstream text;
-      text << std::hex << std::setw(16) << std::setfill('0') << sum;
-      return text.str();
+      return checksum({std::istreambuf_iterator<char>(in), {}});
+    }
+
+
+    /** That of the library this is a part of. */
+    std::string
+    checksum_of_program()
+    {
+      Dl_info here;
+      dladdr(reinterpret_cast<const void *>(&identity_of), &here);
+      return checksum_of_file(here.dli_fname);
+    }
+
+
+    /** What the static state does not depend on. */
+    bool
+    is_free_of_static_state(const std::string &line)
+    {
+      for (const char *const section :
+           {"Time/", "Output/", "Ground motion/", "Modes/"})
+        if (line.rfind(section, 0) == 0)
+          return true;
+      return false;
     }
   } // namespace
+
+
+  std::string
+  checksum(const std::string &bytes)
+  {
+    std::uint64_t sum = 0xcbf29ce484222325;
+    for (const char byte : bytes)
+      sum = (sum ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
+    std::ostringstream text;
+    text << std::hex << std::setw(16) << std::setfill('0') << sum;
+    return text.str();
+  }
 
 
   nlohmann::json
@@ -78,10 +110,22 @@ namespace Voussoir
               if (const std::string sum =
                     checksum_of_file(parameters.file.resolve(part));
                   !sum.empty())
-                result.push_back("what is in the file \"" + part + "\" of " +
-                                 entry + ", with the checksum " + sum);
+                result.push_back(entry + " with the file \"" + part +
+                                 "\" of the checksum " + sum);
           }
       }
+    return result;
+  }
+
+
+  nlohmann::json
+  static_identity_of(const Case &parameters)
+  {
+    nlohmann::json result = nlohmann::json::array(
+      {"program with the checksum " + checksum_of_program()});
+    for (const nlohmann::json &line : identity_of(parameters))
+      if (!is_free_of_static_state(line.get<std::string>()))
+        result.push_back(line);
     return result;
   }
 

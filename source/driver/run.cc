@@ -1,6 +1,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/interruption.h>
 #include <voussoir/driver/run.h>
+#include <voussoir/driver/summary_file.h>
 #include <voussoir/output/field_writer.h>
 
 #include <filesystem>
@@ -309,7 +310,7 @@ namespace Voussoir
         if (!picture.empty())
           written =
             "; the last good state is in " + folder.path() + "/" + picture;
-        write_summary(summary(), "stopped: " + reason);
+        write_summary(folder.path(), summary(), "stopped: " + reason, log);
       }
     std::ostringstream text;
     text << "Stopped at t = " << state.time << " s, because " << reason

@@ -4,6 +4,7 @@
 #include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/run.h>
+#include <voussoir/driver/summary_file.h>
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/material_memory.h>
 
@@ -124,9 +125,11 @@ namespace Voussoir
         TimerOutput::Scope scope(timer, "output");
         for (const auto &observer : model.parameters.observers)
           observer.second->finish(state, result);
-        write_summary(result,
+        write_summary(folder.path(),
+                      result,
                       log.warnings().empty() ? "no objection" :
-                                               "with warnings, see there");
+                                               "with warnings, see there",
+                      log);
       }
 
     std::ostringstream text;
@@ -146,21 +149,6 @@ namespace Voussoir
       text << "Warning: " << warning << '\n';
     log(text.str());
     log(timer_table());
-  }
-
-
-  void
-  Run::write_summary(nlohmann::json result, const std::string &verdict) const
-  {
-    const auto missing = log.missing_files();
-    if (Utilities::MPI::this_mpi_process(log.communicator()) != 0)
-      return;
-    result["verdict"]  = verdict;
-    result["warnings"] = log.warnings();
-    if (!missing.empty())
-      result["files not written"] = missing;
-    const std::string name = folder.path() + "/summary.json";
-    log.attempted(name, write_file(name, result.dump(2) + '\n'));
   }
 
 

@@ -1,7 +1,10 @@
-#include <voussoir/base/error.h>
+#include <voussoir/analysis/lost_equilibrium.h>
 #include <voussoir/base/version.h>
+#include <voussoir/driver/kept_states.h>
 #include <voussoir/driver/simulation.h>
 #include <voussoir/driver/stored_rest.h>
+#include <voussoir/driver/summary_file.h>
+#include <voussoir/output/field_writer.h>
 
 namespace Voussoir
 {
@@ -59,7 +62,7 @@ namespace Voussoir
                     const ResultFolder &folder,
                     const std::string  &name,
                     Result (*read)(const Model &, const std::string &),
-                    Result (*find)(const Model &, Log &),
+                    const std::function<Result()> &find,
                     void (*store)(const Model &,
                                   const Result &,
                                   const std::string &),
@@ -72,7 +75,7 @@ namespace Voussoir
           log.line("Taken from ", file);
           return read(model, file);
         }
-      const Result result = find(model, log);
+      const Result result = find();
       if (folder.exists() && model.parameters.output.has_checkpoints())
         try
           {
@@ -87,12 +90,75 @@ namespace Voussoir
 
 
     RestState
-    rest_of(const Model &model, const ResultFolder &folder, Log &log)
+    kept_or_found(const Model &model, const ResultFolder &folder, Log &log)
     {
+      const KeptStates kept(model, folder, log);
+      if (std::optional<RestState> rest = kept.find())
+        return std::move(*rest);
+      RestState rest = find_rest(model, log);
+      kept.keep(rest);
+      return rest;
+    }
+
+
+    /** Draws the last state that had an equilibrium and the motion from there,
+     *  and passes the error on. */
+    [[noreturn]] void
+    report_lost(const LostEquilibrium &lost,
+                const RunSetup        &setup,
+                const ResultFolder    &folder,
+                Log                   &log)
+    {
+      const RestState     rest(setup.model);
+      const ObservedModel observed =
+        setup.observed(folder.path(),
+                       rest.initial,
+                       rest.initial.material_memory,
+                       nullptr,
+                       log);
+      const std::string picture =
+        write_fields(observed,
+                     {{&lost.before, {"displacement"}},
+                      {&lost.moved, {"displacement when it was given up"}}},
+                     &lost.before,
+                     "last_good",
+                     0.);
+      write_summary(folder.path(),
+                    {},
+                    std::string("stopped: ") + lost.what(),
+                    log);
+      throw UserError(std::string(lost.what()) +
+                      (picture.empty() ?
+                         "" :
+                         " The state before this stage and the "
+                         "motion from there are in " +
+                           folder.path() + "/" + picture + "."));
+    }
+
+
+    RestState
+    rest_of(const RunSetup &setup, const ResultFolder &folder, Log &log)
+    {
+      const Model &model = setup.model;
       if (model.parameters.static_state.stage_names().empty())
         return RestState(model);
-      return stored_or_found(
-        model, folder, "rest.h5", read_rest, find_rest, store_rest, log);
+      try
+        {
+          return stored_or_found<RestState>(
+            model,
+            folder,
+            "rest.h5",
+            read_rest,
+            [&] { return kept_or_found(model, folder, log); },
+            store_rest,
+            log);
+        }
+      catch (const LostEquilibrium &lost)
+        {
+          if (!folder.exists())
+            throw;
+          report_lost(lost, setup, folder, log);
+        }
     }
 
 
@@ -101,8 +167,14 @@ namespace Voussoir
     {
       if (model.parameters.modes.number == 0)
         return {};
-      return stored_or_found(
-        model, folder, "modes.h5", read_modes, find_modes, store_modes, log);
+      return stored_or_found<Modes>(
+        model,
+        folder,
+        "modes.h5",
+        read_modes,
+        [&] { return find_modes(model, log); },
+        store_modes,
+        log);
     }
 
 
@@ -128,7 +200,7 @@ namespace Voussoir
     , folder(parameters, options, log)
     , model(parameters, log)
     , setup(checked_setup(model, folder, options, log))
-    , rest(options.validate ? RestState(model) : rest_of(model, folder, log))
+    , rest(options.validate ? RestState(model) : rest_of(*setup, folder, log))
     , modes(options.validate ? Modes() : modes_of(model, folder, log))
     , run(rest,
           modes,

@@ -1,3 +1,4 @@
+#include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/stored_rest.h>
 #include <voussoir/output/checkpoint.h>
 
@@ -63,7 +64,8 @@ namespace Voussoir
   {
     RestState copy(rest);
     write_state(file,
-                {{"static state", rest.initial.displacement.size() > 0},
+                {{"identity", static_identity_of(model.parameters)},
+                 {"static state", rest.initial.displacement.size() > 0},
                  {"contact force", rest.initial.contact_force.size() > 0},
                  {"contact",
                   rest.contact ? rest.contact->save() : nlohmann::json()},

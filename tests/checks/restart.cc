@@ -195,6 +195,7 @@ namespace Voussoir
              const bool           interrupted)
       {
         return file.with({"Output/Folder=" + name,
+                          "Static state/Keep in=", // each finds its own
                           std::string("Output/interruption/Times=") +
                             (interrupted ? "0.2" : "1e9")});
       }

@@ -2,6 +2,7 @@
 #define voussoir_analysis_elastic_solver_h
 
 #include <voussoir/analysis/multigrid.h>
+#include <voussoir/base/error.h>
 #include <voussoir/constraints/static_contact.h>
 #include <voussoir/fem/internal_force.h>
 #include <voussoir/fem/nodal_terms.h>
@@ -11,6 +12,13 @@
 
 namespace Voussoir
 {
+  /** Linear equations that do not converge. */
+  class NotSolved : public UserError
+  {
+  public:
+    using UserError::UserError;
+  };
+
   /**
    * Solves K u = f for the elastic stiffness of the materials, with the factors
    * of the internal force, by conjugate gradients with multigrid: its
@@ -58,7 +66,7 @@ namespace Voussoir
 
     /**
      * Solves for the displacement, which is also the first guess, until the
-     * residual is @p tolerance times the force. Throws UserError if that takes
+     * residual is @p tolerance times the force. Throws NotSolved if that takes
      * more than 1000 iterations.
      *
      * @return the number of iterations

@@ -33,16 +33,24 @@ namespace Voussoir
                const bool                               springs,
                Contact                                 *contact);
 
+    /** How a motion ended. */
+    struct Result
+    {
+      bool         at_rest = false;
+      unsigned int steps   = 0;
+    };
+
     /**
-     * Moves the displacement to the equilibrium with a force. Throws UserError
-     * if there is none within 50 000 steps.
+     * Moves the displacement to the equilibrium with a force, or until it is
+     * given up: after 50 000 steps, or where displacements are no small ones
+     * any more, that is a hundredth of the model or, of points of contact, a
+     * side of a cell.
      *
      * @param memory    of the materials, which goes on with the motion; empty:
      *   they are elastic
      * @param tolerance largest motion in a period over the largest displacement
-     * @return the number of steps
      */
-    unsigned int
+    Result
     find_equilibrium(Vector         &displacement,
                      MaterialMemory &memory,
                      const Vector   &force,
@@ -53,6 +61,10 @@ namespace Voussoir
     /** The explicit steps under this mass-proportional damping [1/s]. */
     std::unique_ptr<CentralDifference>
     make_scheme(const double mass_coefficient);
+
+    /** Whether displacements are too large for what they are computed by. */
+    bool
+    too_far(const Vector &displacement) const;
 
     /**
      * Root of v K v / (v M v) [rad/s], where K v is what the damped motion
@@ -70,6 +82,7 @@ namespace Voussoir
     NodalTerms            terms;
     Damping               damping;
     Contact              *contact; // or null
+    const double          extent;  // of the model [m]
     double                time_step;
     InitialState          loaded;
   };

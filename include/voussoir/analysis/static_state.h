@@ -22,6 +22,7 @@ namespace Voussoir
     std::string supports  = "fixed";
     double      tolerance = 1e-8;
     double      rest      = 1e-6;
+    std::string kept      = "static_states"; // folder
 
     void
     declare(dealii::ParameterHandler &prm);
@@ -59,13 +60,13 @@ namespace Voussoir
    *
    * Each stage is solved with elastic materials first, by multigrid, with
    * interfaces in Newton steps. Where materials crack or yield under that
-   * state, equilibrium is found again by the method of initial stresses. Where
-   * that fails, it is found by damped motion, which also looks whether a state
-   * with interfaces is at rest. From then on a model without interfaces goes on
-   * from the cracked state. An interface is grouted at the end of the stage
-   * that names its load.
+   * state, equilibrium is searched again with them (see EquilibriumSearch).
+   * Where that fails, it is found by damped motion, which also looks whether a
+   * state with interfaces is at rest. From then on a model without interfaces
+   * goes on from the cracked state. An interface is grouted at the end of the
+   * stage that names its load.
    *
-   * Throws UserError if no equilibrium is found.
+   * Throws LostEquilibrium if no equilibrium is found.
    *
    * @param summary resultants of loads and reactions, iterations, by stage
    */

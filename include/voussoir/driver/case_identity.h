@@ -16,6 +16,15 @@ namespace Voussoir
   nlohmann::json
   identity_of(const Case &parameters);
 
+  /** What must be the same for a static state to be that of a case: the program
+   *  and those entries and files that it depends on. */
+  nlohmann::json
+  static_identity_of(const Case &parameters);
+
+  /** FNV-1a, in hexadecimal digits. */
+  std::string
+  checksum(const std::string &bytes);
+
   /** Refuses another identity; @p checkpoint names the file it is from. */
   void
   check_identity(const Case           &parameters,

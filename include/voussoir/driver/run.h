@@ -125,9 +125,6 @@ namespace Voussoir
     void
     finish();
 
-    void
-    write_summary(nlohmann::json result, const std::string &verdict) const;
-
     /** Throws UserError if the results are not all written. */
     void
     refuse_missing_files() const;

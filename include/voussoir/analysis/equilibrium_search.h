@@ -1,0 +1,103 @@
+#ifndef voussoir_analysis_equilibrium_search_h
+#define voussoir_analysis_equilibrium_search_h
+
+#include <voussoir/analysis/elastic_solver.h>
+#include <voussoir/analysis/secant_steps.h>
+#include <voussoir/base/log.h>
+
+#include <deal.II/base/timer.h>
+
+namespace Voussoir
+{
+  /**
+   * Search for the static equilibrium of bodies that crack or yield and of
+   * interfaces, on the multigrid solver.
+   *
+   * Interfaces: semi-smooth Newton steps under multipliers of contact that are
+   * updated in turn (Alart and Curnier 1991). The shear limit of points that
+   * slide follows their pressure, but not in the tangent, which so stays
+   * symmetric. Materials: secant steps from the elastic stiffness; every look
+   * at them starts from their memory before the search, so that nothing
+   * cracks for good on the way.
+   */
+  class EquilibriumSearch
+  {
+  public:
+    /** What it took. */
+    struct Effort
+    {
+      bool         found      = false;
+      unsigned int iterations = 0;  // of the linear equations
+      unsigned int steps      = 0;  // of Newton
+      double       residual   = 0.; // over the loads
+
+      StaticContact::Change contact; // by the last update of the multipliers
+    };
+
+    /**
+     * @param solver    with the interfaces, if there are any
+     * @param springs   of the absorbing boundary, or null if it is held
+     * @param tolerance of the equilibrium over the loads, and a tenth of that
+     *   of the forces of contact over all of them
+     */
+    EquilibriumSearch(ElasticSolver       &solver,
+                      const InternalForce &internal_force,
+                      const NodalTerms    *springs,
+                      const Vector        &force,
+                      const double         tolerance,
+                      Log                 &log);
+
+    /**
+     * @param displacement where to start from; the equilibrium if it was found,
+     *   else as it was, and so are contact and memory
+     * @param memory       of the materials; null: they are elastic
+     */
+    Effort
+    find(Vector &displacement, MaterialMemory *memory);
+
+  private:
+    /** Updates of the multipliers until the equilibrium is found. */
+    void
+    approach();
+
+    /** Steps until the equilibrium under these multipliers is found to an
+     *  accuracy, but one at least unless it is found to the tolerance. */
+    void
+    balance(const double accuracy);
+
+    /** One step, to where the residual no longer works along it. */
+    void
+    step();
+
+    /** Of the displacement: the force less what bodies, springs and contact
+     *  bear, on what is free. */
+    void
+    find_residual();
+
+    /** Of the way from forces that nothing bears, in powers of ten. */
+    double
+    share_done() const;
+
+    void
+    say_progress();
+
+    ElasticSolver       &solver;
+    StaticContact       *contact; // null without interfaces
+    const InternalForce &internal_force;
+    const NodalTerms    *springs;
+    const Vector        &force;
+    const double         tolerance;
+    Log                 &log;
+    double               size; // of the force on what is free
+
+    Vector         *displacement = nullptr;
+    MaterialMemory *memory       = nullptr;
+    MaterialMemory  memory_before;
+    SecantSteps     secants;
+    Vector          residual, change, taken;
+    Effort          effort;
+    dealii::Timer   since_start, since_report;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,42 @@
+#ifndef voussoir_analysis_secant_steps_h
+#define voussoir_analysis_secant_steps_h
+
+#include <voussoir/fem/discretization.h>
+
+#include <deque>
+#include <functional>
+
+namespace Voussoir
+{
+  /**
+   * Steps of the quasi-Newton method of Broyden, Fletcher, Goldfarb and Shanno
+   * with limited memory (Matthies and Strang 1979; Nocedal 1980): what the last
+   * steps did to the residual corrects an approximate inverse of the tangent.
+   */
+  class SecantSteps
+  {
+  public:
+    /** result = B vector, an approximate inverse of the tangent, symmetric and
+     *  positive definite. */
+    using Inverse = std::function<void(Vector &, const Vector &)>;
+
+    /** The step that the residual, forces less what is borne, asks for. */
+    void
+    find(Vector &step, const Vector &residual, const Inverse &inverse) const;
+
+    /** Takes in what a step has taken from the residual. */
+    void
+    add(const Vector &step, const Vector &taken);
+
+  private:
+    struct Pair
+    {
+      Vector step, taken;
+      double work; // step . taken
+    };
+
+    std::deque<Pair> pairs; // the oldest first
+  };
+} // namespace Voussoir
+
+#endif

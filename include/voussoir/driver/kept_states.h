@@ -1,0 +1,38 @@
+#ifndef voussoir_driver_kept_states_h
+#define voussoir_driver_kept_states_h
+
+#include <voussoir/driver/rest_state.h>
+#include <voussoir/driver/result_folder.h>
+
+namespace Voussoir
+{
+  /**
+   * The folder, shared by the runs beside each other, in which static states
+   * are kept for later runs: of the same program, mesh, materials, interfaces,
+   * boundaries, loads and stages, with any earthquake and on any number of
+   * ranks.
+   */
+  class KeptStates
+  {
+  public:
+    /** @param folder of this run, claimed */
+    KeptStates(const Model &model, const ResultFolder &folder, Log &log);
+
+    /** The state of such a run; none if there is none, or it is damaged. */
+    std::optional<RestState>
+    find() const;
+
+    /** Keeps it, unless another run is about to do that or it is impossible,
+     *  which the log says. */
+    void
+    keep(const RestState &rest) const;
+
+  private:
+    const Model         &model;
+    const nlohmann::json identity;
+    std::string          file; // empty: none is to be kept
+    Log                 &log;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,205 @@
+#include <voussoir/analysis/equilibrium_search.h>
+
+#include <iomanip>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    constexpr unsigned int max_steps = 300, max_updates = 300;
+
+    // of points that all hold together in the tangent: with nothing of it parts
+    // that lie loose move away
+    constexpr double tied_share = 1e-3;
+
+    constexpr double report_interval = 5.; // [s]
+  }                                        // namespace
+
+
+  EquilibriumSearch::EquilibriumSearch(ElasticSolver       &solver,
+                                       const InternalForce &internal_force,
+                                       const NodalTerms    *springs,
+                                       const Vector        &force,
+                                       const double         tolerance,
+                                       Log                 &log)
+    : solver(solver)
+    , contact(solver.tangent_contact())
+    , internal_force(internal_force)
+    , springs(springs)
+    , force(force)
+    , tolerance(tolerance)
+    , log(log)
+    , residual(force)
+    , change(force)
+    , taken(force)
+  {
+    solver.clear_held(residual);
+    size = residual.l2_norm();
+  }
+
+
+  EquilibriumSearch::Effort
+  EquilibriumSearch::find(Vector         &displacement_of_state,
+                          MaterialMemory *memory_of_state)
+  {
+    displacement       = &displacement_of_state;
+    memory             = memory_of_state;
+    const Vector start = *displacement;
+    if (memory != nullptr)
+      memory_before = *memory;
+    if (contact != nullptr)
+      contact->start_stage();
+
+    try
+      {
+        approach();
+      }
+    catch (const NotSolved &)
+      {
+        if (effort.steps == 1) // with all parts tied
+          throw;
+      }
+    if (effort.found && contact != nullptr)
+      contact->finish_stage();
+    if (!effort.found)
+      {
+        *displacement = start;
+        if (memory != nullptr)
+          *memory = memory_before;
+        if (contact != nullptr)
+          contact->restore();
+      }
+    return effort;
+  }
+
+
+  void
+  EquilibriumSearch::approach()
+  {
+    double accuracy = 0.01;
+    for (unsigned int update = 0;
+         update < max_updates && effort.steps < max_steps && !effort.found;
+         ++update)
+      {
+        find_residual();
+        balance(contact == nullptr ? tolerance : accuracy);
+        effort.found = effort.residual <= tolerance;
+        if (contact == nullptr)
+          continue;
+        effort.contact = contact->update();
+        effort.found   = effort.found &&
+                       effort.contact.force <= 10. * tolerance &&
+                       effort.contact.broken == 0;
+        // less, or multipliers and displacements run after each other
+        accuracy = std::clamp(0.2 * effort.contact.force, tolerance, accuracy);
+        if (since_report.wall_time() > report_interval)
+          say_progress();
+      }
+  }
+
+
+  void
+  EquilibriumSearch::balance(const double accuracy)
+  {
+    for (bool first = true; effort.residual > (first ? tolerance : accuracy) &&
+                            effort.steps < max_steps;
+         first = false)
+      step();
+  }
+
+
+  void
+  EquilibriumSearch::step()
+  {
+    constexpr unsigned int max_looks = 12;
+
+    // Of the linear equations and of the slope along the step: smaller ones
+    // cost more than they save, the more so if the elastic stiffness is not the
+    // tangent.
+    const double linear_tolerance = memory == nullptr ? 0.05 : 0.3,
+                 accuracy         = memory == nullptr ? 0.1 : 0.5;
+
+    if (contact != nullptr)
+      contact->stiffen(effort.steps == 0 ? 1. : tied_share);
+    ++effort.steps;
+    secants.find(change, residual, [&](Vector &step, const Vector &part) {
+      step = 0.;
+      effort.iterations += solver.solve(step, part, linear_tolerance);
+    });
+
+    // regula falsi, and now and then a half, as the slope has kinks
+    taken              = residual;
+    const double slope = change * residual;
+    double       below = 0., above = 0., slope_below = slope, slope_above = 0.;
+    double       way  = 0.;
+    const auto   look = [&](const double next) {
+      displacement->add(next - way, change);
+      way = next;
+      find_residual();
+      const double now                       = change * residual;
+      (now > 0. ? below : above)             = way;
+      (now > 0. ? slope_below : slope_above) = now;
+      return now;
+    };
+    double now = look(1.);
+    for (unsigned int looks = 1;
+         looks < max_looks && above > 0. && std::abs(now) > accuracy * slope;
+         ++looks)
+      now = look(looks % 3 == 0 ? 0.5 * (below + above) :
+                                  below + (above - below) * slope_below /
+                                            (slope_below - slope_above));
+    if (memory == nullptr)
+      return; // the tangent of contact is known
+    taken -= residual;
+    change *= way;
+    secants.add(change, taken);
+  }
+
+
+  void
+  EquilibriumSearch::find_residual()
+  {
+    if (memory == nullptr)
+      internal_force.apply(residual, *displacement);
+    else
+      {
+        *memory = memory_before;
+        internal_force.respond(residual, *displacement, *memory);
+      }
+    if (springs != nullptr)
+      springs->add_to(residual, *displacement, 0.);
+    residual.sadd(-1., 1., force);
+    if (contact != nullptr)
+      contact->respond(residual, *displacement);
+    solver.clear_held(residual);
+    effort.residual = size > 0. ? residual.l2_norm() / size : 0.;
+  }
+
+
+  double
+  EquilibriumSearch::share_done() const
+  {
+    const double left =
+      std::max(effort.residual, 0.1 * effort.contact.force) / tolerance;
+    return 1. - std::log(std::max(left, 1.)) / -std::log(tolerance);
+  }
+
+
+  void
+  EquilibriumSearch::say_progress()
+  {
+    const double       done = std::max(share_done(), 1e-3);
+    std::ostringstream text;
+    text << std::setprecision(2) << "    after " << effort.iterations
+         << " iterations: equilibrium to " << effort.residual
+         << ", forces of contact to " << effort.contact.force << " ("
+         << effort.contact.open << " of " << effort.contact.all
+         << " points are open, " << effort.contact.slide
+         << " slide), time left "
+         << duration_text(since_start.wall_time() * (1. - done) / done);
+    log.line(text.str());
+    since_report.restart();
+  }
+} // namespace Voussoir

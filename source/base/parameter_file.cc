@@ -258,7 +258,7 @@ namespace Voussoir
                                const std::vector<std::string> &changes)
     : filename(filename)
   {
-    read(filename);
+    read(filename, {});
     change(changes);
   }
 
@@ -294,8 +294,11 @@ namespace Voussoir
 
 
   void
-  ParameterFile::read(const std::string &filename)
+  ParameterFile::read(const std::string       &filename,
+                      std::vector<std::string> includers)
   {
+    includers.push_back(filename);
+    ParameterFile            included;
     static const std::regex  no_break_space("\xC2\xA0");
     std::istringstream       in(read_text(filename));
     std::vector<std::string> section;
@@ -350,6 +353,20 @@ namespace Voussoir
                                       "it or add the missing \"subsection\".");
             section.pop_back();
           }
+        else if (keyword == "include" && !rest.empty())
+          {
+            const std::string name = resolve(rest);
+            if (!section.empty())
+              throw UserError(place + ": \"include\" stands in the section \"" +
+                              join_path(section) +
+                              "\"; put it outside of all sections.");
+            if (std::find(includers.begin(), includers.end(), name) !=
+                includers.end())
+              throw UserError(place + ": \"" + name +
+                              "\" includes itself; remove this line.");
+            included.filename = filename;
+            included.read(name, includers);
+          }
         else if (keyword == "set" && rest.find('=') != std::string::npos &&
                  rest.front() != '=')
           {
@@ -366,12 +383,15 @@ namespace Voussoir
         else
           throw UserError(place + ": \"" + line +
                           "\" is not understood; a line is \"subsection "
-                          "Name\", \"set Entry = value\", \"end\" or a "
-                          "comment that starts with \"#\".");
+                          "Name\", \"set Entry = value\", \"end\", "
+                          "\"include FILE\" or a comment that starts with "
+                          "\"#\".");
       }
     if (!section.empty())
       throw UserError(filename + ": the section \"" + join_path(section) +
                       "\" is never closed; add the missing \"end\".");
+    values.insert(included.values.begin(), included.values.end());
+    sections.insert(included.sections.begin(), included.sections.end());
   }
 
 

@@ -218,6 +218,7 @@ namespace Voussoir
       prm, file, "Constraints", "constraints", "prescribed motion");
     in_section(prm, "Damping", [&] { damping.declare(prm); });
     in_section(prm, "Time", [&] { time.declare(prm); });
+    in_section(prm, "Study", [&] { study.declare(prm); });
     in_section(prm, "Output", [&] {
       output.declare(prm);
       const auto names =
@@ -266,6 +267,7 @@ namespace Voussoir
                       "and close; compute them without the interfaces.");
     ground_motion.check();
     damping.check(modes.number);
+    study.check();
     const bool rigid_base = wave.enters_through == "rigid base";
     if (ground_motion.type != "none" && !rigid_base &&
         split_list(boundaries.absorbing.face_sets).empty())

@@ -26,7 +26,7 @@ namespace Voussoir
                                               "Output/Energy limit",
                                               "Output/Checkpoint interval",
                                               "Output/Checkpoint time"};
-      if (free.count(entry) > 0)
+      if (free.count(entry) > 0 || entry.rfind("Study/", 0) == 0)
         return true;
       // of observers: when they write
       const std::string last = entry.substr(entry.rfind('/') + 1);

@@ -4,6 +4,7 @@
 #include <voussoir/base/version.h>
 #include <voussoir/driver/command_line.h>
 #include <voussoir/driver/simulation.h>
+#include <voussoir/driver/study.h>
 
 #include <deal.II/base/timer.h>
 
@@ -92,9 +93,18 @@ namespace Voussoir
     }
 
 
-    // Everything that can be said of a case without computing it.
-    void
-    validate(Case &parameters, RunOptions options, const MPI_Comm communicator)
+    /** What can be said of a case without computing it. */
+    struct Estimate
+    {
+      types::global_dof_index  unknowns  = 0;
+      double                   time_step = 0., seconds = 0., megabytes = 0.;
+      unsigned long long       steps = 0;
+      std::vector<std::string> warnings;
+    };
+
+
+    Estimate
+    estimate(Case &parameters, RunOptions options, const MPI_Comm communicator)
     {
       options.quiet    = true;
       options.validate = true;
@@ -103,27 +113,63 @@ namespace Voussoir
       const double seconds = double(run.n_steps()) * seconds_per_step(run);
       Utilities::System::MemoryStats memory;
       Utilities::System::get_memory_stats(memory);
-      const double megabytes =
-        Utilities::MPI::max(memory.VmHWM / 1024., communicator);
+      return {simulation.model.discretization.dof_handler.n_dofs(),
+              run.time_step.length,
+              seconds,
+              Utilities::MPI::max(memory.VmHWM / 1024., communicator),
+              run.n_steps(),
+              simulation.log.warnings()};
+    }
+
+
+    void
+    validate(Case &parameters, RunOptions options, const MPI_Comm communicator)
+    {
+      const Estimate found = estimate(parameters, options, communicator);
       if (Utilities::MPI::this_mpi_process(communicator) > 0)
         return;
-      for (const std::string &warning : simulation.log.warnings())
+      for (const std::string &warning : found.warnings)
         std::cout << "Warning: " << warning << '\n';
-      std::cout << "Valid: "
-                << simulation.model.discretization.dof_handler.n_dofs()
-                << " unknowns, time step " << run.time_step.length << " s, "
-                << run.n_steps() << " steps"
+      std::cout << "Valid: " << found.unknowns << " unknowns, time step "
+                << found.time_step << " s, " << found.steps << " steps"
                 << (parameters.damping.modes.empty() ?
                       "" :
                       ", more with the damping that comes from the modes")
-                << ".\nThe steps take about " << duration_text(seconds)
+                << ".\nThe steps take about " << duration_text(found.seconds)
                 << " on "
                 << counted(Utilities::MPI::n_mpi_processes(communicator),
                            "rank",
                            "ranks")
                 << ", static state, modes and output not counted, and at least "
-                << std::lround(megabytes) << " MB of memory on each."
+                << std::lround(found.megabytes) << " MB of memory on each."
                 << std::endl;
+    }
+
+
+    void
+    validate_study(const ParameterFile &file,
+                   const RunOptions    &options,
+                   const MPI_Comm       communicator)
+    {
+      const auto runs    = Study(file, options, communicator).planned_runs();
+      double     seconds = 0.;
+      for (const ParameterFile &run : runs)
+        {
+          Case parameters(run);
+          seconds += estimate(parameters, options, communicator).seconds;
+        }
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        std::cout << "Valid: a study of " << counted(runs.size(), "run", "runs")
+                  << (Case(file).study.seeks_limit() ?
+                        " and what lies between them" :
+                        "")
+                  << ".\nTheir steps take about " << duration_text(seconds)
+                  << " on "
+                  << counted(Utilities::MPI::n_mpi_processes(communicator),
+                             "rank",
+                             "ranks")
+                  << ", static state, modes and output not counted."
+                  << std::endl;
     }
 
 
@@ -310,8 +356,15 @@ namespace Voussoir
                           arguments.test_file,
                           arguments.options.overwrite);
         }
+      else if (arguments.only_validate && parameters.study.wanted())
+        validate_study(parameters.file, arguments.options, communicator);
       else if (arguments.only_validate)
         validate(parameters, arguments.options, communicator);
+      else if (parameters.study.wanted())
+        {
+          listen_to_signals();
+          Study(parameters.file, arguments.options, communicator).run();
+        }
       else
         {
           listen_to_signals();

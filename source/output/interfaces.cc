@@ -279,26 +279,31 @@ namespace Voussoir
       describe_surfaces(nlohmann::json &result) const
       {
         const auto         &names = contact->surface_names();
-        std::vector<double> values(3 * names.size());
+        std::vector<double> values(4 * names.size());
         for (unsigned int k = 0; k < extremes.size(); ++k)
           {
             const ContactPoint &point      = contact->points()[k];
-            double             *of_surface = &values[3 * point.surface];
+            double             *of_surface = &values[4 * point.surface];
             of_surface[0] = std::max(of_surface[0], extremes[k][0]);
             of_surface[1] = std::max(of_surface[1], extremes[k][1]);
             of_surface[2] = std::max(of_surface[2], slip_of(point));
+            if (point.status != ContactStatus::sticking)
+              of_surface[3] =
+                std::max(of_surface[3],
+                         std::hypot(point.velocity[1], point.velocity[2]));
           }
         Utilities::MPI::max(values, communicator, values);
         const auto  energies_now = energies();
         const char *kinds[] = {"impact", "friction", "bond", "bars", "uplift"};
         for (unsigned int s = 0; s < names.size(); ++s)
           {
-            auto &surface                   = result[names[s]];
-            surface["id"]                   = s;
-            surface["area [m2]"]            = areas[s];
-            surface["largest opening [mm]"] = 1e3 * values[3 * s];
-            surface["largest slip [mm]"]    = 1e3 * values[3 * s + 1];
-            surface["residual slip [mm]"]   = 1e3 * values[3 * s + 2];
+            auto &surface                          = result[names[s]];
+            surface["id"]                          = s;
+            surface["area [m2]"]                   = areas[s];
+            surface["largest opening [mm]"]        = 1e3 * values[4 * s];
+            surface["largest slip [mm]"]           = 1e3 * values[4 * s + 1];
+            surface["residual slip [mm]"]          = 1e3 * values[4 * s + 2];
+            surface["slip rate at the end [mm/s]"] = 1e3 * values[4 * s + 3];
             // null if there never was a shear force
             surface["smallest sliding safety"]         = smallest_safety[s];
             surface["time at safety one or below [s]"] = time_at_one[s];

@@ -66,8 +66,10 @@ namespace Voussoir
       std::string place; // "case.prm, line 12" or "--set"
     };
 
+    /** What a file says goes before what those say that it includes, which all
+     *  see names of files from the folder of the first one. */
     void
-    read(const std::string &filename);
+    read(const std::string &filename, std::vector<std::string> includers);
 
     void
     change(const std::vector<std::string> &changes);

@@ -7,6 +7,7 @@
 #include <voussoir/constraints/interface_parameters.h>
 #include <voussoir/constraints/projection.h>
 #include <voussoir/driver/material_test.h>
+#include <voussoir/driver/study_parameters.h>
 #include <voussoir/fem/damping.h>
 #include <voussoir/fem/discretization.h>
 #include <voussoir/loads/boundary_parameters.h>
@@ -115,6 +116,7 @@ namespace Voussoir
     DampingParameters              damping;
     TimeParameters                 time;
     OutputParameters               output;
+    StudyParameters                study;
     std::vector<std::pair<std::string, std::unique_ptr<Observer>>> observers;
 
     /** Values that are hardly meant so, for the log. */

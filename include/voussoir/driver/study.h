@@ -1,0 +1,108 @@
+#ifndef voussoir_driver_study_h
+#define voussoir_driver_study_h
+
+#include <voussoir/driver/result_folder.h>
+#include <voussoir/driver/study_parameters.h>
+
+namespace Voussoir
+{
+  /**
+   * Many runs of one parameter file with some entries varied, and the search
+   * for the value of one at which something happens. Each run has a folder in
+   * that of the study; a study that is started again does only what is missing.
+   */
+  class Study
+  {
+  public:
+    /** Throws UserError for whatever is wrong with any of the runs, before the
+     *  first one. */
+    Study(const ParameterFile &file,
+          const RunOptions    &options,
+          const MPI_Comm       communicator);
+
+    ~Study();
+
+    /** All runs, then study.csv and study.json. A run that fails is reported,
+     *  and the others go on. */
+    void
+    run();
+
+    /** Parameter files of the runs; of a search for a limit those of both ends
+     *  of the bracket. */
+    std::vector<ParameterFile>
+    planned_runs() const;
+
+  private:
+    /** A run that is finished or failed. */
+    struct Outcome
+    {
+      StudyValues    values;
+      std::string    folder;
+      nlohmann::json summary;
+    };
+
+    /** What the search found: the criterion is met at `meets`, not at
+     *  `fails`. */
+    struct Limit
+    {
+      StudyValues values;
+      double      fails = 0., meets = 0.;
+    };
+
+    /** This file with the values of a run, which is no study itself. */
+    ParameterFile
+    file_of(const StudyValues &values) const;
+
+    std::string
+    folder_of(const StudyValues &values) const;
+
+    /** Does a run, or takes what is there of it. */
+    const Outcome &
+    outcome_of(const StudyValues &values);
+
+    nlohmann::json
+    do_run(Case &parameters, const std::string &folder) const;
+
+    /** Whether the criterion is met in the run with this value. */
+    bool
+    is_met(StudyValues values, const double value);
+
+    void
+    seek_limit(const StudyValues &values);
+
+    void
+    say(const std::string &text) const;
+
+    /** Brings the outcomes of all groups together on each rank. */
+    void
+    gather();
+
+    /** Writes study.csv and study.json. */
+    void
+    write_tables() const;
+
+    std::string
+    table() const;
+
+    nlohmann::json
+    all_results() const;
+
+    /** Runs that this group will have done at the end, about. */
+    std::size_t
+    n_expected() const;
+
+    const ParameterFile  file;
+    const RunOptions     options;
+    const MPI_Comm       communicator; // of the study
+    MPI_Comm             group;        // of one run
+    unsigned int         n_groups = 1, my_group = 0;
+    StudyParameters      parameters;
+    std::string          folder;
+    std::vector<Outcome> outcomes;
+    std::vector<Limit>   limits;
+    unsigned int         n_done          = 0; // runs that were computed now
+    double               seconds_of_runs = 0.;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,60 @@
+#ifndef voussoir_driver_summary_numbers_h
+#define voussoir_driver_summary_numbers_h
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Voussoir
+{
+  /**
+   * A number of summary.json by its path, as "histories/crest/largest
+   * displacement [m]"; a star in a name stands for any letters, and
+   * things in a list go by their number, from 0. Of several that
+   * fit it is the largest, or the smallest if the last name begins with that
+   * word.
+   */
+  class SummaryNumber
+  {
+  public:
+    explicit SummaryNumber(const std::string &path);
+
+    /** None if nothing fits that is a number. */
+    std::optional<double>
+    in(const nlohmann::json &summary) const;
+
+    const std::string path;
+
+  private:
+    std::vector<std::string> names; // along the path
+  };
+
+  /** Whether something has happened in a run: "PATH > VALUE" or "PATH < VALUE"
+   *  of a number of the summary, or "stopped", for a run that ended early. */
+  class Criterion
+  {
+  public:
+    /** Throws UserError, which names the place, if it is none of these. */
+    Criterion(const std::string &text, const std::string &place);
+
+    /** The number, if it is about one, and whether it meets the criterion.
+     *  Throws UserError if a run that went to its end does not have it. */
+    std::pair<std::optional<double>, bool>
+    look(const nlohmann::json &summary) const;
+
+    const std::string text;
+
+  private:
+    std::optional<SummaryNumber> number; // none: "stopped"
+    bool                         above = true;
+    double                       limit = 0.;
+  };
+
+  /** Whether the run ended before its time, by an error or a wrong run. */
+  bool
+  ended_early(const nlohmann::json &summary);
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,481 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/text.h>
+#include <voussoir/driver/case_identity.h>
+#include <voussoir/driver/simulation.h>
+#include <voussoir/driver/study.h>
+#include <voussoir/output/checkpoint.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+
+namespace Voussoir
+{
+  using namespace dealii;
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    std::string
+    number_text(const double value)
+    {
+      std::ostringstream text;
+      text << std::setprecision(6) << value;
+      return text.str();
+    }
+
+
+    /** "Overload factor = 1.2, Young's modulus = 15e9". */
+    std::string
+    description(const StudyValues &values)
+    {
+      std::vector<std::string> parts;
+      for (const auto &[entry, value] : values)
+        parts.push_back(entry.substr(entry.rfind('/') + 1) + " = " + value);
+      return join(parts, ", ");
+    }
+
+
+    /** The same without what is awkward in the name of a folder. */
+    std::string
+    folder_name(const StudyValues &values)
+    {
+      std::string name;
+      for (const char letter : description(values))
+        if (std::isalnum(static_cast<unsigned char>(letter)) || letter == '.' ||
+            letter == '+' || letter == '-')
+          name += letter;
+        else if (letter == ',')
+          name += '_';
+        else if (!name.empty() && name.back() != '-' && name.back() != '_')
+          name += '-';
+      return name.empty() ? "run" : name;
+    }
+
+
+    /** What a file holds on the first rank; null: none, or no JSON. */
+    nlohmann::json
+    read_json(const std::string &name, const MPI_Comm communicator)
+    {
+      std::string text;
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        {
+          std::ifstream in(name);
+          text.assign(std::istreambuf_iterator<char>(in), {});
+        }
+      text      = Utilities::MPI::broadcast(communicator, text);
+      auto json = nlohmann::json::parse(text, nullptr, false);
+      return json.is_discarded() ? nlohmann::json() : json;
+    }
+
+
+    /** What became of a run, without the advice that follows. */
+    std::string
+    verdict_of(const nlohmann::json &summary)
+    {
+      const std::string verdict = summary.value("verdict", "no verdict");
+      return verdict.substr(0, verdict.find(". "));
+    }
+
+
+    /** All that a run depends on. */
+    std::string
+    checksum_of(const Case &parameters)
+    {
+      std::ostringstream text;
+      parameters.prm.print_parameters(text, ParameterHandler::ShortText);
+      return checksum(text.str() + identity_of(parameters).dump());
+    }
+
+
+    nlohmann::json
+    as_object(const StudyValues &values)
+    {
+      nlohmann::json object = nlohmann::json::object();
+      for (const auto &[entry, value] : values)
+        object[entry] = value;
+      return object;
+    }
+
+
+    /** A value in a table that commas part. */
+    std::string
+    quoted(const std::string &text)
+    {
+      std::string result = "\"";
+      for (const char letter : text)
+        result += letter == '"' ? "\"\"" : std::string(1, letter);
+      return result + '"';
+    }
+  } // namespace
+
+
+  Study::Study(const ParameterFile &file,
+               const RunOptions    &options,
+               const MPI_Comm       communicator)
+    : file(file)
+    , options(options)
+    , communicator(communicator)
+  {
+    const Case whole(file);
+    parameters = whole.study;
+    folder     = whole.output.folder.empty() ? "output/" + file.name() :
+                                               whole.output.folder;
+    if (fs::exists(folder + "/parameters.prm"))
+      throw UserError("The folder \"" + folder +
+                      "\" is that of a single run; choose another \"Folder\" "
+                      "in section \"Output\" for the study.");
+    for (const ParameterFile &planned : planned_runs())
+      Case checked(planned);
+
+    const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator),
+                       me      = Utilities::MPI::this_mpi_process(communicator),
+                       of_run  = parameters.ranks_of_run == 0 ?
+                                   n_ranks :
+                                   std::min(parameters.ranks_of_run, n_ranks);
+    n_groups                   = n_ranks / of_run;
+    my_group                   = std::min(me / of_run, n_groups - 1);
+    MPI_Comm_split(communicator, my_group, me, &group);
+  }
+
+
+  Study::~Study()
+  {
+    MPI_Comm_free(&group);
+  }
+
+
+  std::vector<ParameterFile>
+  Study::planned_runs() const
+  {
+    std::vector<ParameterFile> result;
+    for (const StudyValues &values : parameters.combinations())
+      if (!parameters.seeks_limit())
+        result.push_back(file_of(values));
+      else
+        for (const double value : {parameters.from, parameters.to})
+          {
+            StudyValues with = values;
+            with.emplace_back(parameters.varied_to_limit, number_text(value));
+            result.push_back(file_of(with));
+          }
+    return result;
+  }
+
+
+  ParameterFile
+  Study::file_of(const StudyValues &values) const
+  {
+    std::vector<std::string> changes{"Study/Vary=",
+                                     "Study/Limit/Entry=",
+                                     "Output/Folder=" + folder_of(values)};
+    for (const auto &[entry, value] : values)
+      if (entry != strength_reduction)
+        changes.push_back(entry + "=" + value);
+    const ParameterFile changed = file.with(changes);
+    changes.clear();
+    for (const auto &[entry, value] : values)
+      if (entry == strength_reduction)
+        for (const std::string &strength : split_list(parameters.reduced, ';'))
+          changes.push_back(
+            strength + "=" +
+            number_text(
+              std::strtod(changed.given(strength, "0").c_str(), nullptr) /
+              std::strtod(value.c_str(), nullptr)));
+    return changed.with(changes);
+  }
+
+
+  std::string
+  Study::folder_of(const StudyValues &values) const
+  {
+    return folder + "/" + folder_name(values);
+  }
+
+
+  void
+  Study::run()
+  {
+    const auto combinations = parameters.combinations();
+    say("Study of " +
+        counted(combinations.size(), "combination", "combinations") + " in " +
+        folder +
+        (n_groups > 1 ? ", " + std::to_string(n_groups) + " side by side" :
+                        std::string()));
+    for (std::size_t i = my_group; i < combinations.size(); i += n_groups)
+      if (parameters.seeks_limit())
+        seek_limit(combinations[i]);
+      else
+        outcome_of(combinations[i]);
+    gather();
+    write_tables();
+  }
+
+
+  std::size_t
+  Study::n_expected() const
+  {
+    const auto        n     = parameters.combinations().size();
+    const std::size_t mine  = n / n_groups + (my_group < n % n_groups);
+    const double      width = parameters.to - parameters.from;
+    return parameters.seeks_limit() ?
+             mine * static_cast<std::size_t>(
+                      2 + std::max(0.,
+                                   std::ceil(
+                                     std::log2(width / parameters.accuracy)))) :
+             mine;
+  }
+
+
+  const Study::Outcome &
+  Study::outcome_of(const StudyValues &values)
+  {
+    for (const Outcome &outcome : outcomes)
+      if (outcome.values == values)
+        return outcome;
+
+    const std::string run_folder = folder_of(values),
+                      record     = run_folder + ".json";
+    Case              run(file_of(values));
+    const std::string identity = checksum_of(run);
+    nlohmann::json    known    = read_json(record, group);
+    if (!options.overwrite && known.is_object() &&
+        known.at("identity") != identity)
+      throw UserError("The run in \"" + run_folder +
+                      "\" has been done with other entries; choose another "
+                      "\"Folder\" in section \"Output\" for the study, or "
+                      "\"--overwrite\".");
+    nlohmann::json summary;
+    const Timer    clock_of_run;
+    if (!options.overwrite && known.is_object() && known.contains("summary"))
+      {
+        summary = known.at("summary");
+        say(description(values) + ": taken, " + verdict_of(summary));
+      }
+    else
+      {
+        const auto write = [&](const nlohmann::json &text) {
+          if (Utilities::MPI::this_mpi_process(group) > 0)
+            return;
+          std::error_code ignored;
+          fs::create_directories(folder, ignored);
+          if (const std::string reason =
+                write_file(record, text.dump(2) + '\n');
+              !reason.empty())
+            throw UserError("\"" + record + "\" cannot be written because " +
+                            reason + ".");
+        };
+        write({{"identity", identity}});
+        summary = do_run(run, run_folder);
+        write({{"identity", identity}, {"summary", summary}});
+        ++n_done;
+        say(description(values) + ": " +
+            summary.value("verdict", "no verdict") + ", " +
+            duration_text(clock_of_run.wall_time()));
+      }
+    outcomes.push_back({values, run_folder, summary});
+    return outcomes.back();
+  }
+
+
+  nlohmann::json
+  Study::do_run(Case &run, const std::string &run_folder) const
+  {
+    RunOptions how = options;
+    how.quiet      = true;
+    how.overwrite  = true;
+    std::vector<std::string> damaged;
+    how.restart =
+      !options.overwrite &&
+      !Checkpoint(run_folder + "/checkpoint", group).newest(damaged).empty();
+    try
+      {
+        Simulation simulation(run, how, group);
+        simulation.run.march();
+      }
+    catch (const UserError &error)
+      {
+        const nlohmann::json summary =
+          read_json(run_folder + "/summary.json", group);
+        return summary.is_object() && ended_early(summary) ?
+                 summary :
+                 nlohmann::json{
+                   {"verdict", std::string("stopped: ") + error.what()}};
+      }
+    return read_json(run_folder + "/summary.json", group);
+  }
+
+
+  bool
+  Study::is_met(StudyValues values, const double value)
+  {
+    values.emplace_back(parameters.varied_to_limit, number_text(value));
+    const nlohmann::json summary = outcome_of(values).summary;
+    for (const Criterion &criterion : parameters.criteria())
+      {
+        const auto [number, met] = criterion.look(summary);
+        if (met)
+          {
+            say("  met: " + criterion.text +
+                (number ? " (" + number_text(*number) + ")" : std::string()));
+            return true;
+          }
+      }
+    return false;
+  }
+
+
+  void
+  Study::seek_limit(const StudyValues &values)
+  {
+    constexpr unsigned int max_extensions = 4;
+    const double           span           = parameters.to - parameters.from;
+    Limit                  limit{values, parameters.from, parameters.to};
+    const auto             refuse = [&](const double value, const char *how) {
+      throw UserError(
+        "At " + parameters.varied_to_limit + " = " + number_text(value) +
+        " the criterion of section "
+                    "\"Study/Limit\" is " +
+        how + "; give another \"From\" or \"To\"" +
+        (parameters.extend ? "." : ", or set \"Extend = true\"."));
+    };
+    for (unsigned int i = 0; is_met(values, limit.fails); ++i)
+      {
+        if (!parameters.extend || i == max_extensions)
+          refuse(limit.fails, "met already");
+        limit.meets = limit.fails;
+        // a factor does not become negative
+        limit.fails =
+          limit.fails > span ? limit.fails - span : 0.5 * limit.fails;
+      }
+    for (unsigned int i = 0;
+         limit.fails >= parameters.from && limit.meets >= parameters.to &&
+         !is_met(values, limit.meets);
+         ++i)
+      {
+        if (!parameters.extend || i == max_extensions)
+          refuse(limit.meets, "not met yet");
+        limit.fails = limit.meets;
+        limit.meets += span;
+      }
+    while (limit.meets - limit.fails > parameters.accuracy * (1. + 1e-9))
+      {
+        const double middle = 0.5 * (limit.fails + limit.meets);
+        (is_met(values, middle) ? limit.meets : limit.fails) = middle;
+      }
+    say((values.empty() ? std::string() : description(values) + ": ") +
+        "limit of " + parameters.varied_to_limit + " between " +
+        number_text(limit.fails) + " and " + number_text(limit.meets));
+    limits.push_back(limit);
+  }
+
+
+  void
+  Study::say(const std::string &text) const
+  {
+    if (!options.quiet && Utilities::MPI::this_mpi_process(group) == 0)
+      std::cout << text << std::endl;
+  }
+
+
+  void
+  Study::gather()
+  {
+    nlohmann::json mine{{"outcomes", nlohmann::json::array()},
+                        {"limits", nlohmann::json::array()}};
+    if (Utilities::MPI::this_mpi_process(group) == 0)
+      {
+        for (const Outcome &outcome : outcomes)
+          mine["outcomes"].push_back(
+            {outcome.values, outcome.folder, outcome.summary});
+        for (const Limit &limit : limits)
+          mine["limits"].push_back({limit.values, limit.fails, limit.meets});
+      }
+    outcomes.clear();
+    limits.clear();
+    for (const std::string &part :
+         Utilities::MPI::all_gather(communicator, mine.dump()))
+      {
+        const nlohmann::json theirs = nlohmann::json::parse(part);
+        for (const nlohmann::json &outcome : theirs.at("outcomes"))
+          outcomes.push_back({outcome.at(0), outcome.at(1), outcome.at(2)});
+        for (const nlohmann::json &limit : theirs.at("limits"))
+          limits.push_back({limit.at(0), limit.at(1), limit.at(2)});
+      }
+  }
+
+
+  void
+  Study::write_tables() const
+  {
+    if (Utilities::MPI::this_mpi_process(communicator) > 0)
+      return;
+    for (const auto &[name, text] :
+         {std::make_pair("/study.csv", table()),
+          std::make_pair("/study.json", all_results().dump(2) + '\n')})
+      if (const std::string reason = write_file(folder + name, text);
+          !reason.empty())
+        throw UserError("\"" + folder + name + "\" cannot be written because " +
+                        reason + ".");
+    say("The study is in " + folder + "/study.csv and study.json");
+  }
+
+
+  std::string
+  Study::table() const
+  {
+    std::vector<SummaryNumber> numbers = parameters.numbers();
+    const auto                 is_in   = [](const SummaryNumber &number) {
+      return [&number](const Outcome &outcome) {
+        return number.in(outcome.summary).has_value();
+      };
+    };
+    std::string heading, lines;
+    for (const auto &item : outcomes.at(0).values)
+      heading += quoted(item.first) + ",";
+    std::vector<const SummaryNumber *> columns;
+    for (const SummaryNumber &number : numbers)
+      if (std::any_of(outcomes.begin(), outcomes.end(), is_in(number)))
+        {
+          columns.push_back(&number);
+          heading += quoted(number.path) + ",";
+        }
+    for (const Outcome &outcome : outcomes)
+      {
+        for (const auto &item : outcome.values)
+          lines += quoted(item.second) + ",";
+        for (const SummaryNumber *number : columns)
+          {
+            const std::optional<double> value = number->in(outcome.summary);
+            lines += (value ? number_text(*value) : std::string()) + ",";
+          }
+        lines += quoted(verdict_of(outcome.summary)) + '\n';
+      }
+    return heading + "verdict\n" + lines;
+  }
+
+
+  nlohmann::json
+  Study::all_results() const
+  {
+    nlohmann::json all{{"runs", nlohmann::json::array()}};
+    for (const Outcome &outcome : outcomes)
+      {
+        nlohmann::json run{{"folder", outcome.folder},
+                           {"verdict", outcome.summary.value("verdict", "")},
+                           {"values", as_object(outcome.values)}};
+        for (const SummaryNumber &number : parameters.numbers())
+          if (const std::optional<double> value = number.in(outcome.summary))
+            run["quantities"][number.path] = *value;
+        all["runs"].push_back(run);
+      }
+    for (const Limit &limit : limits)
+      all["limits"].push_back({{"of", parameters.varied_to_limit},
+                               {"criterion", parameters.criterion},
+                               {"not met at", limit.fails},
+                               {"met at", limit.meets},
+                               {"values", as_object(limit.values)}});
+    return all;
+  }
+} // namespace Voussoir

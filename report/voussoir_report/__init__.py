@@ -1,0 +1,1 @@
+"""From result folders of Voussoir to a report: one page that needs nothing else."""

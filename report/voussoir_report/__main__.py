@@ -1,0 +1,55 @@
+"""Makes a report of one run or of several to compare."""
+
+import argparse
+import multiprocessing
+import pathlib
+import sys
+
+EPILOG = """A run is the output folder that it left, or LABEL=FOLDER to name it in legends.
+The page needs nothing else and can be sent by mail; a FILE that ends in .pdf is
+printed (needs the package weasyprint)."""
+
+
+def arguments():
+    parser = argparse.ArgumentParser(
+        prog="voussoir-report", description=__doc__, epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", nargs="+", metavar="RUN", help="output folder of a run")
+    parser.add_argument("-o", "--output", metavar="FILE", help="the report (report.html in the folder of "
+                                                               "the first run)")
+    parser.add_argument("--pictures", metavar="FOLDER", help="writes the pictures there too, as PNG")
+    return parser.parse_args()
+
+
+def main():
+    options = arguments()
+    try:
+        # takes a second, and --help shall not
+        from . import case, damage, faces, interfaces, motions, page, scenes, structure
+        from .run import ReportError, read_runs
+    except ImportError as error:
+        sys.exit(f"voussoir-report: {error}; install python3-numpy, python3-matplotlib, python3-vtk9 "
+                 "and python3-jinja2.")
+    try:
+        runs = read_runs(options.runs)
+        scenes.open_display()
+        makers = (case.headline_section, case.case_section, structure.mesh_section,
+                  structure.modes_section, motions.input_section, motions.motion_section,
+                  faces.face_stress_section, interfaces.joints_section, structure.opened_section,
+                  interfaces.planes_section, damage.damage_section, motions.energy_section,
+                  case.statistics_section)
+        # drawing takes nearly all of the time: one process for each core
+        with multiprocessing.get_context("fork").Pool() as pool:
+            pending = [pool.apply_async(make, [runs]) for make in makers]
+            sections = [section for section in (made.get() for made in pending) if section]
+        file = options.output or runs[0].folder / "report.html"
+        page.write(runs, sections, file)
+        if options.pictures:
+            page.write_pictures(sections, pathlib.Path(options.pictures))
+    except ReportError as error:
+        sys.exit(f"voussoir-report: {error}")
+    print(f"The report is in {file}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,251 @@
+"""The case in words, the headline figures, and what the run took."""
+
+import numpy as np
+
+from . import grid as grids
+from .motion import GRAVITY, peak
+from .page import Section, Table, comparison, number
+
+DIRECTIONS = {"x": "across the valley", "y": "along the river", "z": "vertical"}
+SIGNS = ("The axes: +x points to the left bank, +y upstream, +z up. Tension is positive, "
+         "pressure negative; an opening is positive where a joint gapes. All units stand "
+         "beside their numbers; g is 9.81 m/s².")
+
+
+def listed(words):
+    """Words as "a, b and c"."""
+    words = list(words)
+    return " and ".join([", ".join(words[:-1]), words[-1]]) if len(words) > 1 else "".join(words)
+
+
+def dam_in_words(run):
+    dam = grids.dam_of(run)
+    if dam is None:
+        return None
+    volume = f"{number(dam.volume)} m³"
+    if dam.is_slice:
+        thickness = np.ptp(dam.points[:, 0])
+        return (f"A slice of a dam, {number(thickness)} m along the axis, "
+                f"{number(dam.height)} m high, of {volume}.")
+    return (f"A dam {number(dam.height)} m high and {number(dam.crest_length)} m long along its "
+            f"crest, which is {number(dam.crest_width)} m wide, of {volume}: "
+            f"{number(dam.crest_length / dam.height)} times as long as high, Lombardi's "
+            f"slenderness F²/(V·H) = {number(dam.slenderness)}, with F the area of the middle "
+            "surface.")
+
+
+def materials_table(run):
+    shown = {"Class": ("class", 1.), "Cell sets": ("in", 1.),
+             "Young's modulus": ("E [GPa]", 1e-9), "Poisson's ratio": ("ν [-]", 1.),
+             "Density": ("density [kg/m³]", 1.), "Static factor": ("static over dynamic E [-]", 1.),
+             "Tensile strength": ("tensile strength [MPa]", 1e-6),
+             "Compressive strength": ("compressive strength [MPa]", 1e-6),
+             "Fracture energy": ("fracture energy [N/m]", 1.),
+             "Cohesion": ("cohesion [MPa]", 1e-6), "Friction angle": ("friction angle [°]", 1.)}
+    materials = dict(run.objects("Materials"))
+    for values in materials.values():
+        if values.get("Tension law") == "table":
+            values.pop("Fracture energy", None)  # that of the table counts
+    used = [entry for entry in shown if any(entry in values for values in materials.values())]
+
+    def cell(entry, value):
+        try:
+            return f"{float(value) * shown[entry][1]:g}"
+        except ValueError:
+            return value
+
+    rows = [[name, *(cell(entry, values[entry]) if entry in values else "–" for entry in used)]
+            for name, values in materials.items()]
+    return Table(["material", *(shown[entry][0] for entry in used)], rows)
+
+
+def loads_in_words(run):
+    loads = []
+    for name, entries in run.objects("Loads"):
+        level = entries.get("Level")
+        loads.append(name + (f" to {level} m" if level not in (None, "0") else ""))
+    if not loads:
+        return "No loads before the earthquake."
+    stages = run.entry("Static state/Stages").replace(";", ", then")
+    return f"Loads: {listed(loads)}" + (f"; static state in the order {stages}." if stages else ".")
+
+
+def water_in_words(run):
+    model = run.entry("Reservoir/Model", "none")
+    if model == "none":
+        return "No water moves with the dam."
+    if model == "added mass":
+        return ("The water moves with the dam as Westergaard's added mass, to "
+                f"{run.entry('Reservoir/added mass/Level')} m.")
+    return f"Reservoir: {model}."
+
+
+def interfaces_in_words(run):
+    words = []
+    for name, entries in run.objects("Interfaces"):
+        facts = [f"law {entries.get('Law', 'friction')}"]
+        for entry, text, factor in (("Friction coefficient", "friction {}", 1.),
+                                    ("Cohesion", "cohesion {} MPa", 1e-6),
+                                    ("Tensile strength", "tensile strength {} MPa", 1e-6),
+                                    ("Key depth", "keys {} m deep", 1.)):
+            if float(entries.get(entry) or 0.) > 0.:
+                facts.append(text.format(f"{float(entries[entry]) * factor:g}"))
+        if entries.get("Grouted after"):
+            facts.append(f"grouted after {entries['Grouted after']}")
+        words.append(f"{name} ({entries.get('Face sets', '')}): {', '.join(facts)}")
+    return "Joints and planes: " + "; ".join(words) + "." if words else None
+
+
+def earthquake_in_words(run):
+    kind = run.entry("Ground motion/Type", "none")
+    if kind == "none":
+        return "No earthquake."
+    factor = run.number("Ground motion/Overload factor", 1.)
+    peaks = [f"{factor * run.number(f'Ground motion/Peak acceleration {d}'):g} g {where}"
+             for d, where in DIRECTIONS.items() if run.number(f"Ground motion/Peak acceleration {d}")]
+    files = dict.fromkeys(run.entry(f"Ground motion/Record/File {d}") for d in DIRECTIONS)
+    source = f" ({', '.join(filter(None, files))})" if kind == "record" else ""
+    return (f"Earthquake: {kind}{source}, given at the {run.entry('Ground motion/Given at')}"
+            + (f", peaks of {listed(peaks)}" if peaks else "")
+            + f"; it enters through the {run.entry('Wave field/Enters through')}. Damping: "
+            f"{run.entry('Damping/Model')}, {100. * run.number('Damping/Ratio'):g} % of critical.")
+
+
+def boundary_in_words(run):
+    absorbing, fixed = run.entry("Boundaries/Absorbing"), run.entry("Boundaries/Fixed")
+    return " ".join(text for text in (
+        f"Waves leave through {absorbing} ({run.entry('Boundaries/Absorbing type')})."
+        if absorbing else "", f"Fixed: {fixed}." if fixed else "") if text) or None
+
+
+def differences(runs):
+    """Entries that are not the same in all runs."""
+    paths = dict.fromkeys(path for run in runs for path in run.parameters)
+    rows = [[path, *(run.entry(path, "–") or "empty" for run in runs)] for path in paths
+            if len({run.entry(path, "–") for run in runs}) > 1
+            and path not in ("Title", "Output/Folder")]
+    if not rows:
+        return "The runs have the same parameters."
+    return Table(["entry", *(run.label for run in runs)], rows, "What differs between the runs.")
+
+
+def case_section(runs):
+    first = runs[0]
+    parts = [dam_in_words(first), materials_table(first), interfaces_in_words(first),
+             loads_in_words(first), water_in_words(first), boundary_in_words(first),
+             earthquake_in_words(first), SIGNS]
+    if len(runs) > 1:
+        parts.insert(0, f"In words, the first of the runs, {first.label}:")
+        parts.append(differences(runs))
+    return Section("The case", [part for part in parts if part])
+
+
+def moved(run):
+    """Name and figures of the point that moves most against the base."""
+    points = {name: values for name, values in run.summary.get("histories", {}).items()
+              if values["largest displacement [m]"] > 0.}
+    relative = {name: values for name, values in points.items() if "relative to" in values}
+    if not points:
+        return None
+    return max((relative or points).items(), key=lambda item: item[1]["largest displacement [m]"])
+
+
+def largest_of(run, part, key, smallest=False):
+    """Text of an extreme over the surfaces or blocks of the summary, with its name."""
+    found = [(values[key], name) for name, values
+             in run.summary.get("interfaces", {}).get(part, {}).items()
+             if values.get(key) is not None]
+    if not found:
+        return None
+    value, name = min(found) if smallest else max(found)
+    return f"{number(value)} ({name})" if value > 1e-9 else "0"
+
+
+def ground_peaks(run):
+    table = run.table("ground_motion.csv")
+    if table is None:
+        return None
+    return ", ".join(f"{match[1]} {number(abs(peak(table.time, values)[0]) / GRAVITY)}"
+                     for match, values in table.matching(r"acceleration ([xyz]) \[m/s2\]"))
+
+
+def of_moved(key, factor):
+    def text(run):
+        point = moved(run)
+        return f"{number(point[1][key] * factor)} ({point[0]})" if point and key in point[1] else None
+    return text
+
+
+def of_summary(path, factor=1.):
+    def text(run):
+        value = run.summary
+        for key in path.split("/"):
+            if not isinstance(value, dict) or key not in value:
+                return None
+            value = value[key]
+        return number(value if factor == 1. else value * factor)
+    return text
+
+
+def of_materials(key, factor=1.):
+    def text(run):
+        values = [entries[key] for entries in run.summary.get("materials", {}).values()
+                  if key in entries]
+        return number(max(values) * factor) if values else None
+    return text
+
+
+def first_frequency(run):
+    modes = run.summary.get("modes", {}).get("modes")
+    return number(modes[0]["frequency [Hz]"]) if modes else None
+
+
+def energy_from_nowhere(run):
+    share = run.summary.get("energy balance", {}).get("largest share from nowhere")
+    return None if share is None else number(100. * share) if share > 1e-8 else "below 10⁻⁶"
+
+
+def headline_section(runs):
+    table = comparison(runs, [
+        ("first natural frequency [Hz]", first_frequency),
+        ("peak of the input motion [g]", ground_peaks),
+        ("largest displacement relative to the base, with the static one [cm]", of_moved("largest displacement [m]", 100.)),
+        ("largest acceleration relative to the base, filtered [g]",
+         of_moved("largest filtered acceleration [m/s2]", 1. / GRAVITY)),
+        ("largest arch tension on the faces [MPa]", of_summary("face stresses/largest arch stress [MPa]")),
+        ("largest cantilever tension [MPa]", of_summary("face stresses/largest cantilever stress [MPa]")),
+        ("largest principal tension [MPa]", of_summary("face stresses/largest principal stress [MPa]")),
+        ("largest pressure (smallest principal stress) [MPa]",
+         of_summary("face stresses/smallest principal stress [MPa]")),
+        ("largest opening of a joint or plane [mm]",
+         lambda run: largest_of(run, "surfaces", "largest opening [mm]")),
+        ("largest slip [mm]", lambda run: largest_of(run, "surfaces", "largest slip [mm]")),
+        ("largest slip at the end [mm]", lambda run: largest_of(run, "surfaces", "residual slip [mm]")),
+        ("smallest safety of a block against sliding [-]",
+         lambda run: largest_of(run, "blocks", "smallest safety", smallest=True)),
+        ("longest time of a block at safety one or below [s]",
+         lambda run: largest_of(run, "blocks", "time at safety one or below [s]")),
+        ("share of the concrete that left the elastic range [%]",
+         of_materials("share of the volume that left the elastic range", 100.)),
+        ("largest opening of cracks in a cell [mm]", of_materials("largest crack opening [mm]")),
+        ("energy from nowhere, of what came in [%]", energy_from_nowhere),
+    ])
+    return Section("Headline figures", [table]) if table else None
+
+
+def statistics_section(runs):
+    table = comparison(runs, [
+        ("program", lambda run: run.summary.get("version")),
+        ("cells", of_summary("cells")), ("unknowns", of_summary("unknowns")),
+        ("degree of the elements", of_summary("degree")),
+        ("time step [ms]", of_summary("time step [s]", 1e3)),
+        ("largest stable step [ms]", of_summary("largest stable step [s]", 1e3)),
+        ("steps", of_summary("steps")), ("time covered [s]", of_summary("end time [s]")),
+        ("ranks", of_summary("ranks")), ("SIMD [bit]", of_summary("SIMD bits")),
+        ("static state [s]", of_summary("static state/seconds")),
+        ("time loop [s]", of_summary("loop time [s]")),
+        ("share of contact [%]", of_summary("contact share of the loop", 100.)),
+        ("speed [million unknowns · steps / s]", of_summary("MDOF-steps/s")),
+        ("memory of the largest rank [MB]", of_summary("peak memory of a rank [MB]")),
+    ])
+    return Section("What the run took", [table])

@@ -1,0 +1,81 @@
+"""Damage on the faces of the dam, in the section of its crown and in its joints."""
+
+import numpy as np
+
+from . import charts
+from .faces import SIDES, developed
+from .grid import centre_keys, dam_in, dam_of
+from .interfaces import joint_corners, joints_of
+from .page import Pictures, Section
+
+SCALES = {"tension_damage": "damage in tension [-]", "compression_damage": "damage in compression [-]",
+          "damage": "damage [-]", "crack_opening_mm": "opening of cracks in a cell [mm]"}
+
+
+def damaged(run):
+    """Fields of damage in the picture at the end that are not zero in the dam."""
+    dam = dam_of(run)
+    return [field for field in SCALES
+            if dam and field in dam.grid.values and np.any(of_cells(dam, field)[dam.cells] > 0.01)]
+
+
+def of_cells(dam, field):
+    return dam.grid.values[field][dam.grid.cells].mean(axis=1)
+
+
+def scale_of(runs, field):
+    if field.endswith("damage"):
+        return charts.Scale([], SCALES[field], cut=0., colours="inferno_r", low=0., high=1.)
+    values = [of_cells(dam_of(run), field)[dam_of(run).cells] for run in runs]
+    return charts.Scale(values, SCALES[field], colours="inferno_r", low=0.)
+
+
+def on_faces(run, field, scale):
+    dam = dam_of(run)
+    panels = []
+    for side, (title, _) in SIDES.items():
+        faces = dam.side(side)
+        panels.append((title, developed(dam, dam.grid.points[faces], side),
+                       dam.grid.values[field][faces].mean(axis=1)))
+    return charts.face_map(panels, scale, f"{run.prefix}On the faces", f"{field}_faces_{run.label}")
+
+
+def in_sections(run, field, scale):
+    """In the middle of the dam, and on both sides of the joints whichever is larger; of a
+    slice of a dam at all times that there are pictures of."""
+    dams = [("middle", dam_of(run))]
+    if dam_of(run).is_slice:
+        dams = [(f"{time:.2f} s", dam_in(run, file)) for time, file in run.pictures("fields")[-4:]] or dams
+    panels = [(title, dam.crown[0], of_cells(dam, field)[dam.crown[1]])
+              for title, dam in dams if field in dam.grid.values]
+
+    grid = dam_of(run).grid
+    faces = grid.faces(dam_of(run).cells)
+    keys, values = centre_keys(grid.points[faces]), grid.values[field][faces].mean(axis=1)
+    for name in joints_of(run):
+        corners = joint_corners(run, name)
+        largest = [values[keys == key].max() for key in centre_keys(corners)]
+        panels.append((name.removeprefix("joint "), list(corners[..., 1:]), np.array(largest)))
+    where = "the middle of the dam and its joints" if joints_of(run) else "the middle of the dam"
+    return charts.sections_map(panels, scale, f"{run.prefix}Sections in {where}, upstream on the left",
+                               f"{field}_sections_{run.label}")
+
+
+def damage_section(runs):
+    cracked = [run for run in runs if damaged(run)]
+    if not cracked:
+        return None
+    parts = ["A cell is coloured by its mean."]
+    unhurt = [run.label for run in runs if run not in cracked]
+    if unhurt:
+        parts.append(f"No damage in {', '.join(unhurt)}.")
+    for field in SCALES:
+        some = [run for run in cracked if field in damaged(run)]
+        if not some:
+            continue
+        scale = scale_of(some, field)
+        pictures = [on_faces(run, field, scale) for run in some if not dam_of(run).is_slice]
+        pictures += [in_sections(run, field, scale) for run in some]
+        title = SCALES[field].split(" [")[0]
+        parts.append(Pictures(pictures, max(2, min(len(some), 3)), title[0].upper() + title[1:]))
+    return Section("Damage at the end", parts)

@@ -1,0 +1,265 @@
+"""Meshes and fields of pictures, and what can be measured on them."""
+
+import functools
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkPlane, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersCore import vtkCutter
+from vtkmodules.vtkFiltersVerdict import vtkMeshQuality
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+# faces of a hexahedron, corners seen in turn from outside
+HEXAHEDRON_FACES = np.array([(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2),
+                             (0, 3, 2, 1), (4, 5, 6, 7)])
+HEXAHEDRON_EDGES = np.array([(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4),
+                             (1, 5), (2, 6), (3, 7)])
+TOLERANCE = 1e-3  # within which places are the same [m]
+SCATTER = np.random.default_rng(1).integers(2**62, size=3)  # spreads numbers over 64 bits
+
+
+def keys_of_sets(numbers):
+    """A number for each row of small numbers, whatever their order in the row."""
+    mixed = (numbers + 1) * SCATTER[0]
+    mixed ^= mixed >> 29
+    return (mixed * SCATTER[1]).sum(axis=-1)
+
+
+def centre_keys(corners):
+    """A number for the place of the middle of each face (n, 4, 3), to the centimetre,
+    the same in all pictures of a run."""
+    # round coordinates do not lie between two centimetres
+    return np.floor(100. * corners.mean(axis=1) + 0.137).astype(np.int64) @ SCATTER
+
+
+class Grid:
+    """A file of hexahedra or quadrilaterals: corners, cells and values at corners.
+
+    In the files no two cells share points, so values may jump between cells.
+    """
+
+    def __init__(self, file):
+        reader = vtkXMLUnstructuredGridReader()
+        reader.SetFileName(str(file))
+        reader.Update()
+        self.vtk = reader.GetOutput()
+        self.points = vtk_to_numpy(self.vtk.GetPoints().GetData()).astype(float)
+        connectivity = vtk_to_numpy(self.vtk.GetCells().GetConnectivityArray())
+        self.cells = connectivity.reshape(self.vtk.GetNumberOfCells(), -1)
+        data = self.vtk.GetPointData()
+        self.values = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i))
+                       for i in range(data.GetNumberOfArrays())}
+
+    def names(self, kind):
+        """What the numbers of a field "material", "face_set" and so on stand for."""
+        texts = self.vtk.GetFieldData().GetAbstractArray(kind + "_names")
+        # written with quotation marks
+        return [texts.GetValue(i).strip('"') for i in range(texts.GetNumberOfValues())]
+
+    def of(self, kind, name):
+        """Numbers of the cells that belong to a material, face set or interface."""
+        number = self.names(kind).index(name)
+        return np.flatnonzero(self.values[kind][self.cells[:, 0]] == number)
+
+    @functools.cached_property
+    def places(self):
+        """For each point a number that all points at the same place share."""
+        keys = np.round(self.points / TOLERANCE).astype(np.int64) @ SCATTER
+        return np.unique(keys, return_inverse=True)[1].reshape(-1)
+
+    def faces(self, cells):
+        """Corners (cells * 6, 4) of all faces of some hexahedra."""
+        return self.cells[cells][:, HEXAHEDRON_FACES].reshape(-1, 4)
+
+    def face_keys(self, faces):
+        """A number of each face (n, 4) that others at the same place share."""
+        return keys_of_sets(self.places[faces])
+
+    def outer_faces(self, cells, among=None):
+        """Corners (n, 4) of the faces of some hexahedra that no other one has, of
+        those (or, by default, of themselves); both sides of a joint are one place."""
+        mine = self.faces(cells)
+        others = mine if among is None else self.faces(among)
+        keys = np.concatenate([self.face_keys(mine), self.face_keys(others)])
+        _, inverse, counts = np.unique(keys, return_inverse=True, return_counts=True)
+        # each is among the others too
+        return mine[counts[inverse.reshape(-1)[:len(mine)]] == 2]
+
+    @functools.cached_property
+    def quality(self):
+        """Scaled Jacobian of hexahedra: 1 for a brick, 0 for a flat corner (Knupp 2000)."""
+        filter = vtkMeshQuality()
+        filter.SetInputData(self.vtk)
+        filter.SetHexQualityMeasureToScaledJacobian()
+        filter.Update()
+        return vtk_to_numpy(filter.GetOutput().GetCellData().GetArray("Quality"))
+
+    def edges(self, cells):
+        """Lengths of the edges of some hexahedra [m]."""
+        corners = self.points[self.cells[cells]]
+        return np.linalg.norm(corners[:, HEXAHEDRON_EDGES[:, 1]] - corners[:, HEXAHEDRON_EDGES[:, 0]],
+                              axis=2)
+
+    def volumes(self, cells):
+        """Of hexahedra [m3], from the fluxes of x/3 through their faces."""
+        corners = self.points[self.cells[cells]][:, HEXAHEDRON_FACES]
+        middle = corners.mean(axis=2)
+        return np.einsum("cfd,cfd->c", middle, area_vectors(corners)) / 3.
+
+
+    def cut(self, x):
+        """Polygons (y, z) where the plane of a place x cuts cells, and numbers of these."""
+        numbered = vtkUnstructuredGrid()
+        numbered.CopyStructure(self.vtk)
+        numbers = numpy_to_vtk(np.arange(len(self.cells)), deep=True)
+        numbers.SetName("number")
+        numbered.GetCellData().AddArray(numbers)
+        plane = vtkPlane()
+        plane.SetOrigin(x, 0., 0.)
+        plane.SetNormal(1., 0., 0.)
+        cutter = vtkCutter()
+        cutter.SetInputData(numbered)
+        cutter.SetCutFunction(plane)
+        cutter.GenerateTrianglesOff()
+        cutter.Update()
+        cut = cutter.GetOutput()
+        points = vtk_to_numpy(cut.GetPoints().GetData())[:, 1:]
+        corners = vtk_to_numpy(cut.GetPolys().GetConnectivityArray())
+        ends = vtk_to_numpy(cut.GetPolys().GetOffsetsArray())[1:-1]
+        return (np.split(points[corners], ends),
+                vtk_to_numpy(cut.GetCellData().GetArray("number")))
+
+
+def area_vectors(corners):
+    """Normals times areas of quadrilaterals (..., 4, 3)."""
+    return 0.5 * np.cross(corners[..., 2, :] - corners[..., 0, :],
+                          corners[..., 3, :] - corners[..., 1, :])
+
+
+class Dam:
+    """The cells of the dam in a picture, and its faces.
+
+    +y is upstream, +x the left bank, +z up, as everywhere in the program.
+    """
+
+    def __init__(self, grid, materials):
+        self.grid = grid
+        self.cells = np.concatenate([grid.of("material", name) for name in materials])
+        self.others = np.setdiff1d(np.arange(len(grid.cells)), self.cells)
+        self.points = grid.points[grid.cells[self.cells]].reshape(-1, 3)
+        self.top, self.bottom = self.points[:, 2].max(), self.points[:, 2].min()
+        self.height = self.top - self.bottom
+
+    @functools.cached_property
+    def exposed(self):
+        """Corners of the faces that neither rock nor water nor dam lies behind."""
+        return self.grid.outer_faces(self.cells, np.arange(len(self.grid.cells)))
+
+    def _unit_normals(self):
+        normals = area_vectors(self.grid.points[self.exposed])
+        return normals / np.linalg.norm(normals, axis=1)[:, None]
+
+    @functools.cached_property
+    def crest(self):
+        """Faces of the crest: level and at the top."""
+        level = self.grid.points[self.exposed][:, :, 2] > self.top - 1e-3 * self.height
+        return self.exposed[level.all(axis=1)]
+
+    def side(self, name):
+        """Corners of the upstream or the downstream face."""
+        normals = self._unit_normals()
+        sign = 1. if name == "upstream" else -1.
+        # the sides of a slice of a dam look to the banks
+        along_river = (sign * normals[:, 1] > 0.1) & (np.abs(normals[:, 2]) < 0.99)
+        return self.exposed[along_river]
+
+    @functools.cached_property
+    def crest_length(self):
+        """Along the middle of a crest of even width [m]: such a strip, straight or
+        bent, of length L and width w has the area L w and the outline 2 L + 2 w."""
+        corners = self.grid.points[self.crest]
+        area = np.linalg.norm(area_vectors(corners), axis=1).sum()
+        places = self.grid.places[self.crest]
+        edges = keys_of_sets(np.stack([places, np.roll(places, -1, axis=1)], axis=2)).reshape(-1)
+        lengths = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).reshape(-1)
+        _, inverse, counts = np.unique(edges, return_inverse=True, return_counts=True)
+        outline = lengths[counts[inverse.reshape(-1)] == 1].sum()
+        half = 0.5 * outline
+        return 0.5 * (half + np.sqrt(max(half**2 - 4. * area, 0.)))
+
+    @functools.cached_property
+    def crest_width(self):
+        corners = self.grid.points[self.crest]
+        return np.linalg.norm(area_vectors(corners), axis=1).sum() / self.crest_length
+
+    @functools.cached_property
+    def volume(self):
+        return self.grid.volumes(self.cells).sum()
+
+    @property
+    def is_slice(self):
+        """Whether this is a slice of a dam, not one from bank to bank."""
+        return np.ptp(self.points[:, 0]) < 0.5 * self.height
+
+    @functools.cached_property
+    def crown(self):
+        """Polygons (y, z) of the section in the middle, and numbers of their cells."""
+        xs = self.points[:, 0]
+        # beside the middle, where cells may end
+        polygons, cells = self.grid.cut(0.5 * (xs.min() + xs.max()) + 1e-3 * np.ptp(xs))
+        mine = np.isin(cells, self.cells)
+        return [polygon for polygon, own in zip(polygons, mine) if own], cells[mine]
+
+    @functools.cached_property
+    def slenderness(self):
+        """Lombardi's F^2/(V H), F the area of the middle surface [-]."""
+        area = np.mean([np.linalg.norm(area_vectors(self.grid.points[self.side(name)]), axis=1).sum()
+                        for name in ("upstream", "downstream")])
+        return area**2 / (self.volume * self.height)
+
+    @functools.cached_property
+    def crest_line(self):
+        """x and length along the crest from its middle [m], of its upstream edge."""
+        points = self.grid.points[self.side("upstream")].reshape(-1, 3)
+        points = points[points[:, 2] > self.top - 1e-3 * self.height]
+        xs, first = np.unique(np.round(points[:, 0], 3), return_index=True)
+        along = np.concatenate([[0.], np.cumsum(np.hypot(np.diff(xs),
+                                                         np.diff(points[first, 1])))])
+        return xs, along - np.interp(0.5 * (xs[0] + xs[-1]), xs, along)
+
+    def developed(self, x):
+        """Length along the crest [m] above or below a place x."""
+        return np.interp(x, *self.crest_line)
+
+
+@functools.lru_cache(maxsize=None)
+def grid_of(run, name):
+    """A picture in the folder of a run, or None."""
+    return Grid(run.folder / name) if run.has(name) else None
+
+
+@functools.lru_cache(maxsize=None)
+def dam_in(run, name):
+    """The dam in a picture of the whole model."""
+    grid = grid_of(run, name)
+    return Dam(grid, dam_materials(run, grid.names("material")))
+
+
+def dam_of(run):
+    """The dam of a run that has written a picture of the whole model, or None."""
+    files = [name for name in ("envelopes.vtu", "modes.vtu") if run.has(name)]
+    files += [file for _, file in run.pictures("fields")]
+    return dam_in(run, files[0]) if files else None
+
+
+def dam_materials(run, names):
+    """Names of the materials of the dam, not of the rock: those that they or their
+    cell sets are called so, or else the first."""
+    entries = dict(run.objects("Materials"))
+
+    def is_called(name, *words):
+        text = f"{name}, {entries.get(name, {}).get('Cell sets', '')}".lower()
+        return any(word in text for word in words)
+
+    return [name for name in names if is_called(name, "dam", "block", "concrete")
+            and not is_called(name, "rock", "foundation")] or names[:1]

@@ -1,0 +1,234 @@
+"""Input motion, motion of points, and the energy balance."""
+
+import functools
+import re
+
+import numpy as np
+
+from . import charts
+from .case import DIRECTIONS
+from .motion import (GRAVITY, PERIODS, ROUND_PERIODS, arias_intensity, integral, peak, response_spectrum,
+                     significant_duration)
+from .page import Pictures, Section, Table, number
+
+DAMPING = 0.05
+
+
+class GroundMotion:
+    """Accelerations [m/s2] by direction, at equal intervals [s]."""
+
+    def __init__(self, table):
+        self.time = table.time
+        self.interval = (table.time[-1] - table.time[0]) / (len(table.time) - 1)
+        self.acceleration = {match[1]: values for match, values
+                             in table.matching(r"acceleration ([xyz]) \[m/s2\]")}
+
+    @functools.cached_property
+    def spectra(self):
+        records = np.array(list(self.acceleration.values()))
+        return dict(zip(self.acceleration, response_spectrum(records, self.interval,
+                                                             damping=DAMPING)))
+
+
+@functools.lru_cache(maxsize=None)
+def ground_motion(run):
+    """Of a run with an earthquake, or None."""
+    table = run.table("ground_motion.csv")
+    return GroundMotion(table) if table else None
+
+
+def motion_measures(runs):
+    """A table with a row for each run and direction."""
+    rows = []
+    for run in runs:
+        motion = ground_motion(run)
+        for direction, a in motion.acceleration.items():
+            if not np.any(a):
+                continue
+            velocity = integral(a, motion.interval)
+            first, last = significant_duration(a, motion.interval)
+            rows.append([f"{run.prefix}{direction}, {DIRECTIONS[direction]}",
+                         number(np.abs(a).max() / GRAVITY),
+                         number(100. * np.abs(velocity).max()),
+                         number(100. * np.abs(integral(velocity, motion.interval)).max()),
+                         number(arias_intensity(a, motion.interval)[-1]),
+                         number(last - first), f"{number(first)} to {number(last)}"])
+    return Table(["direction", "peak acceleration [g]", "peak velocity [cm/s]",
+                  "peak displacement [cm]", "Arias intensity [m/s]",
+                  "significant duration 5–95 % [s]", "from, to [s]"], rows)
+
+
+def spectrum_table(runs):
+    """Spectral values at round periods; a row for each run and direction."""
+    rows = []
+    for run in runs:
+        for direction, spectrum in ground_motion(run).spectra.items():
+            values = spectrum[np.isin(PERIODS, ROUND_PERIODS)] / GRAVITY
+            rows.append([f"{run.prefix}{direction}, {DIRECTIONS[direction]}",
+                         *(number(value) for value in values)])
+    return Table([f"pseudo-acceleration at {100. * DAMPING:g} % damping [g]",
+                  *(f"{period:g} s" for period in ROUND_PERIODS)], rows)
+
+
+def target_curve(run, direction):
+    """The spectrum that an artificial motion follows, as a curve, or nothing."""
+    target = run.summary.get("target spectrum", {})
+    values = target.get(f"{direction} [m/s2]")
+    if values is None:
+        return []
+    return [(f"target of {run.label}, {100. * target['damping ratio']:g} %",
+             target["periods [s]"], np.array(values) / GRAVITY)]
+
+
+def input_section(runs):
+    runs = [run for run in runs if ground_motion(run)]
+    if not runs:
+        return None
+    pictures = []
+    for direction in DIRECTIONS:
+        moved = [run for run in runs if direction in ground_motion(run).acceleration]
+        if not moved:
+            continue
+        figure, axes = charts.new_figure()
+        charts.lines(axes, [(run.label, ground_motion(run).time,
+                             ground_motion(run).acceleration[direction] / GRAVITY)
+                            for run in moved],
+                     f"{direction}, {DIRECTIONS[direction]}", "time [s]", "acceleration [g]", zero=True)
+        pictures.append(charts.picture(figure, f"Input acceleration {direction}", f"input_{direction}"))
+        figure, axes = charts.new_figure()
+        curves = [(run.label, PERIODS, ground_motion(run).spectra[direction] / GRAVITY)
+                  for run in moved]
+        charts.lines(axes, curves + target_curve(moved[0], direction),
+                     f"{direction}, {DIRECTIONS[direction]}, {100. * DAMPING:g} % damping",
+                     "period [s]", "pseudo-acceleration [g]")
+        axes.set_xscale("log")
+        axes.set_xticks([0.03, 0.1, 0.3, 1., 3.], ["0.03", "0.1", "0.3", "1", "3"])
+        axes.set_ylim(bottom=0.)
+        pictures.append(charts.picture(figure, f"Response spectrum {direction}", f"spectrum_{direction}"))
+    given = {run.entry("Ground motion/Given at") for run in runs}
+    text = (f"The motion as it was given to the program, at the {' or '.join(sorted(given))}, scaled, "
+            "up to the end of the run. Arias intensity is π/2g ∫a²dt; the significant duration is "
+            "the time between 5 and 95 % of it.")
+    return Section("Input motion", [text, motion_measures(runs), spectrum_table(runs),
+                                    Pictures(pictures)])
+
+
+def column(run, point, quantity, direction):
+    """Values of a column of histories.csv and what they are relative to, or None."""
+    table = run.table("histories.csv")
+    found = table.matching(rf"{re.escape(point)} {quantity} {direction}( relative to .*)? \[.*\]")
+    return (found[0][1], found[0][0][1] or "") if found else None
+
+
+def points_of(run):
+    """Names of the points of histories.csv that move."""
+    table = run.table("histories.csv")
+    if table is None:
+        return []
+    names = dict.fromkeys(match[1] for match, values in table.matching(
+        r"(.*) (?:displacement|velocity|acceleration) [xyz].*") if np.any(values))
+    return [name for name in names if not name.endswith(" filtered")]
+
+
+def acceleration_of(run, point, direction):
+    """What the mesh carries of an acceleration: values and what they are relative to."""
+    return column(run, point, "filtered acceleration", direction)
+
+
+def amplification_table(runs):
+    """Peaks of absolute accelerations over those of the input."""
+    rows = []
+    for run in runs:
+        motion = ground_motion(run)
+        for point in points_of(run) if motion else []:
+            cells = []
+            for direction, ground in motion.acceleration.items():
+                largest = absolute_peak(run, point, direction)
+                cells.append("–" if largest is None else
+                             f"{number(largest / GRAVITY)} g, {number(largest / np.abs(ground).max())}")
+            if any(cell != "–" for cell in cells):
+                rows.append([f"{run.prefix}{point}", *cells])
+    if not rows:
+        return None
+    head = ["point", *(f"{d}, {DIRECTIONS[d]}" for d in ground_motion(runs[0]).acceleration)]
+    return Table(head, rows, "Peak of the absolute acceleration, and how many times the peak of the "
+                             "input motion that is.")
+
+
+def absolute_peak(run, point, direction):
+    """Of an acceleration [m/s2], or None if it is known relatively only."""
+    found = acceleration_of(run, point, direction)
+    if not found:
+        return None
+    values, relative = found
+    if relative:
+        base = acceleration_of(run, relative[len(" relative to "):], direction)
+        if not base or base[1] or not np.any(base[0]):
+            return None
+        values = values + base[0]
+    return np.abs(values).max()
+
+
+def motion_section(runs):
+    names = list(dict.fromkeys(point for run in runs for point in points_of(run)))
+    pictures = []
+    for point in names:
+        for direction, where in DIRECTIONS.items():
+            for quantity, factor, unit, read in (
+                    ("displacement", 100., "cm", lambda run: column(run, point, "displacement", direction)),
+                    ("acceleration", 1. / GRAVITY, "g", lambda run: acceleration_of(run, point, direction)),
+                    ("single-step acceleration", 1. / GRAVITY, "g",
+                     lambda run: None if acceleration_of(run, point, direction)
+                     else column(run, point, "acceleration", direction))):
+                found = [(run, read(run)) for run in runs if point in points_of(run)]
+                found = [(run, *values) for run, values in found if values]
+                if not found or not any(np.any(values) for _, values, _ in found):
+                    continue
+                figure, axes = charts.new_figure(2.5)
+                charts.lines(axes, [(run.label, run.table("histories.csv").time, factor * values)
+                                    for run, values, _ in found],
+                             f"{point}, {direction} ({where}){found[0][2]}", "time [s]",
+                             f"{quantity} [{unit}]", zero=True)
+                pictures.append(charts.picture(figure, f"{point}: {quantity} {direction}",
+                                               f"{point}_{quantity}_{direction}"))
+    if not pictures:
+        return None
+    carried = {values["filtered at [Hz]"] for run in runs
+               for values in run.summary.get("histories", {}).values()}
+    text = ("Displacements include those of the static state. Accelerations are without what lies above "
+            f"the frequencies that the mesh carries ({' or '.join(number(f) for f in sorted(carried))} Hz); "
+            "those of single steps have all of it, and show cracks and joints that clap.")
+    return Section("Motion of the crest and other points",
+                   [part for part in (text, amplification_table(runs), Pictures(pictures)) if part])
+
+
+# column of energy.csv, sign, what it is
+ENERGIES = (("kinetic [J]", 1., "kinetic"), ("strain [J]", 1., "strain"),
+            ("damping [J]", 1., "lost in damping"), ("material [J]", 1., "lost in cracks and plastic flow"),
+            ("closing cracks [J]", 1., "lost by closing cracks"),
+            ("constraints [J]", -1., "lost in joints"))
+
+
+def energy_picture(run):
+    table = run.table("energy.csv")
+    entered = table["input [J]"] - table["boundary [J]"]
+    largest = max(np.abs(entered).max(), table["kinetic [J]"].max(), 1e-30)
+    power, unit = next((power, unit) for power, unit in ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1., "J"))
+                       if largest >= power or power == 1.)
+    figure, axes = charts.new_figure(3.1)
+    curves = [("came in and stayed", table.time, entered / power)]
+    curves += [(what, table.time, sign * table[name] / power) for name, sign, what in ENERGIES
+               if np.abs(table[name]).max() > 1e-4 * largest]
+    charts.lines(axes, curves, run.title_in_chart, "time [s]", f"energy [{unit}]", zero=True)
+    return charts.picture(figure, f"{run.prefix}Energies over time", f"energy_{run.label}")
+
+
+def energy_section(runs):
+    runs = [run for run in runs if run.table("energy.csv")]
+    if not runs:
+        return None
+    text = ("What came in and stayed is the work of the earthquake less what has gone out through "
+            "the absorbing boundary; at each time it is the sum of the other curves and of a small "
+            "part stored in the damping.")
+    return Section("Energy balance", [text, Pictures([energy_picture(run) for run in runs],
+                                                     min(len(runs), 3))])

@@ -23,7 +23,7 @@ namespace Voussoir
               const double  time = 0.,
               const double  away = 0.)
     {
-      constexpr double resolution = 1e-3;
+      constexpr double resolution = Earthquake::sample_interval;
       Peak             peak;
       for (std::size_t i = 0; i * resolution <= end; ++i)
         if (const double now = std::abs(motion.acceleration(i * resolution));
@@ -165,6 +165,11 @@ namespace Voussoir
     const double        end_time = parameters.time.end_time;
     GroundMotionSignals motion = ground_motion.build(parameters.file.folder());
     log(ground_motion.summary(motion, end_time));
+    for (unsigned int d = 0; d < 3; ++d)
+      if (motion[d])
+        for (std::size_t i = 0; i * sample_interval <= end_time; ++i)
+          accelerations[d].push_back(
+            motion[d]->acceleration(i * sample_interval));
     if (end_time > 0.)
       check_peaks(motion, ground_motion.type == "record", end_time, log);
     if (model.rigid_base())

@@ -5,8 +5,10 @@
 #include <voussoir/base/version.h>
 #include <voussoir/driver/run.h>
 #include <voussoir/driver/summary_file.h>
+#include <voussoir/loads/response_spectrum.h>
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/material_memory.h>
+#include <voussoir/output/table.h>
 
 #include <iomanip>
 
@@ -18,6 +20,7 @@ namespace Voussoir
   Run::open_output()
   {
     write_modes();
+    write_ground_motion();
     energy.open(folder.path(), folder.start_time(), folder.restarts(), log);
     for (const auto &observer : model.parameters.observers)
       observer.second->prepare(observed,
@@ -41,6 +44,58 @@ namespace Voussoir
       }
     write_fields(observed, fields, nullptr, "modes", 0.);
   }
+
+
+  void
+  Run::write_ground_motion() const
+  {
+    const auto              &components = earthquake.accelerations;
+    std::vector<std::string> titles{"time [s]"};
+    std::size_t              n_samples = 0;
+    for (unsigned int d = 0; d < 3; ++d)
+      if (!components[d].empty())
+        {
+          titles.push_back(std::string("acceleration ") + "xyz"[d] + " [m/s2]");
+          n_samples = components[d].size();
+        }
+    if (n_samples == 0 ||
+        Utilities::MPI::this_mpi_process(log.communicator()) != 0)
+      return;
+    std::string text = csv_heading(titles) + '\n';
+    for (std::size_t i = 0; i < n_samples; ++i)
+      {
+        std::vector<double> line{i * Earthquake::sample_interval};
+        for (const auto &component : components)
+          if (!component.empty())
+            line.push_back(component[i]);
+        text += csv_line(line) + '\n';
+      }
+    const std::string name = folder.path() + "/ground_motion.csv";
+    log.attempted(name, write_file(name, text));
+  }
+
+
+  namespace
+  {
+    /** The spectrum that an artificial motion follows [m/s2]. */
+    nlohmann::json
+    target_spectrum(const GroundMotion &motion)
+    {
+      constexpr double shortest = 0.03, longest = 4.;
+      nlohmann::json   result{{"damping ratio", motion.spectrum.damping_ratio}};
+      for (const double period : logarithmic_grid(shortest, longest, 50))
+        {
+          result["periods [s]"].push_back(period);
+          for (unsigned int d = 0; d < 3; ++d)
+            if (motion.peak_acceleration[d] > 0.)
+              result[std::string(1, "xyz"[d]) + " [m/s2]"].push_back(
+                motion.overload_factor * standard_gravity *
+                motion.peak_acceleration[d] *
+                motion.spectrum.spectrum.amplification(period));
+        }
+      return result;
+    }
+  } // namespace
 
 
   void
@@ -95,6 +150,9 @@ namespace Voussoir
     if (contact && loop_seconds > 0.)
       result["contact share of the loop"] =
         Utilities::MPI::min(contact->seconds(), communicator) / loop_seconds;
+    if (model.parameters.ground_motion.type == "spectrum")
+      result["target spectrum"] =
+        target_spectrum(model.parameters.ground_motion);
     if (!rest.summary.is_null())
       result["static state"] = rest.summary;
     if (!modes.list.empty())

@@ -61,7 +61,7 @@ namespace Voussoir
         mesh     = make_mesh(model);
         arch_directions.clear();
         cantilever_directions.clear();
-        envelopes.assign(6 * mesh->n_nodes(), 0.);
+        envelopes.assign(n_values * mesh->n_nodes(), 0.);
         for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
           {
             const Tensor<1, 3> n = mesh->normal(node);
@@ -69,8 +69,8 @@ namespace Voussoir
             arch /= arch.norm();
             arch_directions.push_back(arch);
             cantilever_directions.push_back(cross_product_3d(n, arch));
-            for (unsigned int c = 0; c < 6; ++c)
-              envelopes[6 * node + c] =
+            for (unsigned int c = 0; c < n_extremes; ++c)
+              envelopes[n_values * node + c] =
                 (is_largest(c) ? -1. : 1.) * std::numeric_limits<double>::max();
           }
       }
@@ -84,13 +84,22 @@ namespace Voussoir
         const std::vector<double> now = stresses(state.displacement);
         if (schedule.due(state.step))
           for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
-            for (unsigned int c = 0; c < 6; ++c)
+            for (unsigned int c = 0; c < n_extremes; ++c)
               {
-                double      &envelope = envelopes[6 * node + c];
+                double      *values   = &envelopes[n_values * node];
+                double      &envelope = values[c];
                 const double value    = now[4 * node + (c < 4 ? c / 2 : c - 2)];
-                envelope = is_largest(c) ? std::max(envelope, value) :
-                                           std::min(envelope, value);
+                if (is_largest(c) ? !(value <= envelope) : !(value >= envelope))
+                  {
+                    envelope               = value; // a NaN stays
+                    values[n_extremes + c] = state.time;
+                  }
               }
+        if (state.step == 0)
+          for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
+            std::copy_n(&now[4 * node],
+                        4,
+                        &envelopes[n_values * node + 2 * n_extremes]);
         if (picture)
           pictures.add(state.time,
                        mesh->write({"arch_stress_MPa",
@@ -110,24 +119,34 @@ namespace Voussoir
                      "largest_cantilever_stress_MPa",
                      "smallest_cantilever_stress_MPa",
                      "largest_principal_stress_MPa",
-                     "smallest_principal_stress_MPa"},
+                     "smallest_principal_stress_MPa",
+                     "time_of_largest_arch_stress_s",
+                     "time_of_smallest_arch_stress_s",
+                     "time_of_largest_cantilever_stress_s",
+                     "time_of_smallest_cantilever_stress_s",
+                     "time_of_largest_principal_stress_s",
+                     "time_of_smallest_principal_stress_s",
+                     "arch_stress_at_start_MPa",
+                     "cantilever_stress_at_start_MPa",
+                     "largest_principal_stress_at_start_MPa",
+                     "smallest_principal_stress_at_start_MPa"},
                     envelopes,
                     "face_stress_envelopes",
                     state.time);
-        static const std::array<std::string, 6> names{
+        static const std::array<std::string, n_extremes> names{
           {"largest arch stress [MPa]",
            "smallest arch stress [MPa]",
            "largest cantilever stress [MPa]",
            "smallest cantilever stress [MPa]",
            "largest principal stress [MPa]",
            "smallest principal stress [MPa]"}};
-        for (unsigned int c = 0; c < 6; ++c)
+        for (unsigned int c = 0; c < n_extremes; ++c)
           {
             double extreme = -std::numeric_limits<double>::max();
             for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
-              extreme =
-                std::max(extreme,
-                         (is_largest(c) ? 1. : -1.) * envelopes[6 * node + c]);
+              extreme = std::max(extreme,
+                                 (is_largest(c) ? 1. : -1.) *
+                                   envelopes[n_values * node + c]);
             extreme = Utilities::MPI::max(extreme, mesh->communicator());
             summary["face stresses"][names[c]] =
               is_largest(c) ? extreme : -extreme;
@@ -140,9 +159,10 @@ namespace Voussoir
         const auto                         names = split_list(sets);
         std::map<std::string, KeyedValues> values;
         for (const std::string &name : names)
-          values[name].width = 6;
+          values[name].width = n_values;
         for (const auto &[set, key, node] : mesh->keys())
-          values[names[set]].items.emplace_back(key, &envelopes[6 * node]);
+          values[names[set]].items.emplace_back(key,
+                                                &envelopes[n_values * node]);
         return values;
       }
 
@@ -154,7 +174,10 @@ namespace Voussoir
           model, split_list(sets), place, "face_set", model.names.face_sets);
       }
 
-      /** Of the six envelopes every other one, from the first, is a largest
+      static constexpr unsigned int n_extremes = 6,
+                                    n_values   = 2 * n_extremes + 4;
+
+      /** Of the extremes every other one, from the first, is a largest
        *  value. */
       static bool
       is_largest(const unsigned int c)
@@ -195,13 +218,15 @@ namespace Voussoir
       std::vector<Tensor<1, 3>> arch_directions, cantilever_directions;
 
       // of each node: largest and smallest arch stress, cantilever stress,
-      // largest principal stress at its largest, smallest at its smallest [MPa]
+      // largest principal stress at its largest, smallest at its smallest
+      // [MPa]; when they were [s]; and the four stresses at t = 0 [MPa]
       std::vector<double> envelopes;
     };
 
     const Registry<Observer>::Add<FaceStresses> registered(
       "face stresses",
       "Arch, cantilever and principal stresses on the faces of the dam: "
-      "pictures in face_stresses.pvd, extremes in face_stress_envelopes.vtu.");
+      "pictures in face_stresses.pvd, extremes, their times and the start in "
+      "face_stress_envelopes.vtu.");
   } // namespace
 } // namespace Voussoir

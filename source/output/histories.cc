@@ -30,8 +30,9 @@ namespace Voussoir
       {
         recorder.declare_parameters(
           prm,
-          "Name of the point whose motion is subtracted, which the headings "
-          "then say; empty for absolute motion.");
+          "Name of the point whose motion is subtracted from that of the "
+          "others, which the headings then say; its own stays absolute. Empty "
+          "for absolute motion.");
         prm.add_parameter("Quantities",
                           quantities,
                           "What to write: displacement [m], velocity [m/s], "
@@ -75,18 +76,16 @@ namespace Voussoir
           filter_frequency > 0. ? filter_frequency : model.carried_frequency;
         recorder.prepare(model, interval, 0.443 / filtered_at);
         largest.assign(recorder.points().size(), {});
-        const std::string relative =
-          recorder.reference() < 0 ?
-            "" :
-            " relative to " + recorder.points()[recorder.reference()].name;
         std::vector<std::string> columns;
-        for (const NamedPoint &point : recorder.points())
+        for (unsigned int p = 0; p < recorder.points().size(); ++p)
           for (unsigned int d = 0; d < 3; ++d)
             for (unsigned int k = 0; k < n_quantities; ++k)
               if (wanted(k))
-                columns.push_back(point.name + ' ' + all_quantities[k].name +
-                                  ' ' + "xyz"[d] + relative + " [" +
-                                  all_quantities[k].unit + ']');
+                columns.push_back(
+                  recorder.points()[p].name + ' ' + all_quantities[k].name +
+                  ' ' + "xyz"[d] +
+                  (is_relative(p) ? " relative to " + reference_name() : "") +
+                  " [" + all_quantities[k].unit + ']');
         table.open(model.log,
                    model.folder + "/histories.csv",
                    columns,
@@ -121,9 +120,8 @@ namespace Voussoir
               largest[p][2];
             point["largest filtered acceleration [m/s2]"] = largest[p][3];
             point["filtered at [Hz]"]                     = filtered_at;
-            if (recorder.reference() >= 0)
-              point["relative to"] =
-                recorder.points()[recorder.reference()].name;
+            if (is_relative(p))
+              point["relative to"] = reference_name();
           }
       }
 
@@ -144,6 +142,21 @@ namespace Voussoir
       }
 
     private:
+      /** Whether the motion of a point is written relative to another one,
+       * which itself is not. */
+      bool
+      is_relative(const unsigned int point) const
+      {
+        return recorder.reference() >= 0 &&
+               static_cast<int>(point) != recorder.reference();
+      }
+
+      const std::string &
+      reference_name() const
+      {
+        return recorder.points()[recorder.reference()].name;
+      }
+
       bool
       wanted(const unsigned int quantity) const
       {
@@ -165,7 +178,7 @@ namespace Voussoir
                 PointMotion motion = line.points[p];
                 for (unsigned int k = 0; k < n_quantities; ++k)
                   {
-                    if (reference >= 0)
+                    if (is_relative(p))
                       motion[k] -= line.points[reference][k];
                     largest[p][k] = std::max(largest[p][k], motion[k].norm());
                   }

@@ -109,7 +109,7 @@ namespace Voussoir
                {"face stresses", {{"Face sets", sets}}},
                {"interfaces", {}},
                {"histories",
-                {{"Points", point + ": 1 2 -100"},
+                {{"Points", point + ": 1 2 -100; shallow: 1 2 -50"},
                  {"Relative to", point},
                  {"Quantities", "velocity"}}}})
           {

@@ -23,6 +23,11 @@ namespace Voussoir
     /** What enters through the absorbing boundary, or null. */
     std::unique_ptr<IncomingWave> wave;
 
+    /** Accelerations up to the end time in x, y, z [m/s2], every
+     *  `sample_interval` [s]; none where the ground does not move. */
+    std::array<std::vector<double>, 3> accelerations;
+    static constexpr double            sample_interval = 1e-3;
+
     /** The time to which a motion that never ends was followed down from the
      *  free surface, on which it depends a little [s]; 0 otherwise. */
     double followed_to = 0.;

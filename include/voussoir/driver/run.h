@@ -78,6 +78,10 @@ namespace Voussoir
     void
     write_modes() const;
 
+    /** Writes ground_motion.csv. */
+    void
+    write_ground_motion() const;
+
     /** Steps with a line of the energy balance. */
     Schedule
     energy_schedule() const;

@@ -1,6 +1,7 @@
 """Makes a report of one run or of several to compare."""
 
 import argparse
+import concurrent.futures
 import multiprocessing
 import pathlib
 import sys
@@ -39,15 +40,19 @@ def main():
                   interfaces.planes_section, damage.damage_section, motions.energy_section,
                   case.statistics_section)
         # drawing takes nearly all of the time: one process for each core
-        with multiprocessing.get_context("fork").Pool() as pool:
-            pending = [pool.apply_async(make, [runs]) for make in makers]
-            sections = [section for section in (made.get() for made in pending) if section]
+        fork = multiprocessing.get_context("fork")
+        with concurrent.futures.ProcessPoolExecutor(mp_context=fork) as pool:
+            pending = [pool.submit(make, runs) for make in makers]
+            sections = [section for section in (made.result() for made in pending) if section]
         file = options.output or runs[0].folder / "report.html"
         page.write(runs, sections, file)
         if options.pictures:
             page.write_pictures(sections, pathlib.Path(options.pictures))
     except ReportError as error:
         sys.exit(f"voussoir-report: {error}")
+    except concurrent.futures.process.BrokenProcessPool:
+        sys.exit("voussoir-report: a process that draws was ended from outside, perhaps for want of "
+                 "memory; try again with fewer runs.")
     print(f"The report is in {file}")
 
 

@@ -26,8 +26,9 @@ def open_display():
             return
         raise ReportError("There is no display to draw on; install the package xvfb.")
     ours, theirs = os.pipe()
+    # without -noreset nobody could connect for a moment after a process has left
     process = subprocess.Popen(
-        [server, "-displayfd", str(theirs), "-screen", "0", "64x64x24", "-nolisten", "tcp"],
+        [server, "-displayfd", str(theirs), "-screen", "0", "64x64x24", "-nolisten", "tcp", "-noreset"],
         pass_fds=[theirs], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     os.close(theirs)
     with os.fdopen(ours) as pipe:

@@ -6,9 +6,11 @@ import io
 import matplotlib
 import numpy as np
 from matplotlib import ticker
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize, TwoSlopeNorm
 from matplotlib.figure import Figure
+from PIL import Image
 
 from .page import number
 
@@ -32,9 +34,17 @@ class Picture:
         return "data:image/png;base64," + base64.b64encode(self.png).decode()
 
 
-def picture(figure, caption, name=""):
+def picture(figure, caption, name="", shaded=False):
+    """Draws a figure; one that is not shaded with few colours, which makes the page
+    smaller."""
+    figure.set_dpi(DPI)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    image = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
     memory = io.BytesIO()
-    figure.savefig(memory, dpi=DPI, facecolor="white")
+    if not shaded:
+        image = image.quantize(256, dither=Image.Dither.NONE)
+    image.save(memory, "png")
     return Picture(memory.getvalue(), caption, name)
 
 
@@ -72,7 +82,7 @@ def legend_above(axes, n):
     """A legend of several curves, over them."""
     if n < 2:
         return
-    columns = 2 if max(len(text) for text in axes.get_legend_handles_labels()[1]) > 24 else 3
+    columns = 2 if max(len(text) for text in axes.get_legend_handles_labels()[1]) > 15 else 3
     rows = -(-n // columns)
     forward, back = axes.yaxis.get_transform(), axes.yaxis.get_transform().inverted()
     low, high = forward.transform(axes.get_ylim())
@@ -119,7 +129,7 @@ class Scale:
     def bar(self, figure):
         """A colour bar at the bottom, 0.65 inches high with its label."""
         mappable = matplotlib.cm.ScalarMappable(self.norm, self.colours)
-        step = 2 if len(self.levels) > 11 else 1
+        step = 2 if len(self.levels) > 9 else 1
         bar = figure.colorbar(mappable, cax=place(figure, 1.1, 0.5, WIDTH - 1.9, 0.1), label=self.label,
                               extend=self.extend, ticks=self.levels[::step], orientation="horizontal")
         bar.ax.tick_params(labelsize=8)

@@ -130,6 +130,10 @@ def points_of(run):
     return [name for name in names if not name.endswith(" filtered")]
 
 
+def displacement_of(run, point, direction):
+    return column(run, point, "displacement", direction)
+
+
 def acceleration_of(run, point, direction):
     """What the mesh carries of an acceleration: values and what they are relative to."""
     return column(run, point, "filtered acceleration", direction)
@@ -169,35 +173,46 @@ def absolute_peak(run, point, direction):
     return np.abs(values).max()
 
 
+def single_steps_of(run, point, direction):
+    """An acceleration with all that the steps have, of a run that wrote no other."""
+    return (None if acceleration_of(run, point, direction)
+            else column(run, point, "acceleration", direction))
+
+
+# quantity, factor to its unit, its unit, how it is read
+MOTIONS = (("displacement", 100., "cm", displacement_of),
+           ("acceleration", 1. / GRAVITY, "g", acceleration_of),
+           ("single-step acceleration", 1. / GRAVITY, "g", single_steps_of))
+
+
+def motion_picture(runs, point, direction, quantity, factor, unit, read):
+    """A history in all runs, or None if there is none but round-off."""
+    found = [(run, read(run, point, direction)) for run in runs if point in points_of(run)]
+    found = [(run, *values) for run, values in found if values]
+    if max((np.abs(values).max() for _, values, _ in found), default=0.) < 1e-9:
+        return None
+    figure, axes = charts.new_figure(2.5)
+    charts.lines(axes, [(run.label, run.table("histories.csv").time, factor * values)
+                        for run, values, _ in found],
+                 f"{point}, {direction} ({DIRECTIONS[direction]}){found[0][2]}", "time [s]",
+                 f"{quantity} [{unit}]", zero=True)
+    return charts.picture(figure, f"{point}: {quantity} {direction}", f"{point}_{quantity}_{direction}")
+
+
 def motion_section(runs):
-    names = list(dict.fromkeys(point for run in runs for point in points_of(run)))
-    pictures = []
-    for point in names:
-        for direction, where in DIRECTIONS.items():
-            for quantity, factor, unit, read in (
-                    ("displacement", 100., "cm", lambda run: column(run, point, "displacement", direction)),
-                    ("acceleration", 1. / GRAVITY, "g", lambda run: acceleration_of(run, point, direction)),
-                    ("single-step acceleration", 1. / GRAVITY, "g",
-                     lambda run: None if acceleration_of(run, point, direction)
-                     else column(run, point, "acceleration", direction))):
-                found = [(run, read(run)) for run in runs if point in points_of(run)]
-                found = [(run, *values) for run, values in found if values]
-                if not found or not any(np.any(values) for _, values, _ in found):
-                    continue
-                figure, axes = charts.new_figure(2.5)
-                charts.lines(axes, [(run.label, run.table("histories.csv").time, factor * values)
-                                    for run, values, _ in found],
-                             f"{point}, {direction} ({where}){found[0][2]}", "time [s]",
-                             f"{quantity} [{unit}]", zero=True)
-                pictures.append(charts.picture(figure, f"{point}: {quantity} {direction}",
-                                               f"{point}_{quantity}_{direction}"))
+    names = dict.fromkeys(point for run in runs for point in points_of(run))
+    pictures = [motion_picture(runs, point, direction, *motion)
+                for point in names for direction in DIRECTIONS for motion in MOTIONS]
+    pictures = [picture for picture in pictures if picture]
     if not pictures:
         return None
     carried = {values["filtered at [Hz]"] for run in runs
                for values in run.summary.get("histories", {}).values()}
-    text = ("Displacements include those of the static state. Accelerations are without what lies above "
-            f"the frequencies that the mesh carries ({' or '.join(number(f) for f in sorted(carried))} Hz); "
-            "those of single steps have all of it, and show cracks and joints that clap.")
+    at_rest = any(run.list("Static state/Stages", ";") for run in runs)
+    text = (("Displacements include those of the static state. " if at_rest else "")
+            + "Accelerations are without what lies above the frequencies that the mesh carries "
+            f"({' or '.join(number(f) for f in sorted(carried))} Hz); those of single steps have all of "
+            "it, and show cracks and joints that clap.")
     return Section("Motion of the crest and other points",
                    [part for part in (text, amplification_table(runs), Pictures(pictures)) if part])
 

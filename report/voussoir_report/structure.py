@@ -20,7 +20,7 @@ def framed(image, caption, name, scale=None):
     axes.set_axis_off()
     if scale:
         scale.bar(figure)
-    return charts.picture(figure, caption, name)
+    return charts.picture(figure, caption, name, shaded=True)
 
 
 def rock_faces(dam):

@@ -209,7 +209,8 @@ def headline_section(runs):
     table = comparison(runs, [
         ("first natural frequency [Hz]", first_frequency),
         ("peak of the input motion [g]", ground_peaks),
-        ("largest displacement relative to the base, with the static one [cm]", of_moved("largest displacement [m]", 100.)),
+        ("largest displacement relative to the base, with the static one [cm]",
+         of_moved("largest displacement [m]", 100.)),
         ("largest acceleration relative to the base, filtered [g]",
          of_moved("largest filtered acceleration [m/s2]", 1. / GRAVITY)),
         ("largest arch tension on the faces [MPa]", of_summary("face stresses/largest arch stress [MPa]")),

@@ -17,7 +17,8 @@ from .page import number
 matplotlib.rcParams.update({"font.size": 9.5, "axes.grid": True, "grid.alpha": 0.3,
                             "axes.axisbelow": True, "lines.linewidth": 1.,
                             "legend.fontsize": 8.5, "axes.titlesize": 9.5,
-                            "xtick.labelsize": 9., "ytick.labelsize": 9., "axes.spines.top": False, "axes.spines.right": False})
+                            "xtick.labelsize": 9., "ytick.labelsize": 9., "axes.spines.top": False,
+                            "axes.spines.right": False})
 
 WIDTH = 5.0  # [in], so that the letters can be read on a phone
 DPI = 150
@@ -107,7 +108,7 @@ class Scale:
     def __init__(self, values, label, cut=0.005, colours=None, low=None, high=None):
         if low is None or high is None:
             values = np.concatenate([np.ravel(v) for v in values])
-            values = values[np.isfinite(values)]
+            values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
             low = np.quantile(values, cut) if low is None else low
             high = np.quantile(values, 1. - cut) if high is None else high
         if high - low < 1e-12 * max(abs(low), abs(high), 1e-30):
@@ -151,10 +152,10 @@ def mark_largest(axes, places, values, unit, largest):
     at = np.argmax(values) if largest else np.argmin(values)
     x, y = places[at]
     axes.plot(x, y, "o", color="black", markersize=3.5, markerfacecolor="none")
-    middle = 0.5 * sum(axes.get_xlim())
+    is_left, is_low = x < 0.5 * sum(axes.get_xlim()), y < 0.5 * sum(axes.get_ylim())
     axes.annotate(f"{number(values[at])} {unit}", (x, y), fontsize=8.5,
-                  xytext=(6 if x < middle else -6, 6 if y < sum(axes.get_ylim()) / 2. else -11), textcoords="offset points",
-                  ha="left" if x < middle else "right",
+                  xytext=(6 if is_left else -6, 6 if is_low else -11),
+                  textcoords="offset points", ha="left" if is_left else "right",
                   bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.75})
 
 

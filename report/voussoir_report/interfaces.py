@@ -49,8 +49,8 @@ def opening_sections(runs):
     for run, opening in zip(runs, values):
         panels = [(name.removeprefix("joint "), list(joint_corners(run, name)[..., 1:]),
                    opening[surfaces_of(run)[name]].mean(axis=1)) for name in joints_of(run)]
-        pictures.append(charts.sections_map(panels, scale, f"{run.prefix}The joints from the side, from "
-                                            "the right bank to the left, upstream on the left", f"opening_{run.label}"))
+        caption = f"{run.prefix}The joints from the side, from the right bank to the left, upstream on the left"
+        pictures.append(charts.sections_map(panels, scale, caption, f"opening_{run.label}"))
     return pictures
 
 

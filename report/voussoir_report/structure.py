@@ -49,8 +49,7 @@ def mesh_picture(run):
     direction, where = (((-1., -0.5, 0.3), "the right bank") if dam.is_slice
                         else (FROM_DOWNSTREAM, "downstream and above"))
     image = scenes.draw(actors, dam.points, direction, zoom=0.85)
-    return framed(image, f"{run.prefix}The mesh, seen from {where}", f"mesh_{run.label}",
-                  scale)
+    return framed(image, f"{run.prefix}The mesh, seen from {where}", f"mesh_{run.label}", scale)
 
 
 def mesh_section(runs):
@@ -61,7 +60,8 @@ def mesh_section(runs):
     def of(of_dam, function):
         def text(run):
             dam = dam_of(run)
-            return function(dam, dam.cells if of_dam else dam.others) if of_dam or len(dam.others) else None
+            cells = dam.cells if of_dam else dam.others
+            return function(dam, cells) if len(cells) else None
         return text
 
     def edges(dam, cells):
@@ -70,7 +70,7 @@ def mesh_section(runs):
 
     rows = []
     for of_dam, where in ((True, "dam"), (False, "rock and water")):
-        rows += [(f"{where}: cells", of(of_dam, lambda dam, cells: number(len(cells)))),
+        rows += [(f"{where}: cells, as drawn", of(of_dam, lambda dam, cells: number(len(cells)))),
                  (f"{where}: edges [m]", of(of_dam, edges)),
                  (f"{where}: worst {SCALED_JACOBIAN}",
                   of(of_dam, lambda dam, cells: number(dam.grid.quality[cells].min()))),
@@ -94,7 +94,7 @@ def modes_section(runs):
         for n, mode in enumerate(run.summary["modes"]["modes"], 1):
             rows.append([str(n), number(mode["frequency [Hz]"], 4), number(mode["period [s]"]),
                          *(number(100. * share) for share in mode["effective mass [-]"]),
-                         *(number(100. * share, 3) for share in mode["cumulative effective mass [-]"])])
+                         *(number(100. * share) for share in mode["cumulative effective mass [-]"])])
         parts.append(Table(["mode", "frequency [Hz]", "period [s]", "effective mass x [%]", "y [%]",
                             "z [%]", "up to here x [%]", "y [%]", "z [%]"], rows,
                            run.label if len(runs) > 1 else ""))
@@ -123,7 +123,9 @@ def mode_pictures(run, most=6):
 def opened_section(runs):
     """The dam with its motion since the start magnified, when its joints were widest open."""
     pictures = [picture for picture in (opened_picture(run) for run in runs) if picture]
-    return Section("The dam with its joints open", [Pictures(pictures, min(len(pictures), 2))]) if pictures else None
+    if not pictures:
+        return None
+    return Section("The dam with its joints open", [Pictures(pictures, min(len(pictures), 2))])
 
 
 def opened_picture(run):

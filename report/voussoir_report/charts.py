@@ -62,29 +62,42 @@ def place(figure, left, bottom, width, height):
     return figure.add_axes((left / across, bottom / upwards, width / across, height / upwards))
 
 
-def lines(axes, curves, title="", x="", y="", zero=False, bottom=None, log=False):
-    """Curves (label, x, y), with a line at zero, or with the axis from @p bottom on."""
+def lines(axes, curves, title="", x="", y="", zero=False, limits=None, log=False):
+    """Curves (label, x, y), with a line at zero, or with the axis between limits."""
     cycle_colours(axes, len(curves))
     for label, xs, ys in curves:
         axes.plot(xs, ys, label=label)
+    finish(axes, title, x, y, zero, limits, log)
+
+
+def lines_of_runs(axes, curves, title="", x="", y="", zero=False):
+    """Curves (run, x, y), each run in its colour in all charts."""
+    for run, xs, ys in curves:
+        axes.plot(xs, ys, color=f"C{run.place % 10}", label=run.title_in_chart)
+    finish(axes, title, x, y, zero)
+
+
+def finish(axes, title, x, y, zero, limits=None, log=False):
+    """What stands around curves."""
     axes.set(xlabel=x, ylabel=y)
     axes.set_title(title, loc="left")
     axes.margins(x=0)
     if zero:
         axes.axhline(0., color="0.4", linewidth=0.6)
-    if bottom is not None:
-        axes.set_ylim(bottom=bottom)
+    if limits is not None:
+        axes.set_ylim(limits)
     if log:
         axes.set_yscale("log")
-    legend_above(axes, len(curves))
+    legend_above(axes)
 
 
-def legend_above(axes, n):
-    """A legend of several curves, over them."""
-    if n < 2:
+def legend_above(axes):
+    """A legend of the curves that have names, over them."""
+    names = axes.get_legend_handles_labels()[1]
+    if not names:
         return
-    columns = 2 if max(len(text) for text in axes.get_legend_handles_labels()[1]) > 15 else 3
-    rows = -(-n // columns)
+    columns = 2 if max(len(name) for name in names) > 15 else 3
+    rows = -(-len(names) // columns)
     forward, back = axes.yaxis.get_transform(), axes.yaxis.get_transform().inverted()
     low, high = forward.transform(axes.get_ylim())
     axes.set_ylim(top=back.transform(high + 0.09 * rows * (high - low)))
@@ -111,6 +124,8 @@ class Scale:
             values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
             low = np.quantile(values, cut) if low is None else low
             high = np.quantile(values, 1. - cut) if high is None else high
+            if colours is None and -0.05 * low > high > 0.:
+                high = 0.  # as good as no tension
         if high - low < 1e-12 * max(abs(low), abs(high), 1e-30):
             high = low + max(abs(low), 1.) * 1e-3
         self.label = label

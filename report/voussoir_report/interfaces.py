@@ -54,8 +54,8 @@ def opening_sections(runs):
     return pictures
 
 
-def opening_profile(run):
-    """Largest opening of each joint over the elevation."""
+def opening_profile(run, most):
+    """Largest opening of each joint over the elevation, up to @p most [mm]."""
     figure, axes = charts.new_figure(3.4)
     charts.cycle_colours(axes, len(joints_of(run)))
     for name in joints_of(run):
@@ -66,19 +66,25 @@ def opening_profile(run):
         np.maximum.at(largest, row.reshape(-1), grid_of(run, FILE).values["largest_opening_mm"][points])
         axes.plot(largest, levels, label=name, marker=".", markersize=3)
     axes.set(xlabel="largest opening over the thickness [mm]", ylabel="elevation [m]")
-    axes.set_xlim(left=0.)
+    axes.set_xlim(0., max(1.05 * most, 1e-3))
     axes.set_title(run.title_in_chart, loc="left")
     axes.legend(ncols=2, frameon=False)
     return charts.picture(figure, "Profiles of the largest opening", f"profile_{run.label}")
 
 
-def history(run, names, quantity, unit, title):
-    """A quantity of several surfaces over time."""
+def history(run, names, quantity, title, most):
+    """An opening or a slip of several surfaces over time, up to @p most [mm]."""
     table = run.table("interfaces.csv")
     figure, axes = charts.new_figure(3.)
-    charts.lines(axes, [(name, table.time, table[f"{name} {quantity} [{unit}]"]) for name in names],
-                 run.title_in_chart, "time [s]", f"{quantity} [{unit}]", bottom=0.)
+    charts.lines(axes, [(name, table.time, table[f"{name} {quantity} [mm]"]) for name in names],
+                 run.title_in_chart, "time [s]", f"{quantity} [mm]", limits=(0., max(1.05 * most, 1e-3)))
     return charts.picture(figure, title, f"{quantity.replace(' ', '_')}_{run.label}")
+
+
+def most_of(runs, names_of, quantity):
+    """The largest opening or slip of surfaces in all runs [mm]."""
+    return max(run.table("interfaces.csv")[f"{name} {quantity} [mm]"].max()
+               for run in runs for name in names_of(run))
 
 
 def surfaces_table(runs, names_of):
@@ -108,12 +114,13 @@ def joints_section(runs):
     if not runs:
         return None
     columns = max(2, min(len(runs), 3))
+    most = most_of(runs, joints_of, "largest opening")
     text = ("Openings are the largest over the run at each place; an opening of zero is a joint that "
             "stayed closed. Where keys hold the joint there is no sliding safety.")
     return Section("Joints", [
         text, surfaces_table(runs, joints_of),
-        Pictures(opening_sections(runs) + [opening_profile(run) for run in runs]
-                 + [history(run, joints_of(run), "largest opening", "mm", "Largest opening of each joint")
+        Pictures(opening_sections(runs) + [opening_profile(run, most) for run in runs]
+                 + [history(run, joints_of(run), "largest opening", "Largest opening of each joint", most)
                     for run in runs], columns)])
 
 
@@ -168,9 +175,9 @@ def planes_section(runs):
         if planes:
             pictures.append(safety_picture(run, planes, "Sliding safety of each plane; red: one",
                                            "plane_safety"))
-        pictures.append(history(run, planes_of(run), "largest slip", "mm", "Largest slip of each plane"))
-        pictures.append(history(run, planes_of(run), "largest opening", "mm",
-                                "Largest opening of each plane"))
+        for quantity in ("largest slip", "largest opening"):
+            pictures.append(history(run, planes_of(run), quantity, f"{quantity.capitalize()} of each plane",
+                                    most_of(runs, planes_of, quantity)))
     text = ("The safety of a block is that of limit equilibrium under the contact forces on all its "
             "planes; that of a plane is what friction and cohesion could bear over its shear force, "
             "point by point. A gap in a curve means that nothing drives the block, or that its way is "

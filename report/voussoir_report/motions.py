@@ -70,14 +70,14 @@ def spectrum_table(runs):
                   *(f"{period:g} s" for period in ROUND_PERIODS)], rows)
 
 
-def target_curve(run, direction):
-    """The spectrum that an artificial motion follows, as a curve, or nothing."""
-    target = run.summary.get("target spectrum", {})
-    values = target.get(f"{direction} [m/s2]")
-    if values is None:
-        return []
-    return [(f"target of {run.label}, {100. * target['damping ratio']:g} %",
-             target["periods [s]"], np.array(values) / GRAVITY)]
+def draw_targets(axes, runs, direction):
+    """The spectra that artificial motions follow, dashed."""
+    for run in runs:
+        target = run.summary.get("target spectrum", {})
+        if f"{direction} [m/s2]" in target:
+            axes.plot(target["periods [s]"], np.array(target[f"{direction} [m/s2]"]) / GRAVITY,
+                      color=f"C{run.place % 10}", linestyle="--",
+                      label=f"{run.prefix}target, {100. * target['damping ratio']:g} %")
 
 
 def input_section(runs):
@@ -90,17 +90,17 @@ def input_section(runs):
         if not moved:
             continue
         figure, axes = charts.new_figure()
-        charts.lines(axes, [(run.label, ground_motion(run).time,
-                             ground_motion(run).acceleration[direction] / GRAVITY)
-                            for run in moved],
-                     f"{direction}, {DIRECTIONS[direction]}", "time [s]", "acceleration [g]", zero=True)
+        charts.lines_of_runs(axes, [(run, ground_motion(run).time,
+                                     ground_motion(run).acceleration[direction] / GRAVITY)
+                                    for run in moved],
+                             f"{direction}, {DIRECTIONS[direction]}", "time [s]", "acceleration [g]", zero=True)
         pictures.append(charts.picture(figure, f"Input acceleration {direction}", f"input_{direction}"))
         figure, axes = charts.new_figure()
-        curves = [(run.label, PERIODS, ground_motion(run).spectra[direction] / GRAVITY)
-                  for run in moved]
-        charts.lines(axes, curves + target_curve(moved[0], direction),
-                     f"{direction}, {DIRECTIONS[direction]}, {100. * DAMPING:g} % damping",
-                     "period [s]", "pseudo-acceleration [g]")
+        draw_targets(axes, moved, direction)
+        curves = [(run, PERIODS, ground_motion(run).spectra[direction] / GRAVITY) for run in moved]
+        charts.lines_of_runs(axes, curves,
+                             f"{direction}, {DIRECTIONS[direction]}, {100. * DAMPING:g} % damping",
+                             "period [s]", "pseudo-acceleration [g]")
         axes.set_xscale("log")
         axes.set_xticks([0.03, 0.1, 0.3, 1., 3.], ["0.03", "0.1", "0.3", "1", "3"])
         axes.set_ylim(bottom=0.)
@@ -141,22 +141,22 @@ def acceleration_of(run, point, direction):
 
 def amplification_table(runs):
     """Peaks of absolute accelerations over those of the input."""
-    rows = []
-    for run in runs:
-        motion = ground_motion(run)
-        for point in points_of(run) if motion else []:
-            cells = []
-            for direction, ground in motion.acceleration.items():
-                largest = absolute_peak(run, point, direction)
-                cells.append("–" if largest is None else
-                             f"{number(largest / GRAVITY)} g, {number(largest / np.abs(ground).max())}")
-            if any(cell != "–" for cell in cells):
-                rows.append([f"{run.prefix}{point}", *cells])
-    if not rows:
-        return None
-    head = ["point", *(f"{d}, {DIRECTIONS[d]}" for d in ground_motion(runs[0]).acceleration)]
-    return Table(head, rows, "Peak of the absolute acceleration, and how many times the peak of the "
-                             "input motion that is.")
+    moving = [run for run in runs if ground_motion(run)]
+    directions = [d for d in DIRECTIONS if any(d in ground_motion(run).acceleration for run in moving)]
+
+    def cell(run, point, direction):
+        ground = ground_motion(run).acceleration.get(direction)
+        largest = absolute_peak(run, point, direction)
+        if ground is None or largest is None:
+            return "–"
+        return f"{number(largest / GRAVITY)} g, {number(largest / np.abs(ground).max())}"
+
+    rows = [[f"{run.prefix}{point}", *(cell(run, point, d) for d in directions)]
+            for run in moving for point in points_of(run)]
+    rows = [row for row in rows if set(row[1:]) != {"–"}]
+    return Table(["point", *(f"{d}, {DIRECTIONS[d]}" for d in directions)], rows,
+                 "Peak of the absolute acceleration, and how many times the peak of the input motion "
+                 "that is.") if rows else None
 
 
 def absolute_peak(run, point, direction):
@@ -192,10 +192,10 @@ def motion_picture(runs, point, direction, quantity, factor, unit, read):
     if max((np.abs(values).max() for _, values, _ in found), default=0.) < 1e-9:
         return None
     figure, axes = charts.new_figure(2.5)
-    charts.lines(axes, [(run.label, run.table("histories.csv").time, factor * values)
-                        for run, values, _ in found],
-                 f"{point}, {direction} ({DIRECTIONS[direction]}){found[0][2]}", "time [s]",
-                 f"{quantity} [{unit}]", zero=True)
+    charts.lines_of_runs(axes, [(run, run.table("histories.csv").time, factor * values)
+                                for run, values, _ in found],
+                         f"{point}, {direction} ({DIRECTIONS[direction]}){found[0][2]}", "time [s]",
+                         f"{quantity} [{unit}]", zero=True)
     return charts.picture(figure, f"{point}: {quantity} {direction}", f"{point}_{quantity}_{direction}")
 
 

@@ -70,7 +70,9 @@ class Run:
             raise ReportError(f'"{folder}" is not the output folder of a run, as it holds no '
                               "parameters.prm; name the folder that holds summary.json.")
         self.label = label or self.folder.resolve().name
-        self.prefix = self.title_in_chart = ""  # said where there are several runs
+        # said where there are several runs
+        self.prefix = self.title_in_chart = ""
+        self.place = 0
         self.parameters, self.changed = read_parameters(self.read("parameters.prm"))
         self.summary = self._read_summary()
         self.log = self.read("log.txt") if self.has("log.txt") else ""
@@ -122,7 +124,8 @@ class Run:
     @property
     def own_entries(self):
         """What is not the default, as --set takes it."""
-        return "\n".join(f"{path} = {self.parameters[path]}" for path in self.changed)
+        return "\n".join(f"{path} = {self.parameters[path]}" for path in self.changed
+                         if path != "Output/Folder")
 
     def has(self, name):
         return (self.folder / name).is_file()
@@ -172,10 +175,9 @@ def read_runs(arguments):
         else:
             runs.append(Run(argument))
     if len(runs) > 1:
-        for run in runs:
-            run.prefix, run.title_in_chart = f"{run.label}: ", run.label
-    labels = [run.label for run in runs]
-    for run in runs:
-        if labels.count(run.label) > 1:
-            run.label = str(run.folder)
+        labels = [run.label for run in runs]
+        for number, run in enumerate(runs):
+            if labels.count(run.label) > 1:
+                run.label = str(run.folder)
+            run.prefix, run.title_in_chart, run.place = f"{run.label}: ", run.label, number
     return runs

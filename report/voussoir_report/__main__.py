@@ -33,6 +33,8 @@ def main():
                  "and python3-jinja2.")
     try:
         runs = read_runs(options.runs)
+        file = pathlib.Path(options.output or runs[0].folder / "report.html")
+        page.check(file)
         scenes.open_display()
         makers = (case.headline_section, case.case_section, structure.mesh_section,
                   structure.modes_section, motions.input_section, motions.motion_section,
@@ -44,7 +46,6 @@ def main():
         with concurrent.futures.ProcessPoolExecutor(mp_context=fork) as pool:
             pending = [pool.submit(make, runs) for make in makers]
             sections = [section for section in (made.result() for made in pending) if section]
-        file = options.output or runs[0].folder / "report.html"
         page.write(runs, sections, file)
         if options.pictures:
             page.write_pictures(sections, pathlib.Path(options.pictures))

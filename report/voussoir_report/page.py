@@ -2,6 +2,8 @@
 
 import dataclasses
 import datetime
+import importlib.util
+import os
 import pathlib
 import re
 
@@ -89,27 +91,27 @@ def to_html(runs, sections):
         runs=runs, sections=sections, date=datetime.date.today().isoformat())
 
 
+def check(file):
+    """Refuses a page, whose name ends in .html or .pdf, that cannot be written."""
+    if not os.access(file if file.exists() else file.parent, os.W_OK) or file.is_dir():
+        raise ReportError(f'"{file}" cannot be written; choose another file with --output.')
+    if file.suffix == ".pdf" and importlib.util.find_spec("weasyprint") is None:
+        raise ReportError("A PDF needs the package weasyprint; install it, or write HTML "
+                          "and print that from a browser.")
+
+
 def write(runs, sections, file):
     """Writes the page; its name ends in .html or .pdf."""
-    file = pathlib.Path(file)
     text = to_html(runs, sections)
     try:
         if file.suffix == ".pdf":
-            write_pdf(text, file)
+            import weasyprint
+            weasyprint.HTML(string=text).write_pdf(file)
         else:
             file.write_text(text, encoding="utf-8")
     except OSError as error:
         raise ReportError(f'"{file}" cannot be written: {error.strerror}; '
                           "choose another file with --output.") from None
-
-
-def write_pdf(text, file):
-    try:
-        import weasyprint
-    except ImportError:
-        raise ReportError("A PDF needs the package weasyprint; install it, or write HTML "
-                          "and print that from a browser.") from None
-    weasyprint.HTML(string=text).write_pdf(file)
 
 
 def write_pictures(sections, folder):

@@ -234,10 +234,12 @@ def check_refusals(scratch, wall):
     broken = scratch / "broken"
     shutil.copytree(wall, broken)
     (broken / "summary.json").write_text((wall / "summary.json").read_text()[:300])
-    for folder, words in ((scratch / "none", "There is no folder"),
-                          (scratch / "empty", "is not the output folder of a run"),
-                          (half, "has not ended"), (broken, "cannot be read")):
-        answer = run_report(folder)
+    for folder, words, options in (
+            (scratch / "none", "There is no folder", ()),
+            (scratch / "empty", "is not the output folder of a run", ()),
+            (half, "has not ended", ()), (broken, "cannot be read", ()),
+            (wall, "cannot be written", ("-o", scratch / "none" / "page.html"))):
+        answer = run_report(folder, *options)
         is_true(f"{folder.name}: {words}", answer.returncode == 1 and words in answer.stdout
                 and len(answer.stdout.strip().splitlines()) == 1)
     cut = scratch / "cut"

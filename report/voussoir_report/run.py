@@ -8,6 +8,9 @@ import re
 import numpy as np
 
 
+LOOSE = 5.  # opening at which no softening law of concrete has any strength left [mm]
+
+
 class ReportError(Exception):
     """Something of the user's that makes a report impossible, in one sentence."""
 
@@ -108,13 +111,27 @@ class Run:
         """How the verdict is shown: good, doubt or bad."""
         if self.verdict.startswith("Stopped"):
             return "bad"
-        return "doubt" if self.warnings or self.verdict != "No objection" else "good"
+        doubtful = self.warnings or [*self.remarks] or self.verdict != "No objection"
+        return "doubt" if doubtful else "good"
 
     @property
     def warnings(self):
         """Warnings, and results that are missing."""
         missing = self.summary.get("files not written", {})
         return [*self.summary.get("warnings", []), *(f"not written: {file}" for file in missing)]
+
+    @property
+    def remarks(self):
+        """What the program computes as it is asked to, but an engineer must look at."""
+        opening = max((material.get("largest crack opening [mm]", 0.)
+                       for material in self.summary.get("materials", {}).values()), default=0.)
+        if opening > LOOSE:
+            yield (f"Cracks open by up to {opening:.0f} mm in a cell. There nothing holds them together any "
+                   "more, and parts of the dam may be loose; see the damage before using other figures.")
+        for name, block in self.summary.get("interfaces", {}).get("blocks", {}).items():
+            if block["time at safety one or below [s]"] > 0.:
+                yield (f"The safety of {name} against sliding is at one or below for "
+                       f"{block['time at safety one or below [s]']:.3g} s; see the slip that is left.")
 
     @property
     def notes(self):

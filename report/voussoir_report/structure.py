@@ -150,5 +150,5 @@ def opened_picture(run):
     moved = grid.points[faces] + factor * motion[faces]
     actors = [scenes.quadrilaterals(moved, (0.82, 0.81, 0.77))]
     image = scenes.draw(actors, moved.reshape(-1, 3), FROM_DOWNSTREAM)
-    return framed(image, f"{run.prefix}Motion up to {number(now)} s {factor:g} times, "
+    return framed(image, f"{run.prefix}Motion from the start to {number(now)} s, {factor:g} times, "
                          "seen from downstream and above", f"opened_{run.label}")

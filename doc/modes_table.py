@@ -14,10 +14,10 @@ import tempfile
 
 DAMS = {"Baihetan-like, 289 m": "baihetan_static", "Shapai-like, 132 m": "shapai_static"}
 VARIANTS = {
-    "rigid rock, empty": ("rock", "", "false"),
-    "rigid rock, full": ("rock", "", "true"),
-    "flexible rock, empty": ("", "rock", "false"),
-    "flexible rock, full": ("", "rock", "true"),
+    "rigid rock, empty": ("rock", "", "none"),
+    "rigid rock, full": ("rock", "", "by reservoir"),
+    "flexible rock, empty": ("", "rock", "none"),
+    "flexible rock, full": ("", "rock", "by reservoir"),
 }
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 

@@ -1,8 +1,7 @@
 #include <voussoir/analysis/elastic_solver.h>
+#include <voussoir/analysis/trilinear_cells.h>
 #include <voussoir/base/interruption.h>
 
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_q.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
@@ -34,104 +33,57 @@ namespace Voussoir
 
 
     /** Stiffness of one trilinear cell from the positions of its corners. */
-    class TrilinearCell
+    void
+    find_stiffness(const TrilinearCell           &trilinear,
+                   const std::array<Point<3>, 8> &corners,
+                   const Elasticity              &elasticity,
+                   FullMatrix<double>            &matrix)
     {
-    public:
-      TrilinearCell()
-      {
-        const FE_Q<3>   fe(1);
-        const QGauss<3> quadrature(2);
-        for (unsigned int q = 0; q < 8; ++q)
-          {
-            weight[q] = quadrature.weight(q);
-            for (unsigned int i = 0; i < 8; ++i)
-              gradient[q][i] = fe.shape_grad(i, quadrature.point(q));
-          }
-      }
-
-      void
-      stiffness(const std::array<Point<3>, 8> &corners,
-                const Elasticity              &elasticity,
-                FullMatrix<double>            &matrix) const
-      {
-        matrix = 0.;
-        for (unsigned int q = 0; q < 8; ++q)
-          {
-            Tensor<2, 3> jacobian;
-            for (unsigned int i = 0; i < 8; ++i)
-              jacobian +=
-                outer_product(Tensor<1, 3>(corners[i]), gradient[q][i]);
-            const double       volume  = weight[q] * determinant(jacobian);
-            const Tensor<2, 3> inverse = invert(jacobian);
-            std::array<std::array<SymmetricTensor<2, 3>, 3>, 8> strain, stress;
-            for (unsigned int i = 0; i < 8; ++i)
+      matrix = 0.;
+      trilinear.for_each_point(
+        corners, [&](const double volume, const auto &gradient) {
+          std::array<std::array<SymmetricTensor<2, 3>, 3>, 8> strain, stress;
+          for (unsigned int i = 0; i < 8; ++i)
+            for (unsigned int d = 0; d < 3; ++d)
               {
-                const Tensor<1, 3> g = gradient[q][i] * inverse;
-                for (unsigned int d = 0; d < 3; ++d)
-                  {
-                    Tensor<2, 3> displacement_gradient;
-                    displacement_gradient[d] = g;
-                    strain[i][d] = symmetrize(displacement_gradient);
-                    for (unsigned int c = 0; c < 6; ++c)
-                      stress[i][d] += (c < 3 ? 1. : 2.) * volume *
-                                      strain[i][d].access_raw_entry(c) *
-                                      elasticity[c];
-                  }
+                Tensor<2, 3> displacement_gradient;
+                displacement_gradient[d] = gradient[i];
+                strain[i][d]             = symmetrize(displacement_gradient);
+                for (unsigned int c = 0; c < 6; ++c)
+                  stress[i][d] += (c < 3 ? 1. : 2.) * volume *
+                                  strain[i][d].access_raw_entry(c) *
+                                  elasticity[c];
               }
-            for (unsigned int i = 0; i < 8; ++i)
-              for (unsigned int j = 0; j <= i; ++j)
-                for (unsigned int d = 0; d < 3; ++d)
-                  for (unsigned int e = 0; e < 3; ++e)
-                    matrix(3 * i + d, 3 * j + e) += strain[i][d] * stress[j][e];
-          }
-        for (unsigned int i = 0; i < 24; ++i)
-          for (unsigned int j = i / 3 * 3 + 3; j < 24; ++j)
-            matrix(i, j) = matrix(j, i);
-      }
-
-    private:
-      std::array<double, 8>                      weight;
-      std::array<std::array<Tensor<1, 3>, 8>, 8> gradient;
-    };
+          for (unsigned int i = 0; i < 8; ++i)
+            for (unsigned int j = 0; j <= i; ++j)
+              for (unsigned int d = 0; d < 3; ++d)
+                for (unsigned int e = 0; e < 3; ++e)
+                  matrix(3 * i + d, 3 * j + e) += strain[i][d] * stress[j][e];
+        });
+      for (unsigned int i = 0; i < 24; ++i)
+        for (unsigned int j = i / 3 * 3 + 3; j < 24; ++j)
+          matrix(i, j) = matrix(j, i);
+    }
 
 
-    /** Calls visit(cell material, corner positions, degrees of freedom) for the
+    /** Calls visit(cell, corner positions, their degrees of freedom) for the
      *  trilinear cells between the nodes of each owned cell. */
     template <typename Visit>
     void
     for_each_trilinear_cell(const Discretization &discretization,
                             const Visit          &visit)
     {
-      const auto &scalar =
-        dynamic_cast<const FE_Q<3> &>(discretization.fe.base_element(0));
-      const auto         numbering = scalar.get_poly_space_numbering_inverse();
-      const auto        &points    = scalar.get_unit_support_points();
-      const unsigned int degree = discretization.degree, n = degree + 1;
       std::vector<types::global_dof_index> dofs(24);
-      std::array<Point<3>, 8>              corners;
-      for (const auto &cell :
-           discretization.dof_handler.active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            const auto nodes = discretization.cell_nodes(cell);
-            for (unsigned int k = 0; k < degree; ++k)
-              for (unsigned int j = 0; j < degree; ++j)
-                for (unsigned int i = 0; i < degree; ++i)
-                  {
-                    for (unsigned int v = 0; v < 8; ++v)
-                      {
-                        const unsigned int node =
-                          numbering[(i + (v & 1)) + n * (j + ((v >> 1) & 1)) +
-                                    n * n * (k + (v >> 2))];
-                        corners[v] =
-                          discretization.mapping.transform_unit_to_real_cell(
-                            cell, points[node]);
-                        for (unsigned int d = 0; d < 3; ++d)
-                          dofs[3 * v + d] = 3 * nodes[node] + d;
-                      }
-                    visit(cell, corners, dofs);
-                  }
-          }
+      Voussoir::for_each_trilinear_cell(
+        discretization.dof_handler,
+        dynamic_cast<const FE_Q<3> &>(discretization.fe.base_element(0)),
+        discretization.mapping,
+        [&](const auto &cell) { return discretization.cell_nodes(cell); },
+        [&](const auto &cell, const auto &corners, const auto &nodes) {
+          for (unsigned int i = 0; i < 24; ++i)
+            dofs[i] = 3 * nodes[i / 3] + i % 3;
+          visit(cell, corners, dofs);
+        });
     }
   } // namespace
 
@@ -144,11 +96,13 @@ namespace Voussoir
     const AffineConstraints<double>                       &constraints,
     const NodalTerms                                      *springs,
     Contact                                               *contact,
-    const Vector                                          *displacement)
+    const Vector                                          *displacement,
+    const TiedNodes                                       *ties)
     : discretization(discretization)
     , internal_force(internal_force)
     , springs(springs)
     , constraints(constraints)
+    , ties(ties)
   {
     for (unsigned int i = 0; i < 3 * discretization.n_owned_nodes(); ++i)
       if (constraints.is_constrained(
@@ -168,6 +122,7 @@ namespace Voussoir
     const Contact                                         *contact)
   {
     IndexSet rows = discretization.relevant_dofs;
+    rows.add_indices(constraints.get_local_lines()); // of nodes that lead
     if (contact != nullptr)
       for (const auto node : contact->cluster_nodes())
         rows.add_range(3 * node, 3 * node + 3);
@@ -201,9 +156,10 @@ namespace Voussoir
     for_each_trilinear_cell(
       discretization,
       [&](const auto &cell, const auto &corners, const auto &dofs) {
-        trilinear.stiffness(corners,
-                            elasticities[material_of_cell(cell)],
-                            cell_matrix);
+        find_stiffness(trilinear,
+                       corners,
+                       elasticities[material_of_cell(cell)],
+                       cell_matrix);
         constraints.distribute_local_to_global(cell_matrix, dofs, matrix);
       });
     if (springs != nullptr)
@@ -283,7 +239,8 @@ namespace Voussoir
       matrix,
       diagonal(),
       held,
-      rigid_modes.Values());
+      3,
+      rigid_modes);
   }
 
 
@@ -317,11 +274,22 @@ namespace Voussoir
   void
   ElasticSolver::multiply(Vector &force, const Vector &displacement) const
   {
-    internal_force.apply(force, displacement);
-    if (springs != nullptr)
-      springs->add_to(force, displacement, 0.);
-    if (static_contact)
-      static_contact->add_tangent(force, displacement);
+    const auto respond = [&](const Vector &moved) {
+      internal_force.apply(force, moved);
+      if (springs != nullptr)
+        springs->add_to(force, moved, 0.);
+      if (static_contact)
+        static_contact->add_tangent(force, moved);
+    };
+    if (ties == nullptr)
+      {
+        respond(displacement);
+        return;
+      }
+    tied = displacement;
+    ties->distribute(tied);
+    respond(tied);
+    ties->collect(force);
   }
 
 

@@ -21,7 +21,8 @@ namespace Voussoir
                        TrilinosWrappers::SparseMatrix  &matrix,
                        const Vector                    &diagonal,
                        const std::vector<unsigned int> &held,
-                       double                          *rigid_body_modes)
+                       const unsigned int               n_components,
+                       const Epetra_MultiVector        &near_kernel)
     : finest(apply, diagonal.size())
     , held(held)
     , residual(diagonal)
@@ -30,15 +31,15 @@ namespace Voussoir
     Teuchos::ParameterList list;
     ML_Epetra::SetDefaults("SA", list);
     list.set("ML output", 0);
-    list.set("PDE equations", 3);
+    list.set("PDE equations", int(n_components));
     list.set("aggregation: type", "Uncoupled");
     list.set("aggregation: threshold", 0.02);
     list.set("smoother: type", "Chebyshev");
     list.set("smoother: sweeps", 3);
     list.set("coarse: type", "Amesos-KLU");
     list.set("null space: type", "pre-computed");
-    list.set("null space: dimension", 6);
-    list.set("null space: vectors", rigid_body_modes);
+    list.set("null space: dimension", near_kernel.NumVectors());
+    list.set("null space: vectors", near_kernel.Values());
     // eigenvalues are estimated from random vectors: the same ones every time
     ML_set_random_seed(1);
     coarser.initialize(matrix, list);

@@ -261,10 +261,6 @@ namespace Voussoir
     interfaces.check();
     static_state.check(load_list(), interfaces);
     modes.check(material_names(), boundaries);
-    if (modes.number > 0 && !interfaces.list.empty())
-      throw UserError("Section \"Modes\" asks for natural modes, which a model "
-                      "with \"Interfaces\" does not have, as its joints open "
-                      "and close; compute them without the interfaces.");
     ground_motion.check();
     damping.check(modes.number);
     study.check();

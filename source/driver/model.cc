@@ -16,11 +16,14 @@ namespace Voussoir
   {
     // The water that a mesh may have is a mesh of its own, used or not.
     CoarseMesh
-    take_water(const ReservoirParameters &reservoir, CoarseMesh &mesh)
+    take_water(const Case &parameters, CoarseMesh &mesh)
     {
+      const ReservoirParameters &reservoir = parameters.reservoir;
+      const bool                 wanted = reservoir.model == "compressible" ||
+                          parameters.modes.want_cells_of_water(reservoir);
       std::vector<std::string> sets;
       for (const std::string &set : split_list(reservoir.cell_sets))
-        if (reservoir.model == "compressible" || mesh.cell_sets.count(set) > 0)
+        if (wanted || mesh.cell_sets.count(set) > 0)
           sets.push_back(set);
       if (sets.empty())
         return {};
@@ -178,7 +181,7 @@ namespace Voussoir
     }
 
 
-    std::unique_ptr<const Reservoir>
+    std::shared_ptr<const Reservoir>
     make_reservoir(const Case           &parameters,
                    const CoarseMesh     &water_mesh,
                    const Discretization &discretization,
@@ -187,12 +190,29 @@ namespace Voussoir
     {
       if (parameters.reservoir.model != "compressible")
         return nullptr;
-      return std::make_unique<const Reservoir>(water_mesh,
+      return std::make_shared<const Reservoir>(water_mesh,
                                                parameters.grid,
                                                parameters.reservoir,
                                                discretization,
                                                terms,
                                                log);
+    }
+
+
+    std::shared_ptr<const Reservoir>
+    make_reservoir_of_modes(const Case                             &parameters,
+                            const CoarseMesh                       &water_mesh,
+                            const Discretization                   &solid,
+                            const std::shared_ptr<const Reservoir> &of_the_run,
+                            Log                                    &log)
+    {
+      if (!parameters.modes.want_cells_of_water(parameters.reservoir))
+        return nullptr;
+      if (of_the_run)
+        return of_the_run;
+      NodalTerms unused; // the run does not meet this water
+      return std::make_shared<const Reservoir>(
+        water_mesh, parameters.grid, parameters.reservoir, solid, unused, log);
     }
 
 
@@ -285,7 +305,7 @@ namespace Voussoir
     std::ostringstream report;
     solid = parameters.make_mesh(report);
     log(report.str());
-    water     = take_water(parameters.reservoir, solid);
+    water     = take_water(parameters, solid);
     materials = parameters.material_of_coarse_cells(solid);
     check_parts(parameters, solid, log);
     say_sets_on_interfaces(parameters, solid, log);
@@ -331,6 +351,11 @@ namespace Voussoir
         mass_added_to(terms, discretization, parameters.reservoir, log))
     , reservoir(
         make_reservoir(parameters, meshes.water, discretization, terms, log))
+    , reservoir_of_modes(make_reservoir_of_modes(parameters,
+                                                 meshes.water,
+                                                 discretization,
+                                                 reservoir,
+                                                 log))
     , constraints(prepared_constraints(*this))
     , contact(make_contact(discretization, parameters.interfaces, log))
   {
@@ -402,11 +427,6 @@ namespace Voussoir
                  ", largest step ",
                  reservoir->stable_step(),
                  " s");
-        if (parameters.modes.number > 0 && parameters.modes.water)
-          log.warn("the natural modes are those without water, as compressible "
-                   "water does not move with them; take \"Model = added mass\" "
-                   "in section \"Reservoir\" for modes with water, or say "
-                   "\"Water = false\" in section \"Modes\"");
       }
     check_source_point(log);
   }

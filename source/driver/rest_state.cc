@@ -35,8 +35,23 @@ namespace Voussoir
 
   namespace
   {
+    /** The interfaces with their gaps at rest, or nothing. */
+    std::optional<Contact>
+    contact_at(const RestState &rest, const Model &model)
+    {
+      if (!rest.contact || rest.initial.displacement.size() == 0)
+        return rest.contact;
+      std::optional<Contact> contact(rest.contact);
+      State                  state;
+      state.displacement = rest.initial.displacement;
+      state.velocity     = model.discretization.create_vector();
+      contact->start(state);
+      return contact;
+    }
+
+
     ModalModel
-    modal_model(const Model &model)
+    modal_model(const Model &model, const Contact *contact)
     {
       const Case &parameters = model.parameters;
       return {model.discretization,
@@ -45,7 +60,9 @@ namespace Voussoir
               model.materials,
               model.material_of_cell(),
               parameters.boundaries,
-              model.terms};
+              model.terms,
+              contact,
+              model.reservoir_of_modes.get()};
     }
   } // namespace
 
@@ -54,15 +71,19 @@ namespace Voussoir
   check_modes(const Model &model)
   {
     if (model.parameters.modes.number > 0)
-      check_modes(modal_model(model), model.parameters.modes);
+      check_modes(modal_model(model, model.contact.get()),
+                  model.parameters.modes);
   }
 
 
   Modes
-  find_modes(const Model &model, Log &log)
+  find_modes(const Model &model, const RestState &rest, Log &log)
   {
     if (model.parameters.modes.number == 0)
       return {};
-    return find_modes(modal_model(model), model.parameters.modes, log);
+    const std::optional<Contact> contact = contact_at(rest, model);
+    return find_modes(modal_model(model, contact ? &*contact : nullptr),
+                      model.parameters.modes,
+                      log);
   }
 } // namespace Voussoir

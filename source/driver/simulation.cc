@@ -163,7 +163,10 @@ namespace Voussoir
 
 
     Modes
-    modes_of(const Model &model, const ResultFolder &folder, Log &log)
+    modes_of(const Model        &model,
+             const RestState    &rest,
+             const ResultFolder &folder,
+             Log                &log)
     {
       if (model.parameters.modes.number == 0)
         return {};
@@ -172,7 +175,7 @@ namespace Voussoir
         folder,
         "modes.h5",
         read_modes,
-        [&] { return find_modes(model, log); },
+        [&] { return find_modes(model, rest, log); },
         store_modes,
         log);
     }
@@ -201,7 +204,7 @@ namespace Voussoir
     , model(parameters, log)
     , setup(checked_setup(model, folder, options, log))
     , rest(options.validate ? RestState(model) : rest_of(*setup, folder, log))
-    , modes(options.validate ? Modes() : modes_of(model, folder, log))
+    , modes(options.validate ? Modes() : modes_of(model, rest, folder, log))
     , run(rest,
           modes,
           folder,

@@ -180,7 +180,7 @@ namespace Voussoir
                         (0.5 - s * c / (2. * k) + s * s),
                       2. * tolerance);
         ModeParameters without_water = parameters->modes;
-        without_water.water          = false;
+        without_water.water          = "none";
         const auto dry = compute_modes(*simulation, *parameters, without_water);
         verdicts.near("without water, mode 1 over c/L",
                       2. * numbers::PI * dry.list[0].frequency / base,

@@ -1,36 +1,43 @@
 #ifndef voussoir_analysis_eigensolver_h
 #define voussoir_analysis_eigensolver_h
 
-#include <voussoir/fem/discretization.h>
+#include <mpi.h>
+
+#include <functional>
+#include <vector>
 
 namespace Voussoir
 {
   /**
    * K x = lambda M x with a positive definite stiffness K and a mass M that may
-   * be singular. All three map (result, vector) and keep held entries at zero.
+   * be singular. All three map (result, vector), of which each rank has `size`
+   * entries, and keep held entries at zero.
    */
   struct Eigenproblem
   {
-    using Operator = std::function<void(Vector &, const Vector &)>;
+    using Operator = std::function<void(double *, const double *)>;
 
-    Operator stiffness, mass;
-    Operator precondition; // an approximation of K^-1
+    Operator    stiffness, mass;
+    Operator    precondition; // an approximation of K^-1
+    std::size_t size;         // entries of this rank
+    MPI_Comm    communicator;
   };
 
   /** Eigenpairs from the lowest eigenvalue upwards. */
   struct Eigenpairs
   {
-    std::vector<double> values;
-    std::vector<Vector> vectors;   // x^T M x = 1
-    std::vector<double> residuals; // |K x - lambda M x| / |K x|
-    unsigned int        iterations = 0;
+    std::vector<double>              values;
+    std::vector<std::vector<double>> vectors;   // x^T M x = 1
+    std::vector<double>              residuals; // |K x - lambda M x| / |K x|
+    unsigned int                     iterations = 0;
   };
 
   /**
-   * The lowest eigenpairs by the locally optimal block preconditioned conjugate
-   * gradients of Trilinos (LOBPCG). It works on M x = theta K x, theta =
+   * The lowest eigenpairs by locally optimal block preconditioned conjugate
+   * gradients (LOBPCG, Knyazev 2001). It works on M x = theta K x, theta =
    * 1/lambda, with K as the inner product, so that entries without mass do no
-   * harm.
+   * harm. Vectors that are good enough get no more corrections, and directions
+   * that depend on others are dropped.
    *
    * @param start     the block to begin with, some vectors more than wanted
    * @param number    eigenpairs wanted
@@ -38,10 +45,10 @@ namespace Voussoir
    *   not reach it
    */
   Eigenpairs
-  find_lowest(const Eigenproblem        &problem,
-              const std::vector<Vector> &start,
-              const unsigned int         number,
-              const double               tolerance);
+  find_lowest(const Eigenproblem                &problem,
+              std::vector<std::vector<double>> &&start,
+              const unsigned int                 number,
+              const double                       tolerance);
 } // namespace Voussoir
 
 #endif

@@ -2,6 +2,7 @@
 #define voussoir_analysis_elastic_solver_h
 
 #include <voussoir/analysis/multigrid.h>
+#include <voussoir/analysis/tied_nodes.h>
 #include <voussoir/base/error.h>
 #include <voussoir/constraints/static_contact.h>
 #include <voussoir/fem/internal_force.h>
@@ -32,11 +33,12 @@ namespace Voussoir
   public:
     /**
      * @param constraints hanging nodes and all that is held, see
-     *   Discretization::make_constraints()
+     *   Discretization::make_constraints(), and nodes that follow others
      * @param springs     of the absorbing boundary, or null if it is held
      * @param contact     between parts of the model, which hold together where
      *   they touch at @p displacement until `tangent_contact` says otherwise,
      *   or null
+     * @param ties        those that @p constraints have, or null
      */
     ElasticSolver(
       const Discretization                                  &discretization,
@@ -46,7 +48,8 @@ namespace Voussoir
       const dealii::AffineConstraints<double>               &constraints,
       const NodalTerms                                      *springs,
       Contact                                               *contact = nullptr,
-      const Vector *displacement                                     = nullptr);
+      const Vector    *displacement                                  = nullptr,
+      const TiedNodes *ties                                          = nullptr);
 
     /** The contact whose tangent is part of the stiffness, or null. */
     StaticContact *
@@ -102,6 +105,8 @@ namespace Voussoir
     const InternalForce                     &internal_force;
     const NodalTerms                        *springs;
     const dealii::AffineConstraints<double> &constraints;
+    const TiedNodes                         *ties;
+    mutable Vector                           tied; // the tied displacement
     std::vector<unsigned int>                held; // owned entries
     std::optional<StaticContact>             static_contact;
     dealii::TrilinosWrappers::SparseMatrix   matrix; // until `multigrid` is

@@ -3,8 +3,10 @@
 
 #include <voussoir/base/log.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/constraints/contact.h>
 #include <voussoir/fem/internal_force.h>
 #include <voussoir/loads/boundary_parameters.h>
+#include <voussoir/loads/reservoir.h>
 #include <voussoir/materials/material.h>
 
 #include <nlohmann/json.hpp>
@@ -16,11 +18,17 @@ namespace Voussoir
   {
     unsigned int number = 0;
     std::string  held_materials, massless_materials;
-    bool         water     = true;
-    double       tolerance = 1e-5;
+    std::string  interfaces = "tied where closed";
+    std::string  water      = "by reservoir";
+    double       tolerance  = 1e-5;
 
     void
     declare(dealii::ParameterHandler &prm);
+
+    /** Whether they want the cells of water, in this model of section
+     *  "Reservoir". */
+    bool
+    want_cells_of_water(const ReservoirParameters &reservoir) const;
 
     /** Refuses unknown materials and a model that nothing holds. */
     void
@@ -38,9 +46,16 @@ namespace Voussoir
     std::function<unsigned int(const Grid::Cell &)> material_of_cell;
     const BoundaryParameters                       &boundaries;
     const NodalTerms                               &terms;
+
+    /** The interfaces at rest, or null. */
+    const Contact *contact = nullptr;
+
+    /** Cells of water that move along, or null. */
+    const Reservoir *reservoir = nullptr;
   };
 
-  /** A natural mode. */
+  /** A natural mode. Phi has the pressure of compressible water as well, see
+   *  ModalWater. */
   struct Mode
   {
     double frequency; // [Hz]
@@ -77,7 +92,7 @@ namespace Voussoir
 
   /**
    * The lowest natural modes, K phi = omega^2 (M + M_a) phi, with the moduli as
-   * given, absorbing faces held.
+   * given, absorbing faces held, interfaces tied. Called on all ranks.
    */
   Modes
   find_modes(const ModalModel     &model,

@@ -9,6 +9,8 @@
 #include <deal.II/lac/trilinos_precondition.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <Epetra_MultiVector.h>
+
 #include <functional>
 
 struct ML_Struct; // of Trilinos
@@ -34,13 +36,15 @@ namespace Voussoir
      *   is so small that it is the only level
      * @param diagonal of the matrix
      * @param held     owned entries
-     * @param rigid_body_modes six, of the owned entries, one after the other
+     * @param n_components of a node, whose entries follow each other
+     * @param near_kernel  the motions that cost no energy where nothing is held
      */
     Multigrid(const Operator                         &apply,
               dealii::TrilinosWrappers::SparseMatrix &matrix,
               const Vector                           &diagonal,
               const std::vector<unsigned int>        &held,
-              double                                 *rigid_body_modes);
+              const unsigned int                      n_components,
+              const Epetra_MultiVector               &near_kernel);
 
     /** One cycle from zero. */
     void

@@ -65,7 +65,11 @@ namespace Voussoir
     const AddedMass added_mass;
 
     /** Compressible water, or null. */
-    const std::unique_ptr<const Reservoir> reservoir;
+    const std::shared_ptr<const Reservoir> reservoir;
+
+    /** Cells of water that the natural modes want, or null; that of the run if
+     *  it has some. */
+    const std::shared_ptr<const Reservoir> reservoir_of_modes;
 
     /** The constraints of the case by name, in their order. */
     const std::vector<Projection *> constraints;

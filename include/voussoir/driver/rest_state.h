@@ -29,9 +29,9 @@ namespace Voussoir
   void
   check_modes(const Model &model);
 
-  /** The natural modes that the case asks for. */
+  /** The natural modes that the case asks for, about the state at rest. */
   Modes
-  find_modes(const Model &model, Log &log);
+  find_modes(const Model &model, const RestState &rest, Log &log);
 } // namespace Voussoir
 
 #endif

@@ -1,0 +1,147 @@
+#include <voussoir/analysis/pressure_solver.h>
+#include <voussoir/analysis/trilinear_cells.h>
+#include <voussoir/base/error.h>
+#include <voussoir/base/interruption.h>
+
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  PressureSolver::PressureSolver(const AcousticSpace             &space,
+                                 const std::vector<unsigned int> &held)
+    : space(space)
+    , held(held)
+  {
+    TrilinosWrappers::SparseMatrix matrix;
+    assemble(matrix);
+    Vector diagonal = space.create_vector();
+    for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
+      diagonal.local_element(i) =
+        matrix.diag_element(space.owned_dofs.nth_index_in_set(i));
+    Epetra_MultiVector constant(matrix.trilinos_matrix().OperatorDomainMap(),
+                                1);
+    constant.PutScalar(1.);
+    multigrid.emplace([this](Vector       &flux,
+                             const Vector &pressure) { apply(flux, pressure); },
+                      matrix,
+                      diagonal,
+                      this->held,
+                      1,
+                      constant);
+  }
+
+
+  AffineConstraints<double>
+  PressureSolver::make_constraints() const
+  {
+    Vector is_held = space.create_ghosted_vector();
+    for (const unsigned int i : held)
+      is_held.local_element(i) = 1.;
+    is_held.update_ghost_values();
+    AffineConstraints<double> constraints(space.relevant_dofs);
+    for (const auto dof : space.relevant_dofs)
+      if (is_held(dof) > 0.)
+        constraints.add_line(dof);
+    constraints.close();
+    return constraints;
+  }
+
+
+  void
+  PressureSolver::assemble(TrilinosWrappers::SparseMatrix &matrix) const
+  {
+    const auto                           constraints = make_constraints();
+    std::vector<types::global_dof_index> dofs(8);
+    const auto for_each_cell = [&](const auto &visit) {
+      for_each_trilinear_cell(
+        space.dof_handler,
+        space.fe,
+        space.mapping,
+        [&](const auto &cell) {
+          std::vector<types::global_dof_index> nodes(
+            space.fe.n_dofs_per_cell());
+          cell->get_dof_indices(nodes);
+          return nodes;
+        },
+        [&](const auto &, const auto &corners, const auto &nodes) {
+          dofs.assign(nodes.begin(), nodes.end());
+          visit(corners);
+        });
+    };
+    TrilinosWrappers::SparsityPattern pattern(space.owned_dofs,
+                                              space.owned_dofs,
+                                              space.relevant_dofs,
+                                              space.grid.communicator(),
+                                              27);
+    for_each_cell([&](const auto &) {
+      constraints.add_entries_local_to_global(dofs, pattern, true);
+    });
+    pattern.compress();
+    matrix.reinit(pattern);
+
+    const TrilinearCell trilinear;
+    FullMatrix<double>  cell_matrix(8);
+    for_each_cell([&](const auto &corners) {
+      cell_matrix = 0.;
+      trilinear.for_each_point(corners,
+                               [&](const double volume, const auto &gradient) {
+                                 for (unsigned int i = 0; i < 8; ++i)
+                                   for (unsigned int j = 0; j < 8; ++j)
+                                     cell_matrix(i, j) +=
+                                       volume * (gradient[i] * gradient[j]);
+                               });
+      constraints.distribute_local_to_global(cell_matrix, dofs, matrix);
+    });
+    matrix.compress(VectorOperation::add);
+  }
+
+
+  void
+  PressureSolver::apply(Vector &flux, const Vector &pressure) const
+  {
+    flux = 0.;
+    space.sweep(flux, pressure, {}, {});
+    for (const unsigned int i : held)
+      flux.local_element(i) = 0.;
+  }
+
+
+  void
+  PressureSolver::solve(Vector       &pressure,
+                        const Vector &flux,
+                        const double  tolerance) const
+  {
+    stop_if_requested(space.grid.communicator());
+    struct Operator
+    {
+      const PressureSolver &solver;
+      void
+      vmult(Vector &dst, const Vector &src) const
+      {
+        solver.apply(dst, src);
+      }
+    };
+    pressure          = 0.;
+    const double size = flux.l2_norm();
+    if (size == 0.)
+      return;
+    SolverControl    control(1000, tolerance * size);
+    SolverCG<Vector> solver(control);
+    try
+      {
+        solver.solve(Operator{*this}, pressure, flux, *multigrid);
+      }
+    catch (const SolverControl::NoConvergence &)
+      {
+        throw UserError(
+          "The pressure of the water does not converge within 1000 iterations, "
+          "which happens where its cells are very flat; make them no more than "
+          "about five times as long as thick, or set \"Water = none\" in "
+          "section \"Modes\".");
+      }
+  }
+} // namespace Voussoir

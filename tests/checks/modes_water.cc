@@ -1,0 +1,279 @@
+#include <voussoir/analysis/modal_water.h>
+#include <voussoir/fem/nodal_values.h>
+
+#include "tank.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** What incompressible water in a long channel adds to a rigid wall. */
+    class ModalWaterMass : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto       parameters = make_case(file);
+        Tank             tank(*parameters, communicator);
+        const ModalWater water(tank.reservoir, 0.);
+        Vector motion = tank.discretization.create_vector(), momentum = motion;
+        for (unsigned int i = 1; i < motion.locally_owned_size(); i += 3)
+          motion.local_element(i) = 1.;
+        water.add_momentum(momentum, nullptr, motion, nullptr);
+
+        double height = 0., width = 0.;
+        for (const auto &x : tank.water_mesh.vertices)
+          {
+            keep_largest(height, x[2]);
+            keep_largest(width, 2. * x[0]);
+          }
+        // sum of 8/pi^2 sin(n pi h/2H)/n^2 over odd n, and its integral
+        double total = 0., base = 0.;
+        for (unsigned int n = 1; n < 2000; n += 2)
+          {
+            total += 16. / std::pow(n * numbers::PI, 3);
+            base += 8. / std::pow(n * numbers::PI, 2) *
+                    std::sin(0.5 * n * numbers::PI);
+          }
+        const double density = parameters->reservoir.density;
+        verdicts.near("added mass / rho H^2",
+                      resultant_along_y(momentum) /
+                        (density * height * height * width),
+                      total,
+                      tolerance);
+        verdicts.near("the series of it", total, 0.5428, 1e-4);
+        verdicts.near("pressure at the base / rho a H",
+                      pressure_at_base(tank, momentum) / (density * height),
+                      base,
+                      tolerance);
+        verdicts.near("the series of it", base, 0.7425, 1e-4);
+
+        // of two motions
+        Vector other = motion, other_momentum = motion;
+        for (unsigned int node = 0; node < tank.discretization.n_owned_nodes();
+             ++node)
+          other.local_element(3 * node + 1) =
+            std::sin(0.03 * tank.discretization.node_positions[node][2]);
+        other_momentum = 0.;
+        water.add_momentum(other_momentum, nullptr, other, nullptr);
+        const double ab = momentum * other, ba = other_momentum * motion;
+        verdicts.below("asymmetry", ab / ba - 1., 1e-9);
+      }
+
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Tolerance", tolerance, "Relative.");
+      }
+
+    private:
+      static double
+      resultant_along_y(const Vector &momentum)
+      {
+        double sum = 0.;
+        for (unsigned int i = 1; i < momentum.locally_owned_size(); i += 3)
+          sum += momentum.local_element(i);
+        return Utilities::MPI::sum(sum, momentum.get_mpi_communicator());
+      }
+
+      /** Force over area of a node at the base, where both are halved. */
+      static double
+      pressure_at_base(const Tank &tank, const Vector &momentum)
+      {
+        double force = 0., area = 0.;
+        for (const Reservoir::Pair &pair : tank.reservoir.pairs)
+          if (tank.discretization.node_positions[pair.node][2] < 1e-9)
+            {
+              force += std::abs(momentum.local_element(3 * pair.node + 1));
+              area += pair.area.norm();
+            }
+        return Utilities::MPI::sum(force, momentum.get_mpi_communicator()) /
+               Utilities::MPI::sum(area, momentum.get_mpi_communicator());
+      }
+
+      double tolerance = 0.005;
+    };
+
+    const Registry<Check>::Add<ModalWaterMass>
+      registered_mass("modal water mass", "On a rigid wall.");
+
+
+    /**
+     * A rod with a column of water on its free end, open on top: with
+     * omega = k c_r,
+     *   u = sin(k z),  p = P sin(omega (h - y)/c), y from the wet end upwards,
+     *   E k cos(k L) = rho c omega tan(omega h/c) sin(k L) .
+     * Incompressible, c has no end.
+     */
+    struct RodAndColumn
+    {
+      ElasticConstants rod;
+      double           length, depth, density, c;
+
+      /** Zero at natural frequencies: both sides times cos(omega h/c). */
+      double
+      mismatch(const double omega) const
+      {
+        const double in_rod   = omega * length / rod.p_wave_speed(),
+                     in_water = omega * depth / c;
+        return density * c * std::sin(in_water) * std::sin(in_rod) -
+               rod.density * rod.p_wave_speed() * std::cos(in_rod) *
+                 std::cos(in_water);
+      }
+
+      /** The lowest ones [rad/s]. */
+      std::vector<double>
+      frequencies(const unsigned int number) const
+      {
+        std::vector<double> result;
+        const double        step = 0.01 * rod.p_wave_speed() / length;
+        for (double omega = step; result.size() < number; omega += step)
+          if (mismatch(omega) * mismatch(omega + step) < 0.)
+            {
+              double lower = omega, upper = omega + step;
+              for (unsigned int i = 0; i < 60; ++i)
+                {
+                  const double middle = 0.5 * (lower + upper);
+                  (mismatch(middle) * mismatch(upper) > 0. ? upper : lower) =
+                    middle;
+                }
+              result.push_back(lower);
+            }
+        return result;
+      }
+
+      /** (r^T M phi)^2 / phi^T M phi for r = 1 [kg/m2]: the water's part of
+       *  M phi is its pressure over omega^2, and phi^T M phi is the energy of
+       *  rod and water over omega^2. */
+      double
+      effective_mass(const double omega) const
+      {
+        const double k = omega / rod.p_wave_speed(), end = std::sin(k * length),
+                     in_water = omega * depth / c;
+        const double momentum = rod.density * (1. - std::cos(k * length)) / k +
+                                density * c * std::tan(in_water) * end / omega;
+        const double of_rod =
+          rod.density * std::pow(rod.p_wave_speed() * k, 2) *
+          (0.5 * length + std::sin(2. * k * length) / (4. * k));
+        const double of_water =
+          density * std::pow(omega * end / std::cos(in_water), 2) *
+          (0.5 * depth - c * std::sin(2. * in_water) / (4. * omega));
+        return momentum * momentum * omega * omega / (of_rod + of_water);
+      }
+    };
+
+
+    class RodAndWater : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Rod", length, "Its length [m].");
+        prm.add_parameter("Water", depth, "Height of the column [m].");
+        prm.add_parameter("Area", area, "Of both [m2].");
+        prm.add_parameter("Tolerance", tolerance, "Relative.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        for (const std::string water : {"incompressible", "compressible"})
+          {
+            const auto parameters =
+              make_case(file.with({"Modes/Water=" + water}));
+            const auto simulation = make_simulation(*parameters, communicator);
+            const Modes       &modes = simulation->modes;
+            const RodAndColumn exact{
+              simulation->model.materials[0]->elastic_constants(),
+              length,
+              depth,
+              parameters->reservoir.density,
+              water == "compressible" ? parameters->reservoir.sound_speed :
+                                        1e8};
+            const std::vector<double> frequencies =
+              exact.frequencies(parameters->modes.number);
+            for (unsigned int j = 0; j < frequencies.size(); ++j)
+              {
+                const std::string name =
+                  water + " water, mode " + std::to_string(j + 1);
+                verdicts.near(name,
+                              2. * numbers::PI * modes.list[j].frequency,
+                              frequencies[j],
+                              tolerance,
+                              "rad/s");
+                verdicts.near(name + ", effective mass",
+                              1e-3 * modes.list[j].effective_mass[2] / area,
+                              1e-3 * exact.effective_mass(frequencies[j]),
+                              10. * tolerance,
+                              "t/m2");
+              }
+            verdicts.near(water + " water, moving mass",
+                          1e-3 * modes.moving_mass[2],
+                          1e-3 * (resultant(simulation->model.mass.mass)[2] +
+                                  exact.density * depth * area),
+                          1e-8,
+                          "t");
+          }
+      }
+
+    private:
+      double length = 0., depth = 0., area = 1., tolerance = 1e-3;
+    };
+
+    const Registry<Check>::Add<RodAndWater>
+      registered_rod("modes of rod and water", "In closed form.");
+
+
+    /**
+     * Water between rigid walls, H deep, L long, with a free surface:
+     *   f = c/4H sqrt((2m - 1)^2 + (2 n H/L)^2) .
+     */
+    class ChannelModes : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Depth", depth, "H [m].");
+        prm.add_parameter("Length", length, "L [m].");
+        prm.add_parameter("Tolerance", tolerance, "Relative.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto parameters = make_case(file);
+        const auto simulation = make_simulation(*parameters, communicator);
+        std::vector<double> expected;
+        for (unsigned int m = 1; m < 20; m += 2)
+          for (unsigned int n = 0; n < 20; ++n)
+            expected.push_back(parameters->reservoir.sound_speed /
+                               (4. * depth) *
+                               std::hypot(m, 2. * n * depth / length));
+        std::sort(expected.begin(), expected.end());
+        for (unsigned int j = 0; j < parameters->modes.number; ++j)
+          verdicts.near("mode " + std::to_string(j + 1),
+                        simulation->modes.list[j].frequency,
+                        expected[j],
+                        tolerance,
+                        "Hz");
+      }
+
+    private:
+      double depth = 0., length = 0., tolerance = 1e-3;
+    };
+
+    const Registry<Check>::Add<ChannelModes>
+      registered_channel("channel modes", "Of water between rigid walls.");
+  } // namespace
+} // namespace Voussoir

@@ -12,9 +12,9 @@ namespace Voussoir
 
   namespace
   {
-    // How far a row may be moved to the level of a reservoir, and how near it
-    // may come to the next, over the height of a row.
-    constexpr double surface_shift = 0.25, surface_distance = 0.3;
+    // How near the surface of a reservoir may come to the next row, and to
+    // where its own meets the contour, over the height of a row.
+    constexpr double surface_distance = 0.3, surface_rise = 0.2;
 
     // How much a bank must rise over the first column of a ledge in it, over
     // the height of a row.
@@ -49,6 +49,7 @@ namespace Voussoir
       if (ledges[bank].elevation > 0.)
         lay_ledge(ledges[bank], 2 * bank - 1);
     make_quads();
+    line_contour();
     smooth(columns_per_block);
   }
 
@@ -173,10 +174,9 @@ namespace Voussoir
           }
         else if (row < n_rows - 1)
           {
-            const double ends = 0.5 * (contour[first - 1] + contour[last + 1]);
-            lower             = ends - surface_shift * row_height;
-            upper             = std::min(ends + surface_shift * row_height,
-                             rows[row + 1] - surface_distance * row_height);
+            lower = std::max(contour[first - 1], contour[last + 1]) +
+                    surface_rise * row_height;
+            upper = rows[row + 1] - surface_distance * row_height;
           }
         for (int i = first; i <= last; ++i)
           if (contour_rows[i] == foot)
@@ -228,12 +228,15 @@ namespace Voussoir
     if (ledge.foot_column < 0)
       return;
 
-    // to the column nearest to the width, that is not the last but one
+    // to the column nearest to the width, that is neither the crest's end,
+    // where the layer along the contour comes out of the ground, nor the last
+    // but one
     const int foot      = ledge.foot_column;
     ledge.row           = contour_rows[foot];
     ledge.side_column   = foot + bank;
     const auto too_near = [&](const int column) {
-      return std::abs(0.5 * (columns[column] + columns[column + bank]) -
+      return column == first_dam_column || column == last_dam_column ||
+             std::abs(0.5 * (columns[column] + columns[column + bank]) -
                       columns[foot]) < ledge.width;
     };
     while (ledge.side_column > 1 && ledge.side_column + 1 < last_column &&
@@ -323,8 +326,14 @@ namespace Voussoir
                     quad.end());
         // the corners of a cell in the canyon are one or two at its foot
         const int half_row = 2 * row + (i < n - 2 ? 0 : 1);
-        quads.push_back(
-          {quad, column, half_row, inside, cell_width, cell_height});
+        // those beside the contour are as wide as high
+        const double side = std::sqrt(cell_width * cell_height);
+        quads.push_back({quad,
+                         column,
+                         half_row,
+                         inside,
+                         n == 3 ? side : cell_width,
+                         n == 3 ? side : cell_height});
       }
   }
 
@@ -350,7 +359,7 @@ namespace Voussoir
            2 * int(std::min(a, b) % rows.size()) + 1 == surface_row &&
            u.column >= surface_columns.first &&
            u.column <= surface_columns.second));
-        if (on_surface.back() && along_column)
+        if (on_surface.back())
           vertex.z = surface_level;
         on_ledge.push_back(on_ledge[a] && on_ledge[b]);
         vertices.push_back(vertex);

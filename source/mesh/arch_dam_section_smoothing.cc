@@ -3,6 +3,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace Voussoir
@@ -17,6 +18,9 @@ namespace Voussoir
     constexpr double       relaxation = 0.6;
     constexpr unsigned int n_steps    = 120;
 
+    // Corners whose det J is below this are treated as flat.
+    constexpr double flat = 0.1;
+
 
     using Vertex = ArchDamCrossSection::Vertex;
     using Quad   = ArchDamCrossSection::Quad;
@@ -25,8 +29,8 @@ namespace Voussoir
     /**
      * How badly shaped the quadrilaterals around a vertex are: the sum over
      * their corners of |J^-1|^8, J holding the two edges over the cell's size
-     * in the grid. It grows without bound as a cell becomes small, flat or
-     * slanted.
+     * in the grid. It grows steeply as a cell becomes small, flat, slanted or
+     * inverted.
      */
     class Distortion
     {
@@ -42,8 +46,7 @@ namespace Voussoir
             quads_at[v].push_back(q);
       }
 
-      /** With vertex @p v at @p place; the largest number if one is inverted.
-       */
+      /** With vertex @p v at @p place. */
       double
       operator()(const unsigned int v, const Vertex &place) const
       {
@@ -56,10 +59,12 @@ namespace Voussoir
                 const Tensor<1, 2> a = x[(i + 1) % 4] - x[i],
                                    b = x[(i + 3) % 4] - x[i];
                 const double det     = a[0] * b[1] - a[1] * b[0];
-                if (det <= 0.)
-                  return std::numeric_limits<double>::max();
+                // stays positive where a corner is turned inside out, so that
+                // it finds the way back
+                const double size =
+                  0.5 * (det + std::sqrt(det * det + flat * flat));
                 const double inverse =
-                  (a.norm_square() + b.norm_square()) / (det * det);
+                  (a.norm_square() + b.norm_square()) / (size * size);
                 sum += inverse * inverse * inverse * inverse;
               }
           }

@@ -16,9 +16,10 @@ namespace Voussoir
    *
    * They come from a grid of columns and rows in which the contour of the
    * canyon runs along the rows or diagonally through cells, so that these fall
-   * into triangles; all are then halved in both directions. One row can be
-   * laid level, to be the surface of a reservoir, and one in each bank, to be
-   * the bottom of a wedge of rock.
+   * into triangles; all are then halved in both directions, and a layer of
+   * quadrilaterals is put on each side along the contour. One row can be laid
+   * level, to be the surface of a reservoir, and one in each bank, to be the
+   * bottom of a wedge of rock.
    */
   class ArchDamCrossSection
   {
@@ -66,7 +67,7 @@ namespace Voussoir
       unsigned int                column;        // on its right-bank side
       int                         half_row;      // from below; inside only
       bool                        inside;        // of the canyon
-      double                      width, height; // before the grid was fitted
+      double                      width, height; // wanted [m]
     };
 
     std::vector<Vertex> vertices;
@@ -115,6 +116,33 @@ namespace Voussoir
 
     unsigned int
     middle(const unsigned int a, const unsigned int b);
+
+    /** Adds a layer of quadrilaterals on each side of the contour. */
+    void
+    line_contour();
+
+    // Edge e of a quadrilateral runs from its vertex e to the next.
+    struct Side
+    {
+      unsigned int quad, edge;
+    };
+
+    /** Between the @p sides, all on the contour, and what lies beyond them,
+     *  @p inside of the canyon or in the rock. */
+    void
+    add_layer(const std::vector<Side> &sides, const bool inside);
+
+    /** Whether the layer at @p v grows towards its neighbour @p u. */
+    bool
+    layer_leads(const unsigned int v,
+                const unsigned int u,
+                const bool         inside) const;
+
+    /** A new vertex on the way from @p v to a vertex @p beyond. */
+    unsigned int
+    copy_vertex(const unsigned int v,
+                const unsigned int beyond,
+                const bool         inside);
 
     /** Moves the vertices to where the quadrilaterals are least distorted. */
     void

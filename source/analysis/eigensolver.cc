@@ -313,8 +313,9 @@ namespace Voussoir
     if (!iteration.run())
       throw UserError("The natural modes do not converge, which they do not "
                       "when a part of the model can move freely; hold it with "
-                      "\"Fixed\" or \"Roller\" in section \"Boundaries\", or "
-                      "ask for fewer modes in section \"Modes\".");
+                      "\"Fixed\" or \"Roller\" in section \"Boundaries\", set "
+                      "\"Interfaces = all tied\" in section \"Modes\" if open "
+                      "interfaces let it loose, or ask for fewer modes there.");
 
     Eigenpairs result;
     result.iterations = iteration.iterations;

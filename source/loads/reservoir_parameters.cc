@@ -26,7 +26,8 @@ namespace Voussoir
     prm.leave_subsection();
     prm.add_parameter("Cell sets",
                       cell_sets,
-                      "Compressible: the cell sets of the water.");
+                      "Compressible, or where section \"Modes\" wants cells of "
+                      "water: their cell sets.");
     prm.add_parameter("Sound speed",
                       sound_speed,
                       "Compressible: speed of sound in the water [m/s]." +
@@ -34,7 +35,7 @@ namespace Voussoir
                       Patterns::Double(1.));
     prm.add_parameter("Free surface",
                       surface,
-                      "Compressible: face sets of the water's surface, without "
+                      "Of cells of water: face sets of their surface, without "
                       "pressure.");
     prm.add_parameter(
       "Radiating end",

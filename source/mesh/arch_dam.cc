@@ -92,7 +92,6 @@ namespace Voussoir
       void
       check() const override
       {
-        custom_shape.check("Mesh/arch dam/Custom shape");
         if (water_level > shape().height)
           {
             std::ostringstream text;
@@ -114,8 +113,9 @@ namespace Voussoir
       ArchDamShape
       shape() const
       {
-        return shape_name == "custom" ? custom_shape :
-                                        ArchDamShape::preset(shape_name);
+        return shape_name == "custom" ?
+                 custom_shape.checked("Mesh/arch dam/Custom shape") :
+                 ArchDamShape::preset(shape_name);
       }
 
       unsigned int

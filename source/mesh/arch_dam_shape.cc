@@ -1,4 +1,6 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/parameter_file.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/mesh/arch_dam_shape.h>
 
 #include <deal.II/base/numbers.h>
@@ -115,11 +117,92 @@ namespace Voussoir
                       "Thickness at the abutments over that at the crown; it "
                       "grows with the square of the arc length [-].",
                       Patterns::Double(0.5, 3.));
+    prm.add_parameter(
+      "Arches",
+      arches,
+      "Instead of the entries above, except \"Arch\": a table of arches as "
+      "drawings give them, from below, separated by semicolons, each with nine "
+      "numbers [m]: elevation above the base; y of the upstream face and "
+      "thickness, at the crown; thickness at the right and at the left "
+      "abutment; radius of the centre line (at the crown, of a parabola) on the "
+      "right and on the left; x of its ends on the right and on the left, both "
+      "taken positive. In between parabolas are blended.");
+  }
+
+
+  ArchDamShape
+  ArchDamShape::checked(const std::string &section) const
+  {
+    ArchDamShape result = *this;
+    if (arches.empty())
+      check_numbers(section);
+    else
+      {
+        result.table       = parse_arches(section);
+        result.height      = result.table.back().elevation;
+        const auto &widths = result.table.back().half_width;
+        result.crest_width = {widths[0], widths[1]};
+      }
+    return result;
+  }
+
+
+  std::vector<ArchDamShape::Arch>
+  ArchDamShape::parse_arches(const std::string &section) const
+  {
+    std::vector<Arch> result;
+    const auto refuse = [&](const std::string &row, const std::string &what) {
+      throw UserError("\"Arches\" in section \"" + section + "\": \"" + row +
+                      "\" " + what);
+    };
+    for (const std::string &row : split_list(arches, ';'))
+      {
+        const auto n = parse_numbers(row);
+        if (!n || n->size() != 9)
+          refuse(row,
+                 "needs nine numbers, the elevation, y of the upstream face, "
+                 "thickness at the crown and at both abutments, both radii and "
+                 "both half widths [m].");
+        const Arch arch{(*n)[0],
+                        (*n)[1],
+                        (*n)[2],
+                        {{(*n)[3], (*n)[4]}},
+                        {{(*n)[5], (*n)[6]}},
+                        {{(*n)[7], (*n)[8]}}};
+        if (result.empty() ? arch.elevation != 0. :
+                             arch.elevation <= result.back().elevation)
+          refuse(row,
+                 "lies at the wrong place; list the arches from below, the "
+                 "first at elevation 0.");
+        if (*std::min_element(n->begin() + 2, n->end()) <= 0.)
+          refuse(row,
+                 "has a thickness, a radius or a half width that is not "
+                 "positive.");
+        for (const unsigned int bank : {0, 1})
+          {
+            if (!result.empty() &&
+                arch.half_width[bank] < result.back().half_width[bank])
+              refuse(row,
+                     "is narrower than the arch below it; the canyon must not "
+                     "overhang.");
+            if (this->arch == "circle" &&
+                arch.half_width[bank] > 0.9 * arch.radius[bank])
+              refuse(
+                row,
+                "has a half width of more than 0.9 times the radius, which "
+                "a circle cannot span.");
+          }
+        result.push_back(arch);
+      }
+    if (result.size() < 2)
+      throw UserError("\"Arches\" in section \"" + section +
+                      "\" needs at least two arches.");
+    return result;
   }
 
 
   void
-  ArchDamShape::check(const std::string &section) const
+  ArchDamShape::check_numbers(const std::string &section) const
   {
     for (unsigned int bank = 0; bank < 2; ++bank)
       {
@@ -143,9 +226,49 @@ namespace Voussoir
   }
 
 
+  // A cubic with, at each arch, the slope of the parabola through it and its
+  // neighbours: quadratic functions are met.
+  template <typename Quantity>
+  double
+  ArchDamShape::interpolated(const double z, const Quantity &quantity) const
+  {
+    const unsigned int n = table.size();
+    unsigned int       k = 0;
+    while (k + 2 < n && table[k + 1].elevation < z)
+      ++k;
+    const auto secant = [&](const unsigned int i) {
+      return (quantity(table[i + 1]) - quantity(table[i])) /
+             (table[i + 1].elevation - table[i].elevation);
+    };
+    const auto slope = [&](const unsigned int i) {
+      if (n == 2)
+        return secant(0);
+      const unsigned int middle = std::clamp(i, 1U, n - 2);
+      const double       lower =
+                     table[middle].elevation - table[middle - 1].elevation,
+                   upper =
+                     table[middle + 1].elevation - table[middle].elevation;
+      const double curvature =
+        (secant(middle) - secant(middle - 1)) / (lower + upper);
+      return secant(middle - 1) +
+             curvature * (2. * table[i].elevation - table[middle].elevation -
+                          table[middle - 1].elevation);
+    };
+    const double length = table[k + 1].elevation - table[k].elevation,
+                 t      = std::clamp((z - table[k].elevation) / length, 0., 1.);
+    return (1. - t) * (1. - t) *
+             ((1. + 2. * t) * quantity(table[k]) + t * length * slope(k)) +
+           t * t *
+             ((3. - 2. * t) * quantity(table[k + 1]) -
+              (1. - t) * length * slope(k + 1));
+  }
+
+
   double
   ArchDamShape::crown_face(const double z) const
   {
+    if (!table.empty())
+      return interpolated(z, [](const Arch &arch) { return arch.face; });
     const double e = (height - z) / height;
     return e * (face[0] + e * (face[1] + e * face[2]));
   }
@@ -154,6 +277,8 @@ namespace Voussoir
   double
   ArchDamShape::crown_thickness(const double z) const
   {
+    if (!table.empty())
+      return interpolated(z, [](const Arch &arch) { return arch.thickness; });
     const double e = (height - z) / height;
     return thickness[0] +
            e * (thickness[1] + e * (thickness[2] + e * thickness[3]));
@@ -161,8 +286,26 @@ namespace Voussoir
 
 
   double
-  ArchDamShape::radius(const double z) const
+  ArchDamShape::relative_abutment_thickness(const double x,
+                                            const double z) const
   {
+    if (table.empty())
+      return abutment_thickness;
+    return interpolated(z,
+                        [&](const Arch &arch) {
+                          return arch.abutment_thickness[x < 0 ? 0 : 1];
+                        }) /
+           crown_thickness(z);
+  }
+
+
+  double
+  ArchDamShape::radius(const double x, const double z) const
+  {
+    if (!table.empty())
+      return interpolated(z, [&](const Arch &arch) {
+        return arch.radius[x < 0 ? 0 : 1];
+      });
     return base_radius +
            (crest_radius - base_radius) * std::pow(z / height, radius_exponent);
   }
@@ -172,6 +315,10 @@ namespace Voussoir
   ArchDamShape::half_width(const double x, const double z) const
   {
     const unsigned int bank = x < 0 ? 0 : 1;
+    if (!table.empty())
+      return interpolated(z, [&](const Arch &arch) {
+        return arch.half_width[bank];
+      });
     return base_width[bank] + (crest_width[bank] - base_width[bank]) *
                                 std::pow(z / height, canyon_exponent);
   }
@@ -180,7 +327,7 @@ namespace Voussoir
   double
   ArchDamShape::centre_line(const double x, const double z) const
   {
-    const double R     = radius(z);
+    const double R     = radius(x, z);
     const double crown = crown_face(z) - 0.5 * crown_thickness(z);
     if (arch == "parabola")
       return crown - x * x / (2. * R);
@@ -195,7 +342,7 @@ namespace Voussoir
   double
   ArchDamShape::angle(const double x, const double z) const
   {
-    const double R = radius(z);
+    const double R = radius(x, z);
     if (arch == "parabola")
       return std::atan(x / R);
     return std::asin(std::max(-circle_limit, std::min(circle_limit, x / R)));
@@ -205,7 +352,7 @@ namespace Voussoir
   double
   ArchDamShape::arc_length(const double x, const double z) const
   {
-    const double R = radius(z);
+    const double R = radius(x, z);
     if (arch == "parabola")
       {
         const double t = x / R;
@@ -337,18 +484,20 @@ namespace Voussoir
     Line line = crest(s);
     if (s <= right_end || s >= left_end)
       {
-        line.thickness =
-          shape.abutment_thickness * shape.crown_thickness(shape.height);
+        line.thickness = shape.relative_abutment_thickness(s, shape.height) *
+                         shape.crown_thickness(shape.height);
         return line;
       }
 
     const double level = std::max(z, contour(s));
     const double x     = cut(line, level);
-    const double ratio = shape.arc_length(x, level) /
-                         shape.arc_length(shape.half_width(x, level), level);
+    const double ratio =
+      shape.arc_length(x, level) /
+      shape.arc_length(std::copysign(shape.half_width(x, level), x), level);
     const double normal =
       shape.crown_thickness(level) *
-      (1. + (shape.abutment_thickness - 1.) * std::min(1., ratio * ratio));
+      (1. + (shape.relative_abutment_thickness(x, level) - 1.) *
+              std::min(1., ratio * ratio));
     line.centre    = {x, shape.centre_line(x, level)};
     line.thickness = normal / std::cos(shape.angle(x, level) - line.angle);
     return line;

@@ -162,6 +162,7 @@ namespace Voussoir
       {
         run_cylinder(file.with(cylinder), verdicts);
         run_parabola(file.with(parabola), verdicts);
+        run_table(file, verdicts);
       }
 
     private:
@@ -224,6 +225,50 @@ namespace Voussoir
                         thickness(1. - z / 100.),
                         1e-9,
                         "m");
+      }
+
+
+      /** Quadratic functions of the elevation, once by their numbers and once
+       *  by four arches. */
+      void
+      run_table(const ParameterFile &file, Verdicts &verdicts) const
+      {
+        std::ostringstream table;
+        table.precision(17);
+        for (const double z : {0., 30., 60., 100.})
+          {
+            const double e = 1. - z / 100., t = 8. + 20. * e + 6. * e * e;
+            table << (z > 0. ? "; " : "") << z << ' ' << 10. * e + 3. * e * e
+                  << ' ' << t << ' ' << 1.3 * t << ' ' << 1.3 * t << ' '
+                  << 150. - 40. * e << ' ' << 150. - 40. * e << ' '
+                  << 120. - 90. * e << ' ' << 150. - 130. * e;
+          }
+        std::vector<std::string> numbers = parabola;
+        for (const char *entry : {"Base radius=110",
+                                  "Radius exponent=1",
+                                  "Crest half width=120, 150",
+                                  "Base half width=30, 20",
+                                  "Canyon exponent=1"})
+          numbers.push_back(place + entry);
+        std::vector<CoarseMesh> meshes;
+        for (const std::vector<std::string> &changes :
+             {numbers,
+              {place + "Arch=parabola", place + "Arches=" + table.str()}})
+          {
+            const auto         parameters = make_case(file.with(changes));
+            std::ostringstream log;
+            meshes.push_back(parameters->make_mesh(log));
+          }
+        verdicts.is_true("table: as many vertices as by numbers",
+                         meshes[0].vertices.size() ==
+                           meshes[1].vertices.size());
+        double distance = 0.;
+        for (unsigned int v = 0; v < meshes[0].vertices.size(); ++v)
+          keep_largest(distance,
+                       meshes[0].vertices[v].distance(meshes[1].vertices[v]));
+        verdicts.below("table: vertices from those by numbers [m]",
+                       distance,
+                       1e-6);
       }
 
 

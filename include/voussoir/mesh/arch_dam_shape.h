@@ -4,6 +4,7 @@
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/point.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,11 @@ namespace Voussoir
     void
     declare(dealii::ParameterHandler &prm);
 
-    /** Throws UserError that names the @p section, if entries do not fit. */
-    void
-    check(const std::string &section) const;
+    /** The shape that the entries describe, by their numbers or by their
+     *  arches. Throws UserError that names the @p section, if they do not fit.
+     */
+    ArchDamShape
+    checked(const std::string &section) const;
 
     /** Upstream face of the crown cantilever at elevation @p z, y [m]. */
     double
@@ -68,10 +71,35 @@ namespace Voussoir
     std::vector<double> face{75., -60., -10.};
     std::vector<double> thickness{14., 90., -55., 14.};
     double              abutment_thickness = 1.25;
+    std::string         arches;
+
+    /** Thickness on the bank where @p x lies over that at the crown. */
+    double
+    relative_abutment_thickness(const double x, const double z) const;
 
   private:
+    /** One arch of a table, as its entry lists them, right bank before left. */
+    struct Arch
+    {
+      double                elevation, face, thickness;
+      std::array<double, 2> abutment_thickness, radius, half_width;
+    };
+
+    std::vector<Arch>
+    parse_arches(const std::string &section) const;
+
+    void
+    check_numbers(const std::string &section) const;
+
+    /** Between the arches of the table. */
+    template <typename Quantity>
     double
-    radius(const double z) const;
+    interpolated(const double z, const Quantity &quantity) const;
+
+    double
+    radius(const double x, const double z) const;
+
+    std::vector<Arch> table; // from below; empty without arches
   };
 
 

@@ -3,6 +3,7 @@
 #include <voussoir/mesh/interfaces.h>
 #include <voussoir/mesh/mesh_check.h>
 #include <voussoir/mesh/mesh_geometry.h>
+#include <voussoir/mesh/mesh_quality.h>
 
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/base/geometry_info.h>
@@ -56,6 +57,16 @@ namespace Voussoir
       const bool outward = face.face % 2 == 1;
       const bool smaller = around[(lowest + 1) % 4] < around[(lowest + 3) % 4];
       return smaller == outward;
+    }
+
+
+    std::array<Point<3>, 8>
+    cell_vertices(const CoarseMesh &mesh, const unsigned int cell)
+    {
+      std::array<Point<3>, 8> vertices;
+      for (unsigned int v = 0; v < 8; ++v)
+        vertices[v] = mesh.vertices[mesh.cells[cell][v]];
+      return vertices;
     }
 
 
@@ -462,15 +473,18 @@ namespace Voussoir
       std::vector<bool> is_named(mesh.cells.size(), false);
       for (const auto &[name, cells] : mesh.cell_sets)
         {
-          double volume = 0;
+          double      volume = 0;
+          MeshQuality quality;
           for (const unsigned int cell : cells)
             {
               volume += cell_volume(mesh, cell);
+              quality.take(cell_vertices(mesh, cell));
               is_named[cell] = true;
             }
           text << "  cells \"" << name
                << "\": " << counted(cells.size(), "cell", "cells")
-               << ", volume " << volume << " m3\n";
+               << ", volume " << volume << " m3, " << quality.describe()
+               << "\n";
         }
       const std::size_t n_unnamed =
         std::count(is_named.begin(), is_named.end(), false);

@@ -1,0 +1,34 @@
+#ifndef voussoir_mesh_mesh_quality_h
+#define voussoir_mesh_mesh_quality_h
+
+#include <deal.II/base/point.h>
+
+#include <array>
+#include <string>
+
+namespace Voussoir
+{
+  /** How well shaped hexahedra are: the worst of those taken in. */
+  struct MeshQuality
+  {
+    /** Least triple product of unit vectors along the edges of a corner: 1 at
+     *  right angles, 0 if flat. */
+    double scaled_jacobian = 1.;
+
+    /** Largest length of an edge over that of the shortest of its cell. */
+    double aspect_ratio = 1.;
+
+    /** Between two edges of a face [degrees]. */
+    double smallest_angle = 90.;
+
+    /** Takes in a cell by its vertices, in deal.II's order. */
+    void
+    take(const std::array<dealii::Point<3>, 8> &vertices);
+
+    /** In words, for the log. */
+    std::string
+    describe() const;
+  };
+} // namespace Voussoir
+
+#endif

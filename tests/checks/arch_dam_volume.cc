@@ -255,7 +255,8 @@ namespace Voussoir
              {numbers,
               {place + "Arch=parabola", place + "Arches=" + table.str()}})
           {
-            const auto         parameters = make_case(file.with(changes));
+            const auto parameters =
+              make_case(file.with(changes).with({"Mesh/arch dam/Cell size=8"}));
             std::ostringstream log;
             meshes.push_back(parameters->make_mesh(log));
           }

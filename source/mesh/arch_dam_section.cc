@@ -12,9 +12,12 @@ namespace Voussoir
 
   namespace
   {
-    // How near the surface of a reservoir may come to the next row, and to
-    // where its own meets the contour, over the height of a row.
-    constexpr double surface_distance = 0.3, surface_rise = 0.2;
+    // How near the surface of a reservoir may come to the next row, and how far
+    // it must and may lie above where its own row meets the contour and the
+    // water slopes down to, over the height of a row.
+    constexpr double surface_distance = 0.3;
+
+    constexpr std::pair<double, double> surface_rise{0.2, 0.4};
 
     // How much a bank must rise over the first column of a ledge in it, over
     // the height of a row.
@@ -174,9 +177,10 @@ namespace Voussoir
           }
         else if (row < n_rows - 1)
           {
-            lower = std::max(contour[first - 1], contour[last + 1]) +
-                    surface_rise * row_height;
-            upper = rows[row + 1] - surface_distance * row_height;
+            const double ends = std::max(contour[first - 1], contour[last + 1]);
+            lower             = ends + surface_rise.first * row_height;
+            upper = std::min(ends + surface_rise.second * row_height,
+                             rows[row + 1] - surface_distance * row_height);
           }
         for (int i = first; i <= last; ++i)
           if (contour_rows[i] == foot)

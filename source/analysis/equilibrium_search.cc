@@ -103,9 +103,14 @@ namespace Voussoir
   void
   EquilibriumSearch::balance(const double accuracy)
   {
-    for (bool first = true; effort.residual > (first ? tolerance : accuracy) &&
-                            effort.steps < max_steps;
-         first = false)
+    // Friction that follows the pressure may lead in a circle, from which
+    // other multipliers lead out.
+    constexpr unsigned int max_steps_of_update = 10;
+    for (unsigned int steps = 0;
+         effort.residual > (steps == 0 ? tolerance : accuracy) &&
+         (contact == nullptr || steps < max_steps_of_update) &&
+         effort.steps < max_steps;
+         ++steps)
       step();
   }
 

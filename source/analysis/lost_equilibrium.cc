@@ -11,7 +11,7 @@ namespace Voussoir
 
   namespace
   {
-    /** The sets that hold a cell with this owned node. */
+    /** The sets of the first cell of this rank with this node. */
     std::vector<std::string>
     sets_at(const Discretization         &discretization,
             const types::global_dof_index node)
@@ -19,13 +19,17 @@ namespace Voussoir
       std::vector<std::string> names;
       for (const auto &cell :
            discretization.dof_handler.active_cell_iterators())
-        if (cell->is_locally_owned())
-          for (const auto other : discretization.cell_nodes(cell))
-            if (other == node && names.empty())
-              for (const std::string &name :
-                   discretization.grid.cell_set_names())
-                if (discretization.grid.in_cell_set(cell, name))
-                  names.push_back(name);
+        {
+          if (!cell->is_locally_owned())
+            continue;
+          const auto nodes = discretization.cell_nodes(cell);
+          if (std::find(nodes.begin(), nodes.end(), node) == nodes.end())
+            continue;
+          for (const std::string &name : discretization.grid.cell_set_names())
+            if (discretization.grid.in_cell_set(cell, name))
+              names.push_back(name);
+          return names;
+        }
       return names;
     }
 

@@ -14,13 +14,13 @@ namespace Voussoir
                          const ResultFolder &folder,
                          Log                &log)
     : model(model)
-    , identity(static_identity_of(model.parameters))
     , log(log)
   {
     const std::string &kept = model.parameters.static_state.kept;
     if (!folder.exists() || kept.empty())
       return;
-    file = fs::path(folder.path()).parent_path() / kept /
+    identity = static_identity_of(model.parameters);
+    file     = fs::path(folder.path()).parent_path() / kept /
            (checksum(identity.dump()) + ".h5");
   }
 
@@ -58,7 +58,7 @@ namespace Voussoir
       return;
     try
       {
-        store_rest(model, rest, file);
+        store_rest(model, rest, file, identity);
         log.line("Static state kept in ", file, " for later runs");
       }
     catch (const UserError &error)

@@ -150,7 +150,9 @@ namespace Voussoir
             "rest.h5",
             read_rest,
             [&] { return kept_or_found(model, folder, log); },
-            store_rest,
+            [](const Model       &model,
+               const RestState   &rest,
+               const std::string &file) { store_rest(model, rest, file); },
             log);
         }
       catch (const LostEquilibrium &lost)

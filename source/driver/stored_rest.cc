@@ -1,4 +1,3 @@
-#include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/stored_rest.h>
 #include <voussoir/output/checkpoint.h>
 
@@ -60,11 +59,14 @@ namespace Voussoir
 
 
   void
-  store_rest(const Model &model, const RestState &rest, const std::string &file)
+  store_rest(const Model          &model,
+             const RestState      &rest,
+             const std::string    &file,
+             const nlohmann::json &identity)
   {
     RestState copy(rest);
     write_state(file,
-                {{"identity", static_identity_of(model.parameters)},
+                {{"identity", identity},
                  {"static state", rest.initial.displacement.size() > 0},
                  {"contact force", rest.initial.contact_force.size() > 0},
                  {"contact",

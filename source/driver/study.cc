@@ -1,9 +1,11 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/base/text.h>
 #include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/simulation.h>
 #include <voussoir/driver/study.h>
 #include <voussoir/output/checkpoint.h>
+#include <voussoir/output/table.h>
 
 #include <cmath>
 #include <filesystem>
@@ -99,14 +101,23 @@ namespace Voussoir
     }
 
 
-    /** A value in a table that commas part. */
+    /** A strength divided by what reduces it. */
     std::string
-    quoted(const std::string &text)
+    reduced(const std::string &entry,
+            const std::string &strength,
+            const std::string &divisor)
     {
-      std::string result = "\"";
-      for (const char letter : text)
-        result += letter == '"' ? "\"\"" : std::string(1, letter);
-      return result + '"';
+      const std::optional<double> whole = parse_number(strength),
+                                  by    = parse_number(divisor);
+      if (!whole)
+        throw UserError("\"Reduced strengths\" in section \"Study\" names \"" +
+                        entry +
+                        "\", to which this file gives no number; set it, or "
+                        "leave it out there.");
+      if (!by || *by <= 0.)
+        throw UserError("Section \"Study\" has a " + strength_reduction +
+                        " of \"" + divisor + "\"; give numbers above 0.");
+      return number_text(*whole / *by);
     }
   } // namespace
 
@@ -178,11 +189,8 @@ namespace Voussoir
     for (const auto &[entry, value] : values)
       if (entry == strength_reduction)
         for (const std::string &strength : split_list(parameters.reduced, ';'))
-          changes.push_back(
-            strength + "=" +
-            number_text(
-              std::strtod(changed.given(strength, "0").c_str(), nullptr) /
-              std::strtod(value.c_str(), nullptr)));
+          changes.push_back(strength + "=" +
+                            reduced(strength, changed.given(strength), value));
     return changed.with(changes);
   }
 
@@ -425,34 +433,38 @@ namespace Voussoir
   std::string
   Study::table() const
   {
-    std::vector<SummaryNumber> numbers = parameters.numbers();
-    const auto                 is_in   = [](const SummaryNumber &number) {
+    const std::vector<SummaryNumber> numbers = parameters.numbers();
+    const auto                       is_in   = [](const SummaryNumber &number) {
       return [&number](const Outcome &outcome) {
         return number.in(outcome.summary).has_value();
       };
     };
-    std::string heading, lines;
+    std::vector<std::string> heading;
     for (const auto &item : outcomes.at(0).values)
-      heading += quoted(item.first) + ",";
+      heading.push_back(item.first);
     std::vector<const SummaryNumber *> columns;
     for (const SummaryNumber &number : numbers)
       if (std::any_of(outcomes.begin(), outcomes.end(), is_in(number)))
         {
           columns.push_back(&number);
-          heading += quoted(number.path) + ",";
+          heading.push_back(number.path);
         }
+    heading.push_back("verdict");
+    std::string text = csv_heading(heading) + '\n';
     for (const Outcome &outcome : outcomes)
       {
+        std::vector<std::string> line;
         for (const auto &item : outcome.values)
-          lines += quoted(item.second) + ",";
+          line.push_back(item.second);
         for (const SummaryNumber *number : columns)
           {
             const std::optional<double> value = number->in(outcome.summary);
-            lines += (value ? number_text(*value) : std::string()) + ",";
+            line.push_back(value ? number_text(*value) : "");
           }
-        lines += quoted(verdict_of(outcome.summary)) + '\n';
+        line.push_back(verdict_of(outcome.summary));
+        text += csv_heading(line) + '\n';
       }
-    return heading + "verdict\n" + lines;
+    return text;
   }
 
 

@@ -1,5 +1,5 @@
 #include <voussoir/base/error.h>
-#include <voussoir/base/parameter_file.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/driver/summary_numbers.h>
 
 #include <deal.II/base/utilities.h>
@@ -83,15 +83,14 @@ namespace Voussoir
     if (text == "stopped")
       return;
     const auto sign = text.find_last_of("<>");
-    char      *end  = nullptr;
     if (sign != std::string::npos)
       {
-        const std::string value =
-          dealii::Utilities::trim(text.substr(sign + 1));
+        const std::optional<double> value =
+          parse_number(dealii::Utilities::trim(text.substr(sign + 1)));
         number.emplace(dealii::Utilities::trim(text.substr(0, sign)));
         above = text[sign] == '>';
-        limit = std::strtod(value.c_str(), &end);
-        if (end != value.c_str() && *end == '\0' && !number->path.empty())
+        limit = value.value_or(0.);
+        if (value && !number->path.empty())
           return;
       }
     throw UserError(place + " has \"" + text +

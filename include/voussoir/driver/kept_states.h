@@ -28,10 +28,10 @@ namespace Voussoir
     keep(const RestState &rest) const;
 
   private:
-    const Model         &model;
-    const nlohmann::json identity;
-    std::string          file; // empty: none is to be kept
-    Log                 &log;
+    const Model   &model;
+    nlohmann::json identity;
+    std::string    file; // empty: none is to be kept
+    Log           &log;
   };
 } // namespace Voussoir
 

@@ -5,12 +5,18 @@
 
 namespace Voussoir
 {
-  /** Writes the state at rest into a file, so that it need not be found again;
-   *  throws UserError if that fails. */
+  /**
+   * Writes the state at rest into a file, so that it need not be found again;
+   * throws UserError if that fails.
+   *
+   * @param identity by which others know it, see static_identity_of(); none
+   *   where the run itself reads it
+   */
   void
-  store_rest(const Model       &model,
-             const RestState   &rest,
-             const std::string &file);
+  store_rest(const Model          &model,
+             const RestState      &rest,
+             const std::string    &file,
+             const nlohmann::json &identity = {});
 
   /** Reads it; throws UserError if the file is not whole or does not fit. */
   RestState

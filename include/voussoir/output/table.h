@@ -5,9 +5,9 @@
 
 namespace Voussoir
 {
-  /** The heading of a file of comma-separated values. Titles with a comma, a
-   *  quotation mark or a line break are quoted as RFC 4180 has it, so that each
-   *  stays one column. */
+  /** The heading of a file of comma-separated values, or another line of texts.
+   *  Those with a comma, a quotation mark or a line break are quoted as RFC
+   * 4180 has it, so that each stays one column. */
   std::string
   csv_heading(const std::vector<std::string> &titles);
 

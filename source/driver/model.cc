@@ -27,9 +27,13 @@ namespace Voussoir
           sets.push_back(set);
       if (sets.empty())
         return {};
+      std::vector<std::string> open_faces = split_list(reservoir.surface);
+      for (const std::string &set : split_list(reservoir.end))
+        open_faces.push_back(set);
       return split_off_reservoir(mesh,
                                  sets,
-                                 "\"Cell sets\" in section \"Reservoir\"");
+                                 "\"Cell sets\" in section \"Reservoir\"",
+                                 open_faces);
     }
 
 

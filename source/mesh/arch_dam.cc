@@ -4,9 +4,13 @@
 #include <voussoir/mesh/generator.h>
 #include <voussoir/mesh/grading.h>
 #include <voussoir/mesh/mesh_check.h>
+#include <voussoir/mesh/mesh_geometry.h>
+
+#include <deal.II/base/quadrature_lib.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 namespace Voussoir
@@ -108,6 +112,9 @@ namespace Voussoir
 
       CoarseMesh
       generate() const override;
+
+      std::string
+      describe(const CoarseMesh &mesh) const override;
 
     private:
       ArchDamShape
@@ -254,6 +261,36 @@ namespace Voussoir
                                 make_wedges(sweep, section),
                                 columns_per_block(sections),
                                 water_end);
+    }
+
+    std::string
+    ArchDam::describe(const CoarseMesh &mesh) const
+    {
+      const ArchDamShape shape        = this->shape();
+      const auto         length_along = [&](const double z) {
+        const double left  = shape.half_width(1., z),
+                     right = shape.half_width(-1., z);
+        return shape.arc_length(left, z) - shape.arc_length(-right, z);
+      };
+      double volume = 0., middle_area = 0.;
+      for (const unsigned int cell : mesh.cell_sets.at("dam"))
+        volume += cell_volume(mesh, cell);
+      const QMidpoint<1> midpoint;
+      const QIterated<1> over_height(midpoint, 200);
+      for (unsigned int q = 0; q < over_height.size(); ++q)
+        middle_area += over_height.weight(q) * shape.height *
+                       length_along(over_height.point(q)[0] * shape.height);
+
+      std::ostringstream text;
+      text << std::setprecision(4) << "Dam: " << shape.height
+           << " m high, crest " << length_along(shape.height)
+           << " m long; at the crown " << shape.crown_thickness(shape.height)
+           << " to " << shape.crown_thickness(0.) << " m thick; volume "
+           << volume << " m3; slenderness " << std::setprecision(3)
+           << middle_area * middle_area / (volume * shape.height)
+           << " (Lombardi: area of the middle surface, " << middle_area
+           << " m2, squared, over volume and height)\n";
+      return text.str();
     }
 
     const Registry<MeshGenerator>::Add<ArchDam>

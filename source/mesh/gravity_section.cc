@@ -25,9 +25,19 @@ namespace Voussoir
         prm.add_parameter("Height", height, "Base to crest [m].", positive);
         prm.add_parameter("Base width",
                           base_width,
-                          "Along the river, from the vertical upstream face at "
-                          "y = 0 to the downstream toe [m].",
+                          "Along the river, from the heel to the toe [m].",
                           positive);
+        prm.add_parameter("Upstream batter",
+                          batter,
+                          "How far the heel stands out from the crest's "
+                          "upstream edge, which is at y = 0 [m]; 0 for an "
+                          "upright face.",
+                          Patterns::Double(0.));
+        prm.add_parameter("Batter elevation",
+                          batter_elevation,
+                          "Up to which the upstream face leans [m above the "
+                          "base]; 0: up to the crest.",
+                          Patterns::Double(0.));
         prm.add_parameter(
           "Neck elevation",
           neck_elevation,
@@ -81,10 +91,23 @@ namespace Voussoir
         if (neck_elevation >= height)
           throw UserError("In section \"Mesh/gravity section\" the \"Neck "
                           "elevation\" must be less than the \"Height\".");
-        if (cells[2] < 2)
+        if (batter_elevation >= height)
+          throw UserError("In section \"Mesh/gravity section\" the \"Batter "
+                          "elevation\" must be less than the \"Height\"; write "
+                          "0 for a face that leans up to the crest.");
+        const std::vector<double> levels = bends();
+        if (cells[2] + 1 < levels.size())
           throw UserError("\"Cells\" in section \"Mesh/gravity section\" must "
-                          "be at least 2 over the height: one below and one "
-                          "above the neck.");
+                          "be at least " +
+                          std::to_string(levels.size() - 1) +
+                          " over the height: the faces bend at inner "
+                          "elevations, where cells must end.");
+        for (const double z : levels)
+          if (upstream_face(z) <= downstream_face(z))
+            throw UserError("The dam of section \"Mesh/gravity section\" has "
+                            "no width left at an elevation of " +
+                            std::to_string(z) +
+                            " m; choose a smaller \"Upstream batter\".");
         if (water_level > height)
           throw UserError("\"Reservoir level\" in section \"Mesh/gravity "
                           "section\" is above the crest; choose a lower one.");
@@ -180,18 +203,19 @@ namespace Voussoir
 
         std::vector<double> &base = result.base;
         for (unsigned int j = 0; j <= cells[1]; ++j)
-          base.push_back(base_width * (double(j) / cells[1] - 1.));
+          base.push_back(batter + base_width * (double(j) / cells[1] - 1.));
         const std::vector<double> rock =
           distances(rock_extent, base_width / cells[1]);
         result.toe  = rock.size();
         result.heel = rock.size() + cells[1];
         for (const double distance : rock)
-          base.insert(base.begin(), -base_width - distance);
+          base.insert(base.begin(), batter - base_width - distance);
         const std::vector<double> upstream =
           rock_extent > 0. || water_level == 0. ?
             rock :
             distances(water_length, base_width / cells[1]);
-        base.insert(base.end(), upstream.begin(), upstream.end());
+        for (const double distance : upstream)
+          base.push_back(batter + distance);
 
         const bool has_water = water_level > 0.;
         result.surface_row =
@@ -199,9 +223,10 @@ namespace Voussoir
             nearest(result.elevations, result.base_row + 1, water_level) :
             0;
         result.water_end =
-          !has_water        ? result.heel :
-          water_length > 0. ? nearest(base, result.heel + 1, water_length) :
-                              base.size() - 1;
+          !has_water ? result.heel :
+          water_length > 0. ?
+                       nearest(base, result.heel + 1, batter + water_length) :
+                       base.size() - 1;
         return result;
       }
 
@@ -220,17 +245,26 @@ namespace Voussoir
                values.begin();
       }
 
-      /** Above the base the rows lean with the downstream face. */
+      /** Above the base the rows lean with the faces, and the water with the
+       *  upstream one; its end is upright. */
       Point<3>
       lattice_point(const Lattice     &lattice,
                     const unsigned int i,
                     const unsigned int j,
                     const unsigned int k) const
       {
-        const double y = lattice.base[j], z = lattice.elevations[k];
-        return {thickness * (double(i) / cells[0] - 0.5),
-                z > 0. && y < 0. ? y * width(z) / base_width : y,
-                z};
+        const double z = lattice.elevations[k];
+        double       y = lattice.base[j];
+        if (z > 0. && y <= batter)
+          y = upstream_face(z) + (y - batter) *
+                                   (upstream_face(z) - downstream_face(z)) /
+                                   base_width;
+        else if (z > 0. && batter > 0.)
+          {
+            const double end = lattice.base[lattice.water_end];
+            y = end - (end - y) * (end - upstream_face(z)) / (end - batter);
+          }
+        return {thickness * (double(i) / cells[0] - 0.5), y, z};
       }
 
       /** Adds the cell at a place of the lattice to its sets. */
@@ -274,14 +308,41 @@ namespace Voussoir
              5);
       }
 
+      /** y of the faces at an elevation [m]; they are plane between the bends.
+       */
       double
-      width(const double z) const
+      upstream_face(const double z) const
       {
+        return batter * std::max(0., 1. - z / leaning_height());
+      }
+
+      double
+      downstream_face(const double z) const
+      {
+        const double toe  = batter - base_width,
+                     neck = upstream_face(neck_elevation) - neck_width;
         return z < neck_elevation ?
-                 base_width + (neck_width - base_width) * z / neck_elevation :
-                 neck_width + (crest_width - neck_width) *
-                                (z - neck_elevation) /
-                                (height - neck_elevation);
+                 toe + (neck - toe) * z / neck_elevation :
+                 neck + (-crest_width - neck) * (z - neck_elevation) /
+                          (height - neck_elevation);
+      }
+
+      double
+      leaning_height() const
+      {
+        return batter_elevation > 0. ? batter_elevation : height;
+      }
+
+      /** Elevations from base to crest between which the faces are plane. */
+      std::vector<double>
+      bends() const
+      {
+        std::vector<double> levels{0., neck_elevation, height};
+        if (batter > 0. && batter_elevation > 0.)
+          levels.push_back(batter_elevation);
+        std::sort(levels.begin(), levels.end());
+        levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+        return levels;
       }
 
       /** Distances from the dam, up to @p extent, of the rows of rock or water
@@ -298,35 +359,45 @@ namespace Voussoir
         return result;
       }
 
-      /** Elevations of the rows, one of them at the neck, from below. */
+      /** Elevations of the rows from below; each bend is one of them. */
       std::vector<double>
       rows() const
       {
-        const int below = std::max<int>(
-          1,
-          std::min<int>(cells[2] - 1,
-                        std::lround(cells[2] * neck_elevation / height)));
-        const int           above = cells[2] - below;
-        std::vector<double> result;
-        for (const double depth :
-             distances(rock_extent, neck_elevation / below))
-          result.insert(result.begin(), -depth);
-        for (int k = 0; k < below; ++k)
-          result.push_back(k * neck_elevation / below);
-        for (int k = 0; k < above; ++k)
-          result.push_back(neck_elevation +
-                           k * (height - neck_elevation) / above);
+        const std::vector<double> levels  = bends();
+        const unsigned int        n_parts = levels.size() - 1;
+        std::vector<double>       result;
+        for (unsigned int part = 0; part < n_parts; ++part)
+          {
+            // in proportion, and one at least for each part
+            const int so_far = result.size(),
+                      last   = part + 1 == n_parts ?
+                                 int(cells[2]) :
+                                 std::clamp<int>(std::lround(cells[2] *
+                                                           levels[part + 1] /
+                                                           height),
+                                               so_far + 1,
+                                               cells[2] + part + 1 - n_parts);
+            for (int k = so_far; k < last; ++k)
+              result.push_back(levels[part] +
+                               (k - so_far) *
+                                 (levels[part + 1] - levels[part]) /
+                                 (last - so_far));
+          }
         result.push_back(height);
+        for (const double depth : distances(rock_extent, result[1]))
+          result.insert(result.begin(), -depth);
         return result;
       }
 
       // Koyna
-      double                    height         = 103.;
-      double                    base_width     = 70.;
-      double                    neck_elevation = 66.5;
-      double                    neck_width     = 19.25;
-      double                    crest_width    = 14.8;
-      double                    thickness      = 1.;
+      double                    height           = 103.;
+      double                    base_width       = 70.;
+      double                    batter           = 0.;
+      double                    batter_elevation = 0.;
+      double                    neck_elevation   = 66.5;
+      double                    neck_width       = 19.25;
+      double                    crest_width      = 14.8;
+      double                    thickness        = 1.;
       std::vector<unsigned int> cells{1, 10, 40};
       double                    rock_extent  = 0.;
       double                    growth       = 1.2;

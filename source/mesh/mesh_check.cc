@@ -70,16 +70,6 @@ namespace Voussoir
     }
 
 
-    Point<3>
-    cell_center(const CoarseMesh &mesh, const unsigned int cell)
-    {
-      Point<3> center;
-      for (const unsigned int v : mesh.cells[cell])
-        center += mesh.vertices[v] / 8.;
-      return center;
-    }
-
-
     std::string
     describe_point(const Point<3> &point)
     {
@@ -93,7 +83,7 @@ namespace Voussoir
     place(const CoarseMesh &mesh, const unsigned int cell)
     {
       return "cell " + std::to_string(cell) + " (counted from 0) with centre " +
-             describe_point(cell_center(mesh, cell));
+             describe_point(cell_centre(mesh, cell));
     }
 
 
@@ -585,7 +575,7 @@ namespace Voussoir
       if (const std::size_t part = parts.find_set(mesh.cells[cell][0]);
           seen.insert(part).second)
         result.push_back(
-          {describe_point(cell_center(mesh, cell)), held.count(part) > 0});
+          {describe_point(cell_centre(mesh, cell)), held.count(part) > 0});
     return result;
   }
 

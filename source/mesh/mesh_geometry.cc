@@ -66,6 +66,16 @@ namespace Voussoir
   }
 
 
+  Point<3>
+  cell_centre(const CoarseMesh &mesh, const unsigned int cell)
+  {
+    Point<3> centre;
+    for (const unsigned int v : mesh.cells[cell])
+      centre += mesh.vertices[v] / 8.;
+    return centre;
+  }
+
+
   double
   cell_volume(const CoarseMesh &mesh, const unsigned int cell)
   {

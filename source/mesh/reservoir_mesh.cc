@@ -4,8 +4,11 @@
 #include <voussoir/mesh/reservoir_mesh.h>
 
 #include <deal.II/base/numbers.h>
+#include <deal.II/numerics/rtree.h>
 
+#include <optional>
 #include <set>
+#include <sstream>
 
 namespace Voussoir
 {
@@ -53,6 +56,98 @@ namespace Voussoir
     }
 
 
+    /** An outer face as a plane piece. */
+    struct Piece
+    {
+      Piece(const CoarseMesh &mesh, const CoarseMesh::Face &face)
+        : size(std::sqrt(face_area(mesh, face)))
+      {
+        const auto v = face_vertices(mesh, face);
+        for (const unsigned int vertex : v)
+          centre += 0.25 * mesh.vertices[vertex];
+        normal = cross_product_3d(mesh.vertices[v[3]] - mesh.vertices[v[0]],
+                                  mesh.vertices[v[2]] - mesh.vertices[v[1]]);
+        normal /= normal.norm();
+        if (normal * (centre - cell_centre(mesh, face.cell)) < 0.)
+          normal *= -1.;
+      }
+
+      /** How far in front of this piece another one lies that looks back at it;
+       *  nothing if it is not before it, or further than this one is large. */
+      std::optional<double>
+      distance_to(const Piece &other) const
+      {
+        const Tensor<1, 3> way   = other.centre - centre;
+        const double       ahead = way * normal;
+        if (other.normal * normal > -0.7 || ahead < 0. || ahead > size ||
+            (way - ahead * normal).norm() > 0.5 * (size + other.size))
+          return {};
+        return ahead;
+      }
+
+      Point<3>     centre;
+      Tensor<1, 3> normal; // outwards
+      double       size;
+    };
+
+
+    // Water that was meshed on its own may leave a gap, in which nothing would
+    // press on the dam.
+    void
+    check_gap(const CoarseMesh               &mesh,
+              const std::vector<bool>        &is_water,
+              const std::vector<std::string> &open_faces,
+              const std::string              &place)
+    {
+      std::set<std::pair<unsigned int, unsigned int>> open;
+      for (const std::string &name : open_faces)
+        if (const auto faces = mesh.face_sets.find(name);
+            faces != mesh.face_sets.end())
+          for (const CoarseMesh::Face &face : faces->second)
+            open.emplace(face.cell, face.face);
+
+      const std::vector<SortedFace> faces    = sorted_faces(mesh);
+      const auto                    is_outer = [&faces](const std::size_t i) {
+        return (i == 0 || faces[i].vertices != faces[i - 1].vertices) &&
+               (i + 1 == faces.size() ||
+                faces[i].vertices != faces[i + 1].vertices);
+      };
+      std::vector<Piece>    water, solid;
+      std::vector<Point<3>> centres; // of the solid
+      for (std::size_t i = 0; i < faces.size(); ++i)
+        {
+          const CoarseMesh::Face &face = faces[i].face;
+          if (!is_outer(i) || open.count({face.cell, face.face}) > 0)
+            continue;
+          if (is_water[face.cell])
+            water.emplace_back(mesh, face);
+          else
+            {
+              solid.emplace_back(mesh, face);
+              centres.push_back(solid.back().centre);
+            }
+        }
+      const auto tree = pack_rtree_of_indices(centres);
+      for (const Piece &piece : water)
+        {
+          constexpr unsigned int   n_nearest = 8;
+          std::vector<std::size_t> near;
+          tree.query(boost::geometry::index::nearest(piece.centre, n_nearest),
+                     std::back_inserter(near));
+          for (const std::size_t other : near)
+            if (const auto gap = piece.distance_to(solid[other]))
+              {
+                std::ostringstream text;
+                text << place << ": at (" << piece.centre
+                     << ") m the water leaves a gap of " << *gap
+                     << " m to the rest of the mesh; mesh both together, so "
+                        "that they have common nodes.";
+                throw UserError(text.str());
+              }
+        }
+    }
+
+
     // The cells of @p mesh for which @p kept is true, with their sets.
     CoarseMesh
     part(const CoarseMesh &mesh, const std::vector<bool> &kept)
@@ -96,7 +191,8 @@ namespace Voussoir
   CoarseMesh
   split_off_reservoir(CoarseMesh                     &mesh,
                       const std::vector<std::string> &cell_sets,
-                      const std::string              &place)
+                      const std::string              &place,
+                      const std::vector<std::string> &open_faces)
   {
     std::vector<bool> is_water = water_cells(mesh, cell_sets, place);
     const auto        shared   = shared_faces(mesh, is_water);
@@ -104,6 +200,7 @@ namespace Voussoir
       throw UserError(place + ": the water \"" + join(cell_sets, ", ") +
                       "\" shares no face with the rest of the mesh; mesh water "
                       "and dam together, so that they have common nodes.");
+    check_gap(mesh, is_water, open_faces, place);
 
     // each shared face, from both its sides
     std::map<std::pair<unsigned int, unsigned int>, CoarseMesh::Face>

@@ -1,4 +1,5 @@
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/mesh/mesh_quality.h>
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/picture_series.h>
 
@@ -18,9 +19,11 @@ namespace Voussoir
         prm.add_parameter("Quantities",
                           quantities,
                           "What to write: displacement [m], velocity [m/s], "
-                          "principal stress [MPa].",
-                          Patterns::MultipleSelection(
-                            "displacement|velocity|principal stress"));
+                          "principal stress [MPa], mesh quality (scaled "
+                          "Jacobian and aspect ratio of the cells).",
+                          Patterns::MultipleSelection("displacement|velocity|"
+                                                      "principal stress|mesh "
+                                                      "quality"));
         pictures.declare_parameters(prm);
       }
 
@@ -53,6 +56,13 @@ namespace Voussoir
           nodal.push_back({&state.displacement, {"displacement"}});
         if (wants("velocity"))
           nodal.push_back({&state.velocity, {"velocity"}});
+        std::vector<CellField> of_cells;
+        if (wants("mesh quality"))
+          {
+            find_quality();
+            of_cells = {{&scaled_jacobian, "scaled_Jacobian"},
+                        {&aspect_ratio, "aspect_ratio"}};
+          }
         pictures.add(state.time,
                      write_fields(*model,
                                   nodal,
@@ -60,7 +70,8 @@ namespace Voussoir
                                     &state.displacement :
                                     nullptr,
                                   pictures.next_name(state),
-                                  state.time));
+                                  state.time,
+                                  of_cells));
       }
 
       void
@@ -70,10 +81,32 @@ namespace Voussoir
       }
 
     private:
+      void
+      find_quality()
+      {
+        const Triangulation<3> &mesh =
+          model->discretization.grid.triangulation();
+        scaled_jacobian.reinit(mesh.n_active_cells());
+        aspect_ratio.reinit(mesh.n_active_cells());
+        for (const auto &cell : mesh.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              std::array<Point<3>, 8> vertices;
+              for (unsigned int v = 0; v < 8; ++v)
+                vertices[v] = cell->vertex(v);
+              MeshQuality quality;
+              quality.take(vertices);
+              scaled_jacobian[cell->active_cell_index()] =
+                quality.scaled_jacobian;
+              aspect_ratio[cell->active_cell_index()] = quality.aspect_ratio;
+            }
+      }
+
       std::string   quantities = "displacement, principal stress";
       PictureSeries pictures{"fields", "Output/fields"};
 
       std::unique_ptr<ObservedModel> model;
+      dealii::Vector<float>          scaled_jacobian, aspect_ratio;
     };
 
     const Registry<Observer>::Add<Fields> registered(

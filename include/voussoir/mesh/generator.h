@@ -23,6 +23,14 @@ namespace Voussoir
 
     virtual CoarseMesh
     generate() const = 0;
+
+    /** What an engineer asks first of a structure like this, a line for the
+     *  log; empty if there is nothing. */
+    virtual std::string
+    describe(const CoarseMesh &) const
+    {
+      return {};
+    }
   };
 } // namespace Voussoir
 

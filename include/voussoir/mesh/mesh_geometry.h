@@ -34,6 +34,10 @@ namespace Voussoir
   std::array<double, 8>
   corner_shapes(const CoarseMesh &mesh, const unsigned int cell);
 
+  /** Mean of its vertices. */
+  dealii::Point<3>
+  cell_centre(const CoarseMesh &mesh, const unsigned int cell);
+
   /** Volume [length^3] of the trilinear cell, exact. */
   double
   cell_volume(const CoarseMesh &mesh, const unsigned int cell);

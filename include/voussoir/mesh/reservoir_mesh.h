@@ -14,12 +14,15 @@ namespace Voussoir
    * own vertices at the faces where they met, at the same positions, and these
    * faces make the set `wet_wall` of both. Sets go with their members; a face
    * between water and the rest belongs to its sets on both sides. @p place
-   * names the entry with the cell sets. Throws UserError.
+   * names the entry with the cell sets. Throws UserError, also where the water
+   * leaves a narrow gap to the rest, outside of the @p open_faces (face sets,
+   * known or not).
    */
   CoarseMesh
   split_off_reservoir(CoarseMesh                     &mesh,
                       const std::vector<std::string> &cell_sets,
-                      const std::string              &place);
+                      const std::string              &place,
+                      const std::vector<std::string> &open_faces = {});
 } // namespace Voussoir
 
 #endif

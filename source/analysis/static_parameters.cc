@@ -49,7 +49,15 @@ namespace Voussoir
   {
     std::vector<std::vector<std::string>> names;
     for (const std::string &stage : split_list(stages, ';'))
-      names.push_back(split_list(stage));
+      {
+        std::vector<std::string> there;
+        for (const std::string &name : split_list(stage))
+          if (std::find(left_out.begin(), left_out.end(), name) ==
+              left_out.end())
+            there.push_back(name);
+        if (!there.empty())
+          names.push_back(there);
+      }
     return names;
   }
 

@@ -1,3 +1,4 @@
+#include <voussoir/base/active.h>
 #include <voussoir/constraints/interface_parameters.h>
 #include <voussoir/mesh/interfaces.h>
 
@@ -194,16 +195,18 @@ namespace Voussoir
           Registry<InterfaceLaw>::create(file.given(place + "/Law", "friction"),
                                          "\"Law\" in section \"" + place +
                                            "\"");
-        list.push_back(std::move(interface));
+        (declared_active(prm, file, place) ? list : inactive)
+          .push_back(std::move(interface));
         prm.leave_subsection();
       }
     // the entries refer to their places, which are final only now
-    for (InterfaceParameters &interface : list)
-      {
-        prm.enter_subsection(interface.name);
-        interface.declare(prm);
-        prm.leave_subsection();
-      }
+    for (auto *interfaces : {&list, &inactive})
+      for (InterfaceParameters &interface : *interfaces)
+        {
+          prm.enter_subsection(interface.name);
+          interface.declare(prm);
+          prm.leave_subsection();
+        }
     prm.leave_subsection();
   }
 

@@ -1,3 +1,4 @@
+#include <voussoir/base/active.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
 #include <voussoir/base/usual_range.h>
@@ -59,7 +60,8 @@ namespace Voussoir
                               const ParameterFile &file,
                               const std::string   &section,
                               const std::string   &what,
-                              const std::string   &default_class)
+                              const std::string   &default_class,
+                              const bool           can_rest)
   {
     in_section(prm, section, [&] {
       prm.declare_entry("Names",
@@ -78,11 +80,13 @@ namespace Voussoir
                             Patterns::Selection(
                               choices(Registry<Base>::names())),
                             "Its class; the other entries depend on it.");
-          objects.emplace_back(
+          auto &list =
+            can_rest && !declared_active(prm, file, path) ? inactive : objects;
+          list.emplace_back(
             name,
             Registry<Base>::create(file.given(path + "/Class", default_class),
                                    "\"Class\" in section \"" + path + "\""));
-          objects.back().second->declare_parameters(prm);
+          list.back().second->declare_parameters(prm);
         });
     });
   }
@@ -205,17 +209,20 @@ namespace Voussoir
     });
     interfaces.declare(prm, file);
     in_section(prm, "Discretization", [&] { discretization.declare(prm); });
-    materials.declare(prm, file, "Materials", "materials", "linear elastic");
+    materials.declare(
+      prm, file, "Materials", "materials", "linear elastic", false);
     in_section(prm, "Boundaries", [&] { boundaries.declare(prm); });
     in_section(prm, "Ground motion", [&] { ground_motion.declare(prm); });
     in_section(prm, "Wave field", [&] { wave.declare(prm); });
-    loads.declare(prm, file, "Loads", "loads", "surface load");
+    loads.declare(prm, file, "Loads", "loads", "surface load", true);
+    for (const auto &load : loads.inactive)
+      static_state.left_out.push_back(load.first);
     in_section(prm, "Reservoir", [&] { reservoir.declare(prm); });
     in_section(prm, "Static state", [&] { static_state.declare(prm); });
     in_section(prm, "Modes", [&] { modes.declare(prm); });
     in_section(prm, "Material test", [&] { material_test.declare(prm); });
     projections.declare(
-      prm, file, "Constraints", "constraints", "prescribed motion");
+      prm, file, "Constraints", "constraints", "prescribed motion", true);
     in_section(prm, "Damping", [&] { damping.declare(prm); });
     in_section(prm, "Time", [&] { time.declare(prm); });
     in_section(prm, "Study", [&] { study.declare(prm); });
@@ -295,6 +302,8 @@ namespace Voussoir
     else
       mesh = reader.read(&log);
     log << describe_mesh(mesh);
+    if (generator)
+      log << generator->describe(mesh);
     interfaces.split(mesh);
     return mesh;
   }

@@ -284,12 +284,10 @@ namespace Voussoir
     {
       app.set_version_flag("--version", version());
       app.add_option("case", arguments.case_file, "Parameter file of the case");
-      app
-        .add_option("--set",
-                    arguments.changes,
-                    "Change an entry: \"Section/Entry=value\"; may be given "
-                    "several times")
-        ->allow_extra_args(false);
+      app.add_option("--set",
+                     arguments.changes,
+                     "Change entries: \"Section/Entry=value\", one or several; "
+                     "may be given several times");
       app.add_flag("--validate",
                    arguments.only_validate,
                    "Check everything about the case without running it");
@@ -315,6 +313,20 @@ namespace Voussoir
                    arguments.options.overwrite,
                    "Replace the results in an earlier output folder instead "
                    "of numbering");
+    }
+
+
+    /** "--set A=1 B=2 case.prm": what changes no entry is the case. */
+    void
+    take_case_from_changes(Arguments &arguments)
+    {
+      auto &changes = arguments.changes;
+      if (arguments.case_file.empty() && !changes.empty() &&
+          changes.back().find('=') == std::string::npos)
+        {
+          arguments.case_file = changes.back();
+          changes.pop_back();
+        }
     }
 
 
@@ -388,6 +400,7 @@ namespace Voussoir
     try
       {
         app.parse(argc, argv);
+        take_case_from_changes(arguments);
       }
     catch (const CLI::ParseError &error)
       {

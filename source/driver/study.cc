@@ -4,6 +4,7 @@
 #include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/simulation.h>
 #include <voussoir/driver/study.h>
+#include <voussoir/driver/study_statistics.h>
 #include <voussoir/output/checkpoint.h>
 #include <voussoir/output/table.h>
 
@@ -19,15 +20,6 @@ namespace Voussoir
 
   namespace
   {
-    std::string
-    number_text(const double value)
-    {
-      std::ostringstream text;
-      text << std::setprecision(6) << value;
-      return text.str();
-    }
-
-
     /** "Overload factor = 1.2, Young's modulus = 15e9". */
     std::string
     description(const StudyValues &values)
@@ -179,6 +171,7 @@ namespace Voussoir
   Study::file_of(const StudyValues &values) const
   {
     std::vector<std::string> changes{"Study/Vary=",
+                                     "Study/Spread over=",
                                      "Study/Limit/Entry=",
                                      "Output/Folder=" + folder_of(values)};
     for (const auto &[entry, value] : values)
@@ -278,9 +271,16 @@ namespace Voussoir
         summary = do_run(run, run_folder);
         write({{"identity", identity}, {"summary", summary}});
         ++n_done;
+        seconds_of_runs += clock_of_run.wall_time();
+        const std::size_t expected = n_expected(), ended = outcomes.size() + 1;
         say(description(values) + ": " +
             summary.value("verdict", "no verdict") + ", " +
-            duration_text(clock_of_run.wall_time()));
+            duration_text(clock_of_run.wall_time()) +
+            (ended < expected ? ", about " +
+                                  duration_text(double(expected - ended) *
+                                                seconds_of_runs / n_done) +
+                                  " left" :
+                                std::string()));
       }
     outcomes.push_back({values, run_folder, summary});
     return outcomes.back();
@@ -419,14 +419,46 @@ namespace Voussoir
   {
     if (Utilities::MPI::this_mpi_process(communicator) > 0)
       return;
-    for (const auto &[name, text] :
-         {std::make_pair("/study.csv", table()),
-          std::make_pair("/study.json", all_results().dump(2) + '\n')})
+    std::map<std::string, std::string> files{{"/study.csv", table()},
+                                             {"/study.json",
+                                              all_results().dump(2) + '\n'}};
+    if (!parameters.spread.empty())
+      files["/study_statistics.csv"] = statistics();
+    for (const auto &[name, text] : files)
       if (const std::string reason = write_file(folder + name, text);
           !reason.empty())
         throw UserError("\"" + folder + name + "\" cannot be written because " +
                         reason + ".");
     say("The study is in " + folder + "/study.csv and study.json");
+  }
+
+
+  // Of the limits, if they are sought, and of the runs otherwise.
+  std::string
+  Study::statistics() const
+  {
+    std::vector<StudySample> samples;
+    std::vector<std::string> names;
+    if (parameters.seeks_limit())
+      {
+        names = {"limit of " + parameters.varied_to_limit};
+        for (const Limit &limit : limits)
+          samples.push_back(
+            {limit.values, {0.5 * (limit.fails + limit.meets)}});
+      }
+    else
+      {
+        const std::vector<SummaryNumber> numbers = parameters.numbers();
+        for (const SummaryNumber &number : numbers)
+          names.push_back(number.path);
+        for (const Outcome &outcome : outcomes)
+          {
+            samples.push_back({outcome.values, {}});
+            for (const SummaryNumber &number : numbers)
+              samples.back().quantities.push_back(number.in(outcome.summary));
+          }
+      }
+    return statistics_table(samples, parameters.spread_entries(), names);
   }
 
 

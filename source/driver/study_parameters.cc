@@ -2,32 +2,44 @@
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/driver/study_parameters.h>
 
+#include <algorithm>
+
 namespace Voussoir
 {
   using namespace dealii;
 
   namespace
   {
-    /** An entry and the values it takes one after the other. */
-    using VariedEntry = std::pair<std::string, std::vector<std::string>>;
+    /** Entries that take their values together: runs by entries. */
+    using PairedEntries = std::vector<StudyValues>;
 
-    std::vector<VariedEntry>
-    varied_entries(const std::string &text)
+    PairedEntries
+    paired_entries(const std::string &text)
     {
-      std::vector<VariedEntry> result;
-      for (const std::string &part : split_list(text, ';'))
+      PairedEntries runs;
+      for (const std::string &part : split_list(text, '&'))
         {
-          const auto equals = part.find('=');
-          result.emplace_back(Utilities::trim(part.substr(0, equals)),
-                              equals == std::string::npos ?
-                                std::vector<std::string>() :
-                                split_list(part.substr(equals + 1)));
-          if (result.back().second.empty())
-            throw UserError("\"Vary\" in section \"Study\" gives \"" +
-                            result.back().first +
+          const auto        equals = part.find('=');
+          const std::string entry  = Utilities::trim(part.substr(0, equals));
+          const auto        values = equals == std::string::npos ?
+                                       std::vector<std::string>() :
+                                       split_list(part.substr(equals + 1));
+          if (values.empty())
+            throw UserError("\"Vary\" in section \"Study\" gives \"" + entry +
                             "\" no values; write \"Section/Entry = 1, 2\".");
+          if (runs.empty())
+            runs.resize(values.size());
+          if (values.size() != runs.size())
+            throw UserError("\"Vary\" in section \"Study\" pairs " +
+                            std::to_string(values.size()) + " values of \"" +
+                            entry + "\" with " + std::to_string(runs.size()) +
+                            " of \"" + runs[0][0].first +
+                            "\"; give as many, or cross them by \";\" instead "
+                            "of \"&\".");
+          for (std::size_t i = 0; i < values.size(); ++i)
+            runs[i].emplace_back(entry, values[i]);
         }
-      return result;
+      return runs;
     }
   } // namespace
 
@@ -41,13 +53,16 @@ namespace Voussoir
       "Entries of this file with the values they take, separated by "
       "semicolons, as in \"Ground motion/Overload factor = 1, 1.2, 1.4; "
       "Materials/rock/Young's modulus = 15e9, 20e9\". Each combination is a run "
-      "of its own. \"" +
+      "of its own. \"&\" instead of a semicolon pairs two entries: the first "
+      "values of both together, then the second. \"" +
         strength_reduction + "\" divides what \"Reduced strengths\" names.");
-    prm.add_parameter("Combination",
-                      combination,
-                      "Crossed: each value with each of the other entries. "
-                      "Paired: the first values together, the second, ...",
-                      Patterns::Selection("crossed|paired"));
+    prm.add_parameter(
+      "Spread over",
+      spread,
+      "Varied entries, separated by semicolons, over which "
+      "study_statistics.csv gives mean, spread and fractiles of each quantity, "
+      "for each combination of the others: of records, for an incremental "
+      "dynamic analysis. Empty: no statistics.");
     prm.add_parameter(
       "Reduced strengths",
       reduced,
@@ -112,6 +127,7 @@ namespace Voussoir
   StudyParameters::check() const
   {
     combinations();
+    spread_entries();
     if (seeks_limit() && criteria().empty())
       throw UserError("\"Criterion\" in section \"Study/Limit\" is empty; say "
                       "what happens at the limit of \"" +
@@ -131,32 +147,44 @@ namespace Voussoir
   StudyParameters::combinations() const
   {
     std::vector<StudyValues> result(1);
-    bool                     first = true;
-    for (const auto &[entry, values] : varied_entries(vary))
+    for (const std::string &group : split_list(vary, ';'))
       {
-        if (combination == "paired" && !first)
-          {
-            if (values.size() != result.size())
-              throw UserError(
-                "\"Vary\" in section \"Study\" pairs " +
-                std::to_string(values.size()) + " values of \"" + entry +
-                "\" with " + std::to_string(result.size()) + " of \"" +
-                result[0][0].first +
-                "\"; give as many, or set \"Combination = crossed\".");
-            for (std::size_t i = 0; i < values.size(); ++i)
-              result[i].emplace_back(entry, values[i]);
-            continue;
-          }
         std::vector<StudyValues> longer;
         for (const StudyValues &before : result)
-          for (const std::string &value : values)
+          for (const StudyValues &values : paired_entries(group))
             {
               longer.push_back(before);
-              longer.back().emplace_back(entry, value);
+              longer.back().insert(longer.back().end(),
+                                   values.begin(),
+                                   values.end());
             }
         result = std::move(longer);
-        first  = false;
       }
+    return result;
+  }
+
+
+  std::vector<std::string>
+  StudyParameters::spread_entries() const
+  {
+    const auto               wanted = split_list(spread, ';');
+    std::vector<std::string> result;
+    for (const std::string &group : split_list(vary, ';'))
+      {
+        const PairedEntries      runs = paired_entries(group);
+        std::vector<std::string> entries;
+        for (const auto &item : runs.at(0))
+          entries.push_back(item.first);
+        if (std::any_of(entries.begin(), entries.end(), [&](const auto &entry) {
+              return std::find(wanted.begin(), wanted.end(), entry) !=
+                     wanted.end();
+            }))
+          result.insert(result.end(), entries.begin(), entries.end());
+      }
+    for (const std::string &entry : wanted)
+      if (std::find(result.begin(), result.end(), entry) == result.end())
+        throw UserError("\"Spread over\" in section \"Study\" names \"" +
+                        entry + "\", which \"Vary\" does not vary.");
     return result;
   }
 

@@ -5,6 +5,8 @@
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
+#include <iomanip>
+#include <sstream>
 
 namespace Voussoir
 {
@@ -58,6 +60,22 @@ namespace Voussoir
   } // namespace
 
 
+  bool
+  is_smallest(const std::string &path)
+  {
+    return names_along(path).back().rfind("smallest", 0) == 0;
+  }
+
+
+  std::string
+  number_text(const double value)
+  {
+    std::ostringstream text;
+    text << std::setprecision(6) << value;
+    return text.str();
+  }
+
+
   SummaryNumber::SummaryNumber(const std::string &path)
     : path(path)
     , names(names_along(path))
@@ -71,9 +89,8 @@ namespace Voussoir
     collect(summary, names, 0, found);
     if (found.empty())
       return {};
-    return names.back().rfind("smallest", 0) == 0 ?
-             *std::min_element(found.begin(), found.end()) :
-             *std::max_element(found.begin(), found.end());
+    return is_smallest(path) ? *std::min_element(found.begin(), found.end()) :
+                               *std::max_element(found.begin(), found.end());
   }
 
 

@@ -1,4 +1,5 @@
 #include <voussoir/driver/study.h>
+#include <voussoir/driver/study_statistics.h>
 
 #include <filesystem>
 #include <fstream>
@@ -131,6 +132,108 @@ namespace Voussoir
       }
     };
 
+    /** Runs of which one slides away in its static state. */
+    class FailingRun : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        remove("failing", communicator);
+        const ParameterFile study =
+          study_file(file, "study_slope", "failing")
+            .with({"Study/Limit/Entry=",
+                   "Study/Vary=Interfaces/plane/Friction coefficient = 0.5, "
+                   "0.1, 0.8",
+                   "Study/Quantities=interfaces/surfaces/plane/residual slip "
+                   "[mm]"});
+        const nlohmann::json runs = results_of(study, communicator).at("runs");
+        verdicts.is_true("three runs", runs.size() == 3);
+        for (unsigned int i = 0; i < 3; ++i)
+          {
+            const bool        slides  = i == 1; // the slope has tan = 0.25
+            const std::string verdict = runs.at(i).at("verdict");
+            verdicts.is_true(slides ? "the second is reported as stopped" :
+                                      "another stands",
+                             (verdict.rfind("stopped: ", 0) == 0) == slides);
+            verdicts.is_true("  and has its number or none",
+                             runs.at(i).contains("quantities") != slides);
+          }
+      }
+    };
+
+
+    /** Mean and spread, in closed form, and of the settlements rho g H^2 / 2 E
+     *  of columns that are 2000, 2400 and 3100 kg/m3 heavy. */
+    class StudyStatistics : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        // of four runs one ended early and lies beyond all others
+        const Statistics some({1., 2., {}, 4.},
+                              std::numeric_limits<double>::infinity());
+        verdicts.near("mean of 1, 2, 4", some.mean.value(), 7. / 3., 1e-12);
+        verdicts.near("  standard deviation",
+                      some.deviation.value(),
+                      std::sqrt(7. / 3.),
+                      1e-12);
+        verdicts.near("  16 % of these and infinity",
+                      some.fractiles[0].value(),
+                      1.48,
+                      1e-12);
+        verdicts.near("  median", some.fractiles[1].value(), 3., 1e-12);
+        verdicts.is_true("  84 %: not finite", !some.fractiles[2]);
+
+        remove("spread", communicator);
+        results_of(study_file(file, "study_columns", "spread")
+                     .with({"Study/Vary=Materials/stone/Density = 2000, 2400, "
+                            "3100 ; Materials/stone/Young's modulus = 1e9, 4e9",
+                            "Study/Spread over=Materials/stone/Density"}),
+                   communicator);
+        std::ifstream in("spread/study_statistics.csv");
+        std::string   line;
+        std::getline(in, line);
+        verdicts.is_true("heading",
+                         line == "Materials/stone/Young's modulus,quantity,"
+                                 "runs,ended early,mean,standard deviation,"
+                                 "16 %,median,84 %");
+        for (const double stiffness : {1e9, 4e9})
+          {
+            std::getline(in, line);
+            const auto   columns = split_list(line);
+            const double unit    = 9.81 * 100. / (2. * stiffness);
+            verdicts.near("E [Pa]", std::stod(columns.at(0)), stiffness, 1e-12);
+            verdicts.near("  mean [m]",
+                          std::stod(columns.at(4)),
+                          2500. * unit,
+                          1e-5);
+            // of -500, -100, 600
+            verdicts.near("  standard deviation [m]",
+                          std::stod(columns.at(5)),
+                          std::sqrt(310000.) * unit,
+                          1e-5);
+            verdicts.near("  16 % [m]",
+                          std::stod(columns.at(6)),
+                          2128. * unit,
+                          1e-5);
+            verdicts.near("  84 % [m]",
+                          std::stod(columns.at(8)),
+                          2876. * unit,
+                          1e-5);
+          }
+      }
+    };
+
+    const Registry<Check>::Add<FailingRun> failing("study with a failing run",
+                                                   "One run that slides away.");
+    const Registry<Check>::Add<StudyStatistics>
+      statistics("study statistics", "Mean and spread over varied entries.");
     const Registry<Check>::Add<StudyLimit>
       limit("study limit", "A limit that is known in closed form.");
     const Registry<Check>::Add<StudyOfColumns>

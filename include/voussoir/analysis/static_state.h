@@ -24,6 +24,9 @@ namespace Voussoir
     double      rest      = 1e-6;
     std::string kept      = "static_states"; // folder
 
+    /** Loads that are not active. */
+    std::vector<std::string> left_out;
+
     void
     declare(dealii::ParameterHandler &prm);
 

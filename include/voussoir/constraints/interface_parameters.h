@@ -60,6 +60,9 @@ namespace Voussoir
   {
     std::vector<InterfaceParameters> list;
 
+    /** Those with `set Active = false`: the mesh is not split there. */
+    std::vector<InterfaceParameters> inactive;
+
     void
     declare(dealii::ParameterHandler &prm, const ParameterFile &file);
 

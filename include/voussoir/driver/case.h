@@ -31,18 +31,23 @@ namespace Voussoir
   {
     std::vector<std::pair<std::string, std::unique_ptr<Base>>> objects;
 
+    /** Those with `set Active = false`, whose entries are checked all the same.
+     */
+    std::vector<std::pair<std::string, std::unique_ptr<Base>>> inactive;
+
     /**
-     * @param section    where the list stands
-     * @param list_entry name of the entry with the list
-     * @param what       what one of them is, for the description
-     * @param otherwise  the names if the case lists none
+     * @param section       where the list stands
+     * @param what          what one of them is, for the description
+     * @param default_class of one that names none
+     * @param can_rest      whether one can be inactive
      */
     void
     declare(dealii::ParameterHandler &prm,
             const ParameterFile      &file,
             const std::string        &section,
             const std::string        &what,
-            const std::string        &default_class);
+            const std::string        &default_class,
+            const bool                can_rest);
   };
 
   /** The entries of the section "Time". */

@@ -77,12 +77,15 @@ namespace Voussoir
     void
     gather();
 
-    /** Writes study.csv and study.json. */
+    /** Writes study.csv, study.json and study_statistics.csv. */
     void
     write_tables() const;
 
     std::string
     table() const;
+
+    std::string
+    statistics() const;
 
     nlohmann::json
     all_results() const;

@@ -18,7 +18,7 @@ namespace Voussoir
   /** The entries of the section "Study". */
   struct StudyParameters
   {
-    std::string  vary, combination = "crossed", reduced, quantities;
+    std::string  vary, spread, reduced, quantities;
     unsigned int ranks_of_run = 0;
 
     // of the search for a limit
@@ -45,6 +45,10 @@ namespace Voussoir
      *  if nothing is varied. */
     std::vector<StudyValues>
     combinations() const;
+
+    /** Those over which statistics are wanted, with their partners. */
+    std::vector<std::string>
+    spread_entries() const;
 
     std::vector<SummaryNumber>
     numbers() const;

@@ -31,6 +31,14 @@ namespace Voussoir
     std::vector<std::string> names; // along the path
   };
 
+  /** Whether of several numbers of a path the smallest counts. */
+  bool
+  is_smallest(const std::string &path);
+
+  /** With six digits, as studies write numbers. */
+  std::string
+  number_text(const double value);
+
   /** Whether something has happened in a run: "PATH > VALUE" or "PATH < VALUE"
    *  of a number of the summary, or "stopped", for a run that ended early. */
   class Criterion

@@ -1,0 +1,16 @@
+#ifndef voussoir_base_active_h
+#define voussoir_base_active_h
+
+#include <voussoir/base/parameter_file.h>
+
+namespace Voussoir
+{
+  /** Declares the entry "Active" of the section at @p path, in which @p prm
+   *  stands, and returns what the file gives for it. */
+  bool
+  declared_active(dealii::ParameterHandler &prm,
+                  const ParameterFile      &file,
+                  const std::string        &path);
+} // namespace Voussoir
+
+#endif

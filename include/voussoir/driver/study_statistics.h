@@ -1,0 +1,46 @@
+#ifndef voussoir_driver_study_statistics_h
+#define voussoir_driver_study_statistics_h
+
+#include <voussoir/driver/study_parameters.h>
+
+namespace Voussoir
+{
+  /** What runs gave for one quantity; nothing where one ended early. */
+  using Sample = std::vector<std::optional<double>>;
+
+  /** Mean and spread of a sample, and the values that 16, 50 and 84 % of the
+   *  runs do not exceed. */
+  struct Statistics
+  {
+    /**
+     * @param beyond where the runs without a value lie, infinitely high or low:
+     *   they count for the fractiles, not for mean and deviation
+     */
+    Statistics(const Sample &sample, const double beyond);
+
+    unsigned int          n = 0;                    // with a value
+    std::optional<double> mean, deviation;          // of a larger population
+    std::array<std::optional<double>, 3> fractiles; // none: beyond
+  };
+
+  /** A run, or the search for a limit, of a study. */
+  struct StudySample
+  {
+    StudyValues values;
+    Sample      quantities;
+  };
+
+  /**
+   * A table of the statistics over some varied entries, a line for each
+   * combination of the others and each quantity.
+   *
+   * @param spread_entries over which
+   * @param names          of the quantities
+   */
+  std::string
+  statistics_table(const std::vector<StudySample> &samples,
+                   const std::vector<std::string> &spread_entries,
+                   const std::vector<std::string> &names);
+} // namespace Voussoir
+
+#endif

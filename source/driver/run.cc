@@ -3,6 +3,7 @@
 #include <voussoir/driver/run.h>
 #include <voussoir/driver/summary_file.h>
 #include <voussoir/output/field_writer.h>
+#include <voussoir/output/material_memory.h>
 
 #include <filesystem>
 #include <iomanip>
@@ -17,6 +18,10 @@ namespace Voussoir
     // those who ask may kill a second later. And in steps, as short runs of
     // small models take less.
     constexpr double look_interval = 0.01, look_steps = 100.;
+
+    // Between two looks at the cracks [s], and how wide one may be over its
+    // cell: at a fiftieth, what it cuts off is a block of its own.
+    constexpr double crack_interval = 0.1, widest_share = 0.02;
   } // namespace
 
 
@@ -127,7 +132,8 @@ namespace Voussoir
   {
     const OutputParameters &output       = model.parameters.output;
     const Schedule          energy_lines = energy_schedule(),
-                   checkpoints(output.checkpoint_time, time_step.length);
+                   checkpoints(output.checkpoint_time, time_step.length),
+                   crack_looks(crack_interval, time_step.length);
     first_step = last_look = next_look = state.step;
     clock.restart();
     since_report.restart();
@@ -155,6 +161,8 @@ namespace Voussoir
             check_energy();
             keep_last_good();
           }
+        if (crack_looks.due(state.step) || state.step == n_steps())
+          check_cracks();
         if (folder.exists() && output.checkpoint_time > 0. &&
             checkpoints.due(state.step))
           write_checkpoint();
@@ -199,6 +207,25 @@ namespace Voussoir
         warned_of_energy = true;
         log.warn(text.str());
       }
+  }
+
+
+  void
+  Run::check_cracks()
+  {
+    if (warned_of_cracks || !model.internal_force.has_memory())
+      return;
+    const WidestCrack widest = widest_crack(observed);
+    warned_of_cracks         = widest.share > widest_share;
+    if (!warned_of_cracks)
+      return;
+    std::ostringstream text;
+    text << std::setprecision(3) << "at t = " << state.time
+         << " s a crack is open by " << 1e3 * widest.opening << " mm, "
+         << 100. * widest.share
+         << " % of its cell: what cracks have cut off is loose from now on; "
+            "that it comes loose can be relied on, how it moves then cannot";
+    log.warn(text.str());
   }
 
 

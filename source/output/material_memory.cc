@@ -1,4 +1,5 @@
 #include <voussoir/base/mpi.h>
+#include <voussoir/materials/tension_split.h>
 #include <voussoir/output/material_memory.h>
 
 namespace Voussoir
@@ -7,13 +8,14 @@ namespace Voussoir
 
   namespace
   {
-    /** Calls visit(cell, outputs of one point) for all points of a material. */
+    /** Calls visit(cell, band, outputs of one point) for all points of a
+     *  material; without band [m] where it is elastic still. */
     void
     for_each_point(
       const Material                                         &material,
       const PointHistory                                     &history,
       const std::function<void(const Discretization::Cell &,
-                               const bool,
+                               const double,
                                const std::vector<double> &)> &visit)
     {
       const std::vector<double> nothing(material.output_names().size());
@@ -22,7 +24,7 @@ namespace Voussoir
           {
             const double band = history.band(place, q);
             visit(cell,
-                  band > 0.,
+                  band,
                   band > 0. ?
                     material.outputs(history.read(place, q).data(), band) :
                     nothing);
@@ -48,15 +50,45 @@ namespace Voussoir
         for_each_point(*model.materials[m],
                        *history,
                        [&](const Discretization::Cell &cell,
-                           const bool                  active,
+                           const double                band,
                            const std::vector<double>  &outputs) {
-                         for (unsigned int i = 0; active && i < names.size();
+                         for (unsigned int i = 0; band > 0. && i < names.size();
                               ++i)
                            result[names[i]][cell->active_cell_index()] +=
                              outputs[i] / history->n_points();
                        });
       }
     return result;
+  }
+
+
+  WidestCrack
+  widest_crack(const ObservedModel &model)
+  {
+    WidestCrack widest;
+    for (unsigned int m = 0; m < model.materials.size(); ++m)
+      {
+        const auto names = model.materials[m]->output_names();
+        const auto opening =
+          std::find(names.begin(), names.end(), OutputName::crack_opening) -
+          names.begin();
+        if (const PointHistory *history = model.material_memory.of(m);
+            history != nullptr && opening < std::ptrdiff_t(names.size()))
+          for_each_point(*model.materials[m],
+                         *history,
+                         [&](const Discretization::Cell &,
+                             const double               band,
+                             const std::vector<double> &outputs) {
+                           const double metres = 1e-3 * outputs[opening];
+                           if (band > 0. && metres > widest.share * band)
+                             widest = {metres, metres / band};
+                         });
+      }
+    const auto all =
+      Utilities::MPI::all_gather(model.discretization.grid.communicator(),
+                                 std::make_pair(widest.share, widest.opening));
+    const auto most = *std::max_element(all.begin(), all.end());
+    return {most.second, most.first};
   }
 
 
@@ -76,12 +108,12 @@ namespace Voussoir
         for_each_point(*model.materials[m],
                        *history,
                        [&](const Discretization::Cell &cell,
-                           const bool                  active,
+                           const double                band,
                            const std::vector<double>  &outputs) {
                          const double volume =
                            cell->measure() / history->n_points();
                          volumes[0] += volume;
-                         if (active)
+                         if (band > 0.)
                            volumes[1] += volume;
                          for (unsigned int i = 0; i < names.size(); ++i)
                            largest[i] = std::max(largest[i], outputs[i]);

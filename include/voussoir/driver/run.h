@@ -93,6 +93,10 @@ namespace Voussoir
     void
     check_energy();
 
+    /** Warns of cracks so wide that what they cut off moves on its own. */
+    void
+    check_cracks();
+
     /** Warns of contact that was not solved. */
     void
     check_contact();
@@ -147,7 +151,7 @@ namespace Voussoir
     unsigned long long first_step = 0;
     unsigned long long last_look = 0, next_look = 0; // steps of `attend`
     double             loop_seconds     = 0.;
-    bool               warned_of_energy = false;
+    bool               warned_of_energy = false, warned_of_cracks = false;
   };
 } // namespace Voussoir
 

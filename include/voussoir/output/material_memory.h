@@ -15,6 +15,18 @@ namespace Voussoir
   std::map<std::string, dealii::Vector<float>>
   memory_of_cells(const ObservedModel &model);
 
+  /** The crack that is widest against its cell. */
+  struct WidestCrack
+  {
+    double opening = 0.; // [m]
+    double share   = 0.; // of the width of the cell across it
+  };
+
+  /** Of all materials that tell of cracks; all ranks must call this together.
+   */
+  WidestCrack
+  widest_crack(const ObservedModel &model);
+
   /**
    * Of each material with memory: the share of its volume that has left the
    * elastic range, energy lost in it [J], largest value of what it tells. All

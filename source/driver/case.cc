@@ -159,9 +159,41 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    /** For each class an object of the class's own name. */
+    template <typename Base>
+    void
+    name_each_class(std::vector<std::string> &changes,
+                    const std::string        &section,
+                    const std::string        &class_entry)
+    {
+      const auto names = Registry<Base>::names();
+      changes.push_back(section + "/Names=" + join(names, ", "));
+      for (const std::string &name : names)
+        changes.push_back(section + "/" + name + "/" + class_entry + "=" +
+                          name);
+    }
+
+    ParameterFile
+    one_of_each_class()
+    {
+      std::vector<std::string> changes{"Output/Observers=" +
+                                       join(Registry<Observer>::names(), ", ")};
+      name_each_class<InterfaceLaw>(changes, "Interfaces", "Law");
+      name_each_class<Material>(changes, "Materials", "Class");
+      name_each_class<Load>(changes, "Loads", "Class");
+      name_each_class<Projection>(changes, "Constraints", "Class");
+      return ParameterFile().with(changes);
+    }
+  } // namespace
+
+
   Case::Case()
+    : file(one_of_each_class())
   {
     declare();
+    file.parse(prm);
   }
 
 

@@ -49,10 +49,33 @@ namespace Voussoir
         {"materials", list<Material>},
         {"loads", list<Load>},
         {"constraints", list<Projection>},
-        {"interface laws", list<InterfaceLaw>},
+        {"interfaces", list<InterfaceLaw>},
         {"observers", list<Observer>},
         {"meshes", list<MeshGenerator>}};
       return all;
+    }
+
+    /** Every entry there is: a section for each class, of the same name. */
+    void
+    print_all_entries(std::ostream                       &out,
+                      const ParameterHandler::OutputStyle style)
+    {
+      Case all;
+      // what the entries of the meshes, of which a case has one, refer to
+      std::vector<std::unique_ptr<MeshGenerator>> generators;
+      all.prm.enter_subsection("Mesh");
+      for (const auto &[name, entry] : Registry<MeshGenerator>::entries())
+        {
+          generators.push_back(entry.create());
+          all.prm.enter_subsection(name);
+          generators.back()->declare_parameters(all.prm);
+          all.prm.leave_subsection();
+        }
+      all.prm.enter_subsection("file");
+      all.reader.declare(all.prm);
+      all.prm.leave_subsection();
+      all.prm.leave_subsection();
+      all.prm.print_parameters(out, style);
     }
 
     template <typename Map>
@@ -293,8 +316,9 @@ namespace Voussoir
                    "Check everything about the case without running it");
       app.add_option("--defaults",
                      arguments.defaults,
-                     "Print all entries of the case (or of an empty one) with "
-                     "their values and descriptions, as " +
+                     "Print all entries of the case with their values and "
+                     "descriptions, or without a case those of every class, "
+                     "as " +
                        join(keys(default_formats()), ", "));
       app.add_option("--list",
                      arguments.what,
@@ -350,9 +374,8 @@ namespace Voussoir
                         "case.prm\", or see \"voussoir --help\".");
       if (arguments.case_file.empty())
         {
-          const Case empty;
           if (first)
-            empty.prm.print_parameters(std::cout, style);
+            print_all_entries(std::cout, style);
           return;
         }
       Case parameters(ParameterFile(arguments.case_file, arguments.changes));

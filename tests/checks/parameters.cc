@@ -63,10 +63,21 @@ namespace Voussoir
           verdicts.is_true("printed as " + format,
                            printed({original, "--defaults", format}).size() >
                              1000);
-        verdicts.is_true("an empty case can be printed",
-                         printed({"--defaults", "prm"}).size() > 1000);
-        for (const std::string kind :
-             {"constraints", "loads", "materials", "meshes", "observers"})
+        const auto all = nlohmann::json::parse(printed({"--defaults", "json"}));
+        check_all_classes<InterfaceLaw>(all, "Interfaces", verdicts);
+        check_all_classes<Material>(all, "Materials", verdicts);
+        check_all_classes<Load>(all, "Loads", verdicts);
+        check_all_classes<Projection>(all, "Constraints", verdicts);
+        check_all_classes<Observer>(all, "Output", verdicts);
+        check_all_classes<MeshGenerator>(all, "Mesh", verdicts);
+        verdicts.is_true("without a case: entries of mesh files",
+                         all.at("Mesh").contains("file"));
+        for (const std::string kind : {"constraints",
+                                       "interfaces",
+                                       "loads",
+                                       "materials",
+                                       "meshes",
+                                       "observers"})
           verdicts.is_true("--list " + kind,
                            printed({"--list", kind}).find(": ") !=
                              std::string::npos);
@@ -77,6 +88,21 @@ namespace Voussoir
       }
 
     private:
+      /** Whether a section, as printed without a case, has one of its own for
+       *  each class, with entries. */
+      template <typename Base>
+      static void
+      check_all_classes(const nlohmann::json &all,
+                        const std::string    &section,
+                        Verdicts             &verdicts)
+      {
+        bool complete = true;
+        for (const std::string &name : Registry<Base>::names())
+          complete = complete && all.at(section).contains(name) &&
+                     !all.at(section).at(name).empty();
+        verdicts.is_true("without a case: every class of " + section, complete);
+      }
+
       std::string name;
     };
 

@@ -11,6 +11,7 @@ import subprocess
 from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
 from pygments.lexer import RegexLexer, bygroups
+from pygments.lexers import CppLexer
 from pygments.token import Comment, Keyword, Name, Number, Operator, String, Text
 from sphinx.util import logging
 
@@ -243,6 +244,7 @@ def write_display(writer, node):
 
 def setup(app):
     app.add_lexer("prm", ParameterFileLexer)
+    app.add_lexer("geo", CppLexer)  # Gmsh's scripts look alike
     app.add_html_math_renderer("mathml", (write_inline, None), (write_display, None))
     app.connect("source-read", fill)
     app.connect("env-updated", look_for_cases)

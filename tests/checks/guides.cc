@@ -30,7 +30,8 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        std::ofstream("case.prm") << case_of(file.resolve(page));
+        prepare(file.resolve(page), verdicts);
+        std::ofstream("case.prm") << block_of(file.resolve(page), "prm");
         std::vector<std::string> arguments{"voussoir",
                                            "case.prm",
                                            "--overwrite",
@@ -56,6 +57,23 @@ namespace Voussoir
       virtual void
       compare(const nlohmann::json &summary, Verdicts &verdicts) const = 0;
 
+      /** Makes what the case of the page needs beside itself. */
+      virtual void
+      prepare(const std::string & /*page*/, Verdicts & /*verdicts*/) const
+      {}
+
+      /** The first block of a language that a page shows. */
+      static std::string
+      block_of(const std::string &page, const std::string &language)
+      {
+        std::ifstream      in(page);
+        std::ostringstream text;
+        text << in.rdbuf();
+        const std::string whole = text.str(), opening = "```" + language + "\n";
+        const auto        begin = whole.find(opening) + opening.size();
+        return whole.substr(begin, whole.find("```", begin) - begin);
+      }
+
       /** The values of the first column of a table of the run whose header
        *  holds @p quantity. */
       static std::vector<double>
@@ -75,18 +93,6 @@ namespace Voussoir
       }
 
     private:
-      /** The block of parameters that a page shows. */
-      static std::string
-      case_of(const std::string &page)
-      {
-        std::ifstream      in(page);
-        std::ostringstream text;
-        text << in.rdbuf();
-        const std::string whole = text.str(), opening = "```prm\n";
-        const auto        begin = whole.find(opening) + opening.size();
-        return whole.substr(begin, whole.find("```", begin) - begin);
-      }
-
       std::string page;
     };
 
@@ -195,5 +201,45 @@ namespace Voussoir
     const Registry<Check>::Add<InterfaceLawGuide>
       registered_interface_law("guide to an interface law",
                                "Strengths and energy of the law.");
+
+
+    class MeshGuide : public Guide
+    {
+      void
+      prepare(const std::string &page, Verdicts &verdicts) const override
+      {
+        std::ofstream("wall.geo") << block_of(page, "geo");
+        verdicts.is_true("Gmsh makes the mesh",
+                         std::system("gmsh -3 wall.geo > gmsh.log") == 0);
+      }
+
+      void
+      compare(const nlohmann::json &summary, Verdicts &verdicts) const override
+      {
+        const double height = 20., thickness = 8., length = 20., row = 2.5,
+                     water = 18., density = 2400., density_of_water = 1000.;
+        const auto &stages = summary["static state"]["stages"];
+        verdicts.near(
+          "weight of the wall [MN]",
+          -1e-6 * double(stages[0]["loads"]["weight"]["resultant [N]"][2]),
+          1e-6 * density * g * height * thickness * length,
+          1e-6);
+        verdicts.near("thrust of the water [MN]",
+                      -1e-6 *
+                        double(stages[1]["loads"]["water"]["resultant [N]"][1]),
+                      1e-6 * density_of_water * g * 0.5 * water * water *
+                        length,
+                      1e-6);
+        // its lowest nodes are joined by the rock
+        verdicts.near("area of the joint [m2]",
+                      summary["interfaces"]["surfaces"]["joint"]["area [m2]"],
+                      (height - 0.5 * row) * thickness,
+                      1e-6);
+      }
+    };
+
+    const Registry<Check>::Add<MeshGuide>
+      registered_mesh("guide to a mesh of one's own",
+                      "The mesh that Gmsh makes, its names and its joint.");
   } // namespace
 } // namespace Voussoir

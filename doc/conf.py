@@ -26,6 +26,7 @@ html_theme_options = {"light_css_variables": {"font-size--small": "90%"}}
 html_static_path = ["manual.css"]
 html_css_files = ["manual.css"]
 html_show_copyright = False
+highlight_language = "none"
 html_math_renderer = "mathml"
 extensions = ["myst_parser"]
 myst_enable_extensions = ["dollarmath", "deflist"]

@@ -198,8 +198,12 @@ def fill(app, page, source):
             warn("%s is named, but there is no such file", name, location=page)
 
 
-def look_for_cases(app, environment):
-    """The pages tell where each of the shipped cases comes in."""
+def look_around(app, environment):
+    """The pages tell where each of the shipped cases comes in, and links of the
+    README lead somewhere."""
+    for target in re.findall(r"\]\(([^):#]+)[#)]", (ROOT / "README.md").read_text()):
+        if not (ROOT / target).exists():
+            warn("README.md has a link to %s, which is not there", target)
     pages = "".join(path.read_text() for path in (ROOT / "doc").glob("*.md"))
     for case in (ROOT / "prm").rglob("*.prm"):
         if str(case.relative_to(ROOT)) not in pages:
@@ -248,4 +252,4 @@ def setup(app):
     app.add_lexer("geo", CppLexer)  # Gmsh's scripts look alike
     app.add_html_math_renderer("mathml", (write_inline, None), (write_display, None))
     app.connect("source-read", fill)
-    app.connect("env-updated", look_for_cases)
+    app.connect("env-updated", look_around)

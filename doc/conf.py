@@ -22,7 +22,6 @@ warn = logging.getLogger(__name__).warning
 project = "Voussoir"
 html_title = "Voussoir"
 html_theme = "furo"
-html_theme_options = {"light_css_variables": {"font-size--small": "90%"}}
 html_static_path = ["manual.css"]
 html_css_files = ["manual.css"]
 html_show_copyright = False
@@ -77,8 +76,9 @@ def allowed(pattern):
     if choice:
         words = ", ".join(f"`{word.strip()}`" for word in choice[2].split("|"))
         return ("any of " if choice[1] else "one of ") + words
-    if "[List" in pattern:
-        return "list"
+    length = re.search(r"\[List of .* of length (\d+)\.\.\.(\d+)", pattern)
+    if length:
+        return f"{length[1]} values" if length[1] == length[2] else "list"
     if "[Bool" in pattern:
         return "`true` or `false`"
     return "whole number" if "[Integer" in pattern else "number" if "[Double" in pattern else "text"

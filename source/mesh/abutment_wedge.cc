@@ -3,6 +3,7 @@
 #include <voussoir/mesh/interface_surface.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace Voussoir
@@ -26,9 +27,22 @@ namespace Voussoir
   {
     prm.add_parameter("Elevation",
                       elevation,
-                      "Of the wedge's level bottom, rounded to where a row of "
-                      "cells meets the bank [m above the base]; 0: no wedge.",
+                      "Of the wedge's bottom where it meets the bank at the "
+                      "dam's middle surface [m above the base]; the columns of "
+                      "cells, and so the joints of that bank, move there. 0: "
+                      "no wedge.",
                       Patterns::Double(0.));
+    prm.add_parameter("Dip",
+                      dip,
+                      "Of the bottom, which is a plane [degrees].",
+                      Patterns::Double(0., 45.));
+    prm.add_parameter(
+      "Dip direction",
+      direction,
+      "In which the bottom falls, from across the river towards "
+      "downstream: 0 straight into the canyon, 90 downstream "
+      "[degrees].",
+      Patterns::Double(-90., 90.));
     prm.add_parameter("Width",
                       width,
                       "Into the bank, from where the bottom meets the canyon, "
@@ -46,6 +60,23 @@ namespace Voussoir
   }
 
 
+  ArchDamCrossSection::Ledge
+  AbutmentWedgeParameters::ledge(const unsigned int bank) const
+  {
+    const double radians = numbers::PI / 180.;
+
+    ArchDamCrossSection::Ledge result;
+    result.elevation = elevation;
+    result.width     = width;
+    result.length    = length;
+    result.slope =
+      std::tan(dip * radians) *
+      Tensor<1, 2>({(bank == 0 ? -1. : 1.) * std::cos(direction * radians),
+                    std::sin(direction * radians)});
+    return result;
+  }
+
+
   AbutmentWedge::AbutmentWedge(const AbutmentWedgeParameters &parameters,
                                const unsigned int             bank,
                                const Layers                  &layers,
@@ -56,10 +87,6 @@ namespace Voussoir
     , end(layers.dam_end)
     , ledge(section.ledges[bank])
   {
-    if (ledge.row < 0)
-      throw UserError("\"Elevation\" in section \"" + place +
-                      "\" finds no row of cells that meets the bank there; "
-                      "choose another elevation.");
     const unsigned int wedge = layers.along(parameters.length),
                        all   = layers.along(parameters.length + parameters.cut);
     if (all >= layers.dam_begin)

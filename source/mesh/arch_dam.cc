@@ -231,8 +231,8 @@ namespace Voussoir
       std::array<ArchDamCrossSection::Ledge, 2> ledges;
       for (const unsigned int bank : {0, 1})
         {
-          ledges[bank].elevation = wedges[bank].elevation;
-          ledges[bank].width     = wedges[bank].width;
+          ledges[bank]       = wedges[bank].ledge(bank);
+          ledges[bank].place = "Mesh/arch dam/" + wedge_section(bank);
         }
       const ArchDamCrossSection section(sections,
                                         shape.height,

@@ -130,15 +130,13 @@ namespace Voussoir
       {
         for (unsigned int line = 0; line < section.vertices.size(); ++line)
           {
-            const std::vector<Point<2>> points = sweep(line);
+            const std::vector<Point<3>> points = sweep(line);
             for (unsigned int j = 0; j <= n_layers; ++j)
               if (auto &number = vertex_number[line * (n_layers + 1) + j];
                   number != none)
                 {
                   number = mesh.vertices.size();
-                  mesh.vertices.emplace_back(points[j][0],
-                                             points[j][1],
-                                             section.vertices[line].z);
+                  mesh.vertices.push_back(points[j]);
                 }
           }
         for (auto &cell : mesh.cells)

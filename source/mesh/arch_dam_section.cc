@@ -2,9 +2,13 @@
 #include <voussoir/mesh/arch_dam_section.h>
 #include <voussoir/mesh/grading.h>
 
+#include <boost/math/tools/toms748_solve.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <sstream>
 
 namespace Voussoir
 {
@@ -19,9 +23,16 @@ namespace Voussoir
 
     constexpr std::pair<double, double> surface_rise{0.2, 0.4};
 
-    // How much a bank must rise over the first column of a ledge in it, over
-    // the height of a row.
+    // How much a bank must rise over a ledge from its first column on, over the
+    // height of a row.
     constexpr double ledge_rise = 0.3;
+
+    // Of smoothing, until the vertices hardly move.
+    constexpr unsigned int n_first_steps = 120;
+
+    // Least and largest width of columns that make way for the foot of a ledge,
+    // over that of equal ones.
+    constexpr std::pair<double, double> column_stretch{0.5, 1.6};
   } // namespace
 
 
@@ -37,12 +48,14 @@ namespace Voussoir
     : ledges(wanted)
     , sections(sections)
     , height(height)
+    , columns_per_block(columns_per_block)
   {
     place_columns(n_blocks * columns_per_block,
                   rock_extent,
                   growth,
                   largest_cell);
     place_rows(rock_extent, growth, largest_cell);
+    step_rows();
     follow_contour();
     on_surface.resize(vertices.size());
     if (water_level > 0.)
@@ -53,7 +66,8 @@ namespace Voussoir
         lay_ledge(ledges[bank], 2 * bank - 1);
     make_quads();
     line_contour();
-    smooth(columns_per_block);
+    smooth({{middle_line(0), middle_line(1)}}, true, n_first_steps, vertices);
+    check_shapes(vertices);
   }
 
 
@@ -89,8 +103,77 @@ namespace Voussoir
       columns.push_back(left + distance);
     last_column = columns.size() - 1;
 
+    for (const int bank : {0, 1})
+      if (ledges[bank].elevation > 0.)
+        place_foot(ledges[bank], 2 * bank - 1);
+
     for (const double s : columns)
       contour.push_back(sections.contour(s));
+  }
+
+
+  // A ledge that dips meets each section of the dam at another place, which
+  // joints must not follow: its foot is in a column between them.
+  void
+  ArchDamCrossSection::place_foot(Ledge &ledge, const int bank)
+  {
+    const bool        dips = ledge.slope.norm() > 0.;
+    const std::string entry =
+      "\"Elevation\" in section \"" + ledge.place + "\" ";
+    if (ledge.elevation >= height)
+      throw UserError(entry + "is not below the dam's crest; choose a lower "
+                              "one.");
+    const int    n     = last_dam_column - first_dam_column;
+    const double end   = bank < 0 ? sections.right_end : sections.left_end;
+    const double width = (sections.left_end - sections.right_end) / n;
+    if (dips && columns_per_block == 1)
+      {
+        std::ostringstream text;
+        text << "The wedge of section \"" << ledge.place
+             << "\" has a \"Dip\", for which the dam needs more than one cell "
+                "of \"Cell size\" between two joints; let it be at most "
+             << std::floor(width / 3.) << " m.";
+        throw UserError(text.str());
+      }
+
+    std::uintmax_t n_steps = 200;
+    const double   foot =
+      boost::math::tools::toms748_solve(
+        [&](const double part) {
+          return sections.contour(part * end) - ledge.elevation;
+        },
+        0.,
+        1.,
+        -ledge.elevation,
+        height - ledge.elevation,
+        boost::math::tools::eps_tolerance<double>(),
+        n_steps)
+        .first *
+      end;
+    double nearest = std::numeric_limits<double>::max();
+    for (int i = first_dam_column + 1; i < last_dam_column; ++i)
+      if (const double distance = std::abs(columns[i] - foot);
+          columns[i] * bank > 0. && distance < nearest &&
+          !(dips && (i - first_dam_column) % columns_per_block == 0))
+        {
+          nearest           = distance;
+          ledge.foot_column = i;
+        }
+    const double old     = columns[ledge.foot_column];
+    const double towards = foot / old, beyond = (end - foot) / (end - old);
+    if (std::min(towards, beyond) < column_stretch.first ||
+        std::max(towards, beyond) > column_stretch.second)
+      throw UserError(entry +
+                      "is so near the crest or the base that cells there "
+                      "would be narrow; choose another elevation or a "
+                      "smaller \"Cell size\".");
+    for (int i = first_dam_column; i <= last_dam_column; ++i)
+      if (columns[i] * bank > 0.)
+        columns[i] = std::abs(columns[i]) <= std::abs(old) ?
+                       columns[i] * towards :
+                       end - (end - columns[i]) * beyond;
+    columns[ledge.foot_column] = foot;
+    ledge.foot                 = sections.line(foot, ledge.elevation).centre;
   }
 
 
@@ -125,19 +208,43 @@ namespace Voussoir
   }
 
 
+  // The row next to the contour in each column.
+  void
+  ArchDamCrossSection::step_rows()
+  {
+    const double row_height = height / (rows.size() - 1 - base_row);
+    const int    crest_row  = rows.size() - 1;
+    for (int i = 0; i <= last_column; ++i)
+      {
+        // only the ends of the crest stand in the crest's row
+        const int row = base_row + std::lround(contour[i] / row_height);
+        contour_rows.push_back(contour[i] < height * (1. - 1e-9) ?
+                                 std::min(row, crest_row - 1) :
+                                 row);
+      }
+    // the contour leaves the row of a ledge at its foot
+    for (const int bank : {0, 1})
+      if (Ledge &ledge = ledges[bank]; ledge.foot_column >= 0)
+        {
+          const int side = 2 * bank - 1, foot = ledge.foot_column,
+                    end = bank == 0 ? first_dam_column : last_dam_column;
+          ledge.row     = std::min(contour_rows[foot],
+                               crest_row - (std::abs(end - foot) > 1 ? 2 : 1));
+          for (int i = first_dam_column; i <= last_dam_column; ++i)
+            if (columns[i] * side > 0.)
+              contour_rows[i] = (i - foot) * side > 0 ?
+                                  std::max(contour_rows[i], ledge.row + 1) :
+                                  std::min(contour_rows[i], ledge.row);
+        }
+  }
+
+
   // The grid's vertices, those next to the contour moved onto it.
   void
   ArchDamCrossSection::follow_contour()
   {
-    const double row_height = height / (rows.size() - 1 - base_row);
     for (int i = 0; i <= last_column; ++i)
       {
-        // only the ends of the crest stand in the crest's row
-        const int crest_row = rows.size() - 1;
-        const int row       = base_row + std::lround(contour[i] / row_height);
-        contour_rows.push_back(contour[i] < height * (1. - 1e-9) ?
-                                 std::min(row, crest_row - 1) :
-                                 row);
         for (int k = 0; k < int(rows.size()); ++k)
           {
             on_contour.push_back(k == contour_rows[i]);
@@ -210,33 +317,17 @@ namespace Voussoir
   }
 
 
-  // The row that begins where a column meets the contour nearest to the
-  // elevation, of those over which the bank rises into the next row.
+  // From its foot to the column nearest to the width. The rows above and below
+  // make way for it.
   void
   ArchDamCrossSection::lay_ledge(Ledge &ledge, const int bank)
   {
     const int    n_rows     = rows.size();
     const double row_height = height / (n_rows - 1 - base_row);
-    double       nearest    = std::numeric_limits<double>::max();
-    for (int i = first_dam_column + 1; i < last_dam_column; ++i)
-      {
-        const double distance = std::abs(contour[i] - ledge.elevation);
-        if (columns[i] * bank > 0. && distance < nearest &&
-            contour_rows[i + bank] > contour_rows[i] &&
-            contour[i + bank] - contour[i] > ledge_rise * row_height)
-          {
-            nearest           = distance;
-            ledge.foot_column = i;
-          }
-      }
-    if (ledge.foot_column < 0)
-      return;
 
-    // to the column nearest to the width, that is neither the crest's end,
-    // where the layer along the contour comes out of the ground, nor the last
-    // but one
+    // neither the crest's end, where the layer along the contour comes out of
+    // the ground, nor the last column but one
     const int foot      = ledge.foot_column;
-    ledge.row           = contour_rows[foot];
     ledge.side_column   = foot + bank;
     const auto too_near = [&](const int column) {
       return column == first_dam_column || column == last_dam_column ||
@@ -246,12 +337,60 @@ namespace Voussoir
     while (ledge.side_column > 1 && ledge.side_column + 1 < last_column &&
            too_near(ledge.side_column))
       ledge.side_column += bank;
-    for (int i = foot; i != ledge.side_column + bank; i += bank)
+
+    const LedgeLine line = middle_line(bank < 0 ? 0 : 1);
+    const double    side = columns[ledge.side_column],
+                 end     = columns[bank < 0 ? 0 : last_column];
+    for (int i = foot; i >= 0 && i <= last_column; i += bank)
       {
-        const unsigned int vertex = i * n_rows + ledge.row;
-        on_ledge[vertex]          = true;
-        vertices[vertex].z        = contour[foot];
+        const bool   on_it  = (ledge.side_column - i) * bank >= 0;
+        const double level  = line.level(on_it ? columns[i] : side),
+                     bottom = rows.front();
+        if (on_it && i != foot && contour[i] - level < ledge_rise * row_height)
+          refuse_daylight(ledge, columns[i] - columns[foot]);
+        const double rise = (level - rows[ledge.row]) *
+                            (on_it ? 1. : (end - columns[i]) / (end - side));
+        for (int k = 1; k < contour_rows[i]; ++k)
+          {
+            double &z = vertices[i * n_rows + k].z;
+            z += rise * (k <= ledge.row ?
+                           (z - bottom) / (rows[ledge.row] - bottom) :
+                           (contour[i] - z) / (contour[i] - rows[ledge.row]));
+          }
+        if (on_it)
+          {
+            on_ledge[i * n_rows + ledge.row]   = true;
+            vertices[i * n_rows + ledge.row].z = level;
+          }
       }
+  }
+
+
+  void
+  ArchDamCrossSection::refuse_daylight(const Ledge &ledge,
+                                       const double distance) const
+  {
+    std::ostringstream text;
+    text.precision(3);
+    text << "The bottom of the wedge of section \"" << ledge.place
+         << "\" comes out of the ground, or close to it, " << std::abs(distance)
+         << " m from its foot; choose another "
+         << "\"Elevation\", a smaller \"Dip\" or a smaller \"Cell size\".";
+    throw UserError(text.str());
+  }
+
+
+  ArchDamCrossSection::LedgeLine
+  ArchDamCrossSection::middle_line(const unsigned int bank) const
+  {
+    const Ledge &ledge = ledges[bank];
+    if (ledge.foot_column < 0)
+      return {0., {}};
+    return {columns[ledge.foot_column], [&](const double s) {
+              return ledge.slope.norm() > 0. ?
+                       ledge.level(sections.line(s, 0.).centre) :
+                       ledge.elevation;
+            }};
   }
 
 

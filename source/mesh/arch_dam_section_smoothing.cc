@@ -1,3 +1,4 @@
+#include <voussoir/base/error.h>
 #include <voussoir/mesh/arch_dam_section.h>
 
 #include <deal.II/base/tensor.h>
@@ -12,14 +13,19 @@ namespace Voussoir
 
   namespace
   {
-    // Lengths over the size of a cell, part of Newton's step that lets
-    // neighbours move at the same time, and number of steps.
-    constexpr double       relative_probe = 0.01, largest_step = 0.05;
-    constexpr double       relaxation = 0.6;
-    constexpr unsigned int n_steps    = 120;
+    // Lengths over the size of a cell, and part of Newton's step that lets
+    // neighbours move at the same time.
+    constexpr double relative_probe = 0.01, largest_step = 0.05;
+    constexpr double relaxation = 0.6;
 
     // Corners whose det J is below this are treated as flat.
     constexpr double flat = 0.1;
+
+    // Steps while a ledge moves a little.
+    constexpr unsigned int n_later_steps = 15;
+
+    // Of the angle between the edges of a quadrilateral beside a ledge.
+    constexpr double least_sine = 0.15;
 
 
     using Vertex = ArchDamCrossSection::Vertex;
@@ -133,9 +139,8 @@ namespace Voussoir
 
 
   bool
-  ArchDamCrossSection::may_move_along(
-    const unsigned int v,
-    const unsigned int columns_per_block) const
+  ArchDamCrossSection::may_move_along(const unsigned int v,
+                                      const bool         joints_stay) const
   {
     if (on_contour[v] && (on_surface[v] || on_ledge[v]))
       return false;
@@ -145,49 +150,97 @@ namespace Voussoir
     for (const Ledge &ledge : ledges)
       if (column == ledge.side_column)
         return false;
-    if (column >= first_dam_column && column <= last_dam_column)
+    if (column == first_dam_column || column == last_dam_column)
+      return false;
+    if (joints_stay && column > first_dam_column && column < last_dam_column)
       return (column - first_dam_column) % columns_per_block != 0;
     return column > 0 && column < last_column;
   }
 
 
   bool
-  ArchDamCrossSection::may_move_up(const unsigned int v) const
+  ArchDamCrossSection::may_move_up(const unsigned int v, const double z) const
   {
-    return !on_contour[v] && !on_surface[v] && !on_ledge[v] &&
-           vertices[v].z < height && vertices[v].z > rows.front();
+    return !on_contour[v] && !on_surface[v] && !on_ledge[v] && z < height &&
+           z > rows.front();
   }
 
 
   // All vertices move at the same time, so that a symmetric mesh stays
   // symmetric.
   void
-  ArchDamCrossSection::smooth(const unsigned int columns_per_block)
+  ArchDamCrossSection::smooth(const std::array<LedgeLine, 2> &lines,
+                              const bool                      joints_stay,
+                              const unsigned int              n_steps,
+                              std::vector<Vertex>            &moved) const
   {
-    const Distortion distortion(vertices, quads);
+    std::vector<Vertex> before = moved;
+    const Distortion    distortion(before, quads);
     for (unsigned int i = 0; i < n_steps; ++i)
       {
-        std::vector<Vertex> moved = vertices;
-        for (unsigned int v = 0; v < vertices.size(); ++v)
+        for (unsigned int v = 0; v < before.size(); ++v)
           {
-            const Vertex vertex             = vertices[v];
+            const Vertex vertex             = before[v];
             const auto [width, cell_height] = distortion.cell_size(v);
             const auto along                = [&](const double ds) {
               const double s = vertex.s + ds;
               return Vertex{s,
-                            on_contour[v] ? sections.contour(s) : vertex.z,
+                            on_contour[v] ? sections.contour(s) :
+                                           on_ledge[v] ? lines[s < 0. ? 0 : 1].level(s) :
+                                                         vertex.z,
                             vertex.column};
             };
             const auto up = [&](const double dz) {
               return Vertex{vertex.s, vertex.z + dz, vertex.column};
             };
 
-            if (may_move_along(v, columns_per_block))
+            if (may_move_along(v, joints_stay))
               moved[v] = along(distortion.newton_step(v, width, along));
-            if (may_move_up(v))
+            if (may_move_up(v, vertex.z))
               moved[v].z += distortion.newton_step(v, cell_height, up);
           }
-        vertices = moved;
+        before = moved;
       }
+  }
+
+
+  void
+  ArchDamCrossSection::follow(const std::array<LedgeLine, 2> &lines,
+                              const bool                      joints_stay,
+                              std::vector<Vertex>            &moved) const
+  {
+    for (unsigned int v = 0; v < moved.size(); ++v)
+      if (on_ledge[v])
+        {
+          const LedgeLine &line = lines[moved[v].s < 0. ? 0 : 1];
+          if (on_contour[v])
+            moved[v].s = line.foot;
+          moved[v].z = line.level(moved[v].s);
+        }
+    smooth(lines, joints_stay, n_later_steps, moved);
+  }
+
+
+  void
+  ArchDamCrossSection::check_shapes(const std::vector<Vertex> &moved) const
+  {
+    for (const Quad &quad : quads)
+      for (unsigned int i = 0; i < 4; ++i)
+        {
+          const auto edge = [&](const unsigned int j) {
+            const Vertex &from = moved[quad.vertices[i]],
+                         &to   = moved[quad.vertices[j % 4]];
+            return Tensor<1, 2>({to.s - from.s, to.z - from.z});
+          };
+          const Tensor<1, 2> a = edge(i + 1), b = edge(i + 3);
+          const Ledge &ledge = ledges[moved[quad.vertices[i]].s < 0. ? 0 : 1];
+          if (ledge.foot_column >= 0 &&
+              a[0] * b[1] - a[1] * b[0] < least_sine * a.norm() * b.norm())
+            throw UserError("The bottom of the wedge of section \"" +
+                            ledge.place +
+                            "\" makes cells beside it nearly flat; choose "
+                            "another \"Elevation\", a smaller \"Dip\" or "
+                            "\"Cell size\" or a shorter wedge.");
+        }
   }
 } // namespace Voussoir

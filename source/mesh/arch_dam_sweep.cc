@@ -1,3 +1,4 @@
+#include <voussoir/base/error.h>
 #include <voussoir/mesh/arch_dam_sweep.h>
 #include <voussoir/mesh/grading.h>
 
@@ -37,15 +38,17 @@ namespace Voussoir
                              const double               cell_size,
                              const double               growth,
                              const double               largest_cell)
-    : n_thickness(n_thickness)
+    : sections(sections)
+    , n_thickness(n_thickness)
     , turning_length(relative_turning_length * height)
     , full_length(rock_extent * height)
     , points(graded_points(full_length + turning_length,
                            cell_size,
                            growth,
                            largest_cell))
+    , vertices(section.vertices)
   {
-    for (const auto &vertex : section.vertices)
+    for (const auto &vertex : vertices)
       {
         lines.push_back(sections.line(vertex.s, vertex.z));
         upstream_end   = std::max(upstream_end, face(lines.back(), 1.)[1]);
@@ -56,32 +59,146 @@ namespace Voussoir
 
     first_in_dam = points.size() - 1;
     n_layers     = 2 * first_in_dam + n_thickness;
+    if (section.ledges[0].slope.norm() + section.ledges[1].slope.norm() > 0.)
+      lay_ledges(section);
   }
 
 
-  std::vector<Point<2>>
+  std::vector<Point<3>>
   ArchDamSweep::operator()(const unsigned int vertex) const
   {
-    const auto           &line = lines[vertex];
-    std::vector<Point<2>> result(n_layers + 1);
-    for (unsigned int j = 0; j <= n_thickness; ++j)
-      result[first_in_dam + j] = face(line, 2. * j / n_thickness - 1.);
-    for (const int side : {-1, 1})
+    std::vector<Point<3>> result;
+    auto                  at   = vertices[vertex];
+    auto                  line = lines[vertex];
+    for (unsigned int layer = 0; layer <= n_layers; ++layer)
       {
-        const Point<2> start  = face(line, side);
-        const double   end    = side < 0 ? downstream_end : upstream_end;
-        const double   length = std::abs(end - start[1]) + turning_length -
-                              path(line.angle, turning_length)[1];
-        for (unsigned int j = 1; j < points.size(); ++j)
+        if (!moved.empty())
           {
-            Point<2> &x =
-              result[side < 0 ? first_in_dam - j : n_layers - first_in_dam + j];
-            x = start + side * path(line.angle, points[j] * length);
-            if (j + 1 == points.size())
-              x[1] = end;
+            const unsigned int i =
+              std::clamp(layer,
+                         first_moved,
+                         first_moved + unsigned(moved.size()) - 1) -
+              first_moved;
+            if (layer == 0 || layer == first_moved + i)
+              {
+                at   = moved[i][vertex];
+                line = sections.line(at.s, at.z);
+              }
           }
+        const Point<2> x = point(line, layer);
+        result.emplace_back(x[0], x[1], at.z);
       }
     return result;
+  }
+
+
+  Point<2>
+  ArchDamSweep::point(const ArchDamSections::Line &line,
+                      const unsigned int           layer) const
+  {
+    if (layer >= first_in_dam && layer <= first_in_dam + n_thickness)
+      return face(line, 2. * (layer - first_in_dam) / n_thickness - 1.);
+    const int          side = layer < first_in_dam ? -1 : 1;
+    const unsigned int j =
+      side < 0 ? first_in_dam - layer : layer - first_in_dam - n_thickness;
+    const Point<2> start  = face(line, side);
+    const double   end    = side < 0 ? downstream_end : upstream_end;
+    const double   length = std::abs(end - start[1]) + turning_length -
+                          path(line.angle, turning_length)[1];
+    Point<2> x = start + side * path(line.angle, points[j] * length);
+    if (j + 1 == points.size())
+      x[1] = end;
+    return x;
+  }
+
+
+  // Step by step from the middle of the dam, so that no cell is overrun. Beyond
+  // the ledges the section stays as it is at their ends.
+  void
+  ArchDamSweep::lay_ledges(const ArchDamCrossSection &section)
+  {
+    constexpr unsigned int n_parts = 4; // of the way between two layers
+
+    using LedgeLines = std::array<ArchDamCrossSection::LedgeLine, 2>;
+    std::array<unsigned int, 2> begin{{first_in_dam, first_in_dam}};
+    for (const unsigned int bank : {0, 1})
+      if (section.ledges[bank].slope.norm() > 0.)
+        begin[bank] -= layers_along(section.ledges[bank].length);
+    const unsigned int middle = first_in_dam + n_thickness / 2,
+                       end    = first_in_dam + n_thickness;
+    first_moved               = std::min(begin[0], begin[1]);
+    moved.resize(end + 1 - first_moved);
+
+    for (const int direction : {-1, 1})
+      {
+        LedgeLines lines{{section.middle_line(0), section.middle_line(1)}};
+        Vertices   current = vertices;
+        for (unsigned int layer = middle; layer >= first_moved && layer <= end;
+             layer += direction)
+          {
+            LedgeLines next = lines;
+            for (const unsigned int bank : {0, 1})
+              if (section.ledges[bank].slope.norm() > 0. &&
+                  layer >= begin[bank])
+                next[bank] =
+                  ledge_line(section.ledges[bank], layer, lines[bank].foot);
+            for (unsigned int part = 1; part <= n_parts; ++part)
+              {
+                const double t = double(part) / n_parts;
+                LedgeLines   between;
+                for (const unsigned int bank : {0, 1})
+                  between[bank] = {(1. - t) * lines[bank].foot +
+                                     t * next[bank].foot,
+                                   [&, bank, t](const double s) {
+                                     return (1. - t) * lines[bank].level(s) +
+                                            t * next[bank].level(s);
+                                   }};
+                section.follow(part == n_parts ? next : between,
+                               layer >= first_in_dam,
+                               current);
+              }
+            section.check_shapes(current);
+            moved[layer - first_moved] = current;
+            lines                      = next;
+          }
+      }
+  }
+
+
+  // The foot is where the contour meets the plane: Newton's method from a place
+  // nearby.
+  ArchDamCrossSection::LedgeLine
+  ArchDamSweep::ledge_line(const ArchDamCrossSection::Ledge &ledge,
+                           const unsigned int                layer,
+                           const double                      near) const
+  {
+    constexpr double probe = 0.1, accuracy = 1e-8, largest_step = 10.; // [m]
+    constexpr double least_slope = 0.1;
+
+    const auto level = [this, &ledge, layer](const double s) {
+      return ledge.level(point(sections.line(s, 0.), layer));
+    };
+    const auto above = [&](const double s) {
+      return sections.contour(s) - level(s);
+    };
+    double       foot = near;
+    const double side = near < 0. ? -1. : 1.;
+    for (unsigned int i = 0; i < 100; ++i)
+      {
+        const double slope =
+          (above(foot + probe) - above(foot - probe)) / (2. * probe);
+        const double height = above(foot);
+        if (slope * side < least_slope)
+          break;
+        if (std::abs(height) < accuracy)
+          return {foot, level};
+        foot -= std::clamp(height / slope, -largest_step, largest_step);
+      }
+    throw UserError("The bank is too flat for the \"Dip\" in section \"" +
+                    ledge.place +
+                    "\": the wedge's bottom does not come out of it "
+                    "everywhere; choose a smaller one or another "
+                    "\"Elevation\".");
   }
 
 

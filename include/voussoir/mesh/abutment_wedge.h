@@ -14,20 +14,26 @@ namespace Voussoir
   struct AbutmentWedgeParameters
   {
     double elevation = 0.; // of the bottom; 0: no wedge
+    double dip       = 0.; // [degrees]
+    double direction = 0.; // [degrees]
     double width     = 100.;
     double length    = 150.;
     double cut       = 100.;
 
     void
     declare(dealii::ParameterHandler &prm);
+
+    /** Its bottom in the cross-section. */
+    ArchDamCrossSection::Ledge
+    ledge(const unsigned int bank) const;
   };
 
   /**
    * A wedge of rock that can slide out of the bank of an arch dam.
    *
-   * In the cross-section it has the rock above a level row and on the river's
-   * side of an upright column; along the river it reaches from the dam's
-   * upstream face to where the rock before it is cut away. So it is held by
+   * In the cross-section it has the rock above a ledge and on the river's side
+   * of an upright column; along the river it reaches from the dam's upstream
+   * face to where the rock before it is cut away. So it is held by
    * three surfaces, bottom, side and back, and shows on the canyon's wall and
    * in the cut.
    */

@@ -4,7 +4,9 @@
 #include <voussoir/mesh/arch_dam_shape.h>
 
 #include <array>
+#include <functional>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -18,21 +20,33 @@ namespace Voussoir
    * canyon runs along the rows or diagonally through cells, so that these fall
    * into triangles; all are then halved in both directions, and a layer of
    * quadrilaterals is put on each side along the contour. One row can be laid
-   * level, to be the surface of a reservoir, and one in each bank, to be the
-   * bottom of a wedge of rock.
+   * level, to be the surface of a reservoir, and one in each bank on a plane,
+   * to be the bottom of a wedge of rock.
    */
   class ArchDamCrossSection
   {
   public:
-    /** A row that goes level into a bank, from where a column meets the
+    /** A row that goes into a bank on a plane, from where a column meets the
      *  contour to an upright column. */
     struct Ledge
     {
-      double elevation = 0.; // wanted; 0 for none [m]
+      std::string place;     // of its entries, to be named in messages
+      double elevation = 0.; // of its foot at the dam's middle; 0 for none [m]
       double width     = 0.; // wanted [m]
+      double length    = 0.; // in which it is plane, downstream of the dam [m]
+      dealii::Tensor<1, 2> slope; // by which it rises along x and y [-]
 
       // columns at its two ends, and its row; -1 if there is none
       int foot_column = -1, side_column = -1, row = -1;
+
+      dealii::Point<2> foot; // x, y at the dam's middle [m]
+
+      /** Elevation of its plane. */
+      double
+      level(const dealii::Point<2> &x) const
+      {
+        return elevation + slope * (x - foot);
+      }
     };
 
     /**
@@ -70,8 +84,35 @@ namespace Voussoir
       double                      width, height; // wanted [m]
     };
 
+    /** Where a ledge lies in one layer of the sweep. */
+    struct LedgeLine
+    {
+      double                              foot;  // s [m]
+      std::function<double(const double)> level; // elevation by s [m]
+    };
+
+    /** At the middle of the dam. */
     std::vector<Vertex> vertices;
     std::vector<Quad>   quads;
+
+    /** At the middle of the dam. */
+    LedgeLine
+    middle_line(const unsigned int bank) const;
+
+    /**
+     * Moves vertices near @p lines, of both banks, onto them, and the others to
+     * where the quadrilaterals are little distorted. Those on the contour stay
+     * on it, and with @p joints_stay those of joints in their columns.
+     */
+    void
+    follow(const std::array<LedgeLine, 2> &lines,
+           const bool                      joints_stay,
+           std::vector<Vertex>            &moved) const;
+
+    /** Throws UserError that names a ledge if quadrilaterals in its bank are
+     *  nearly flat. */
+    void
+    check_shapes(const std::vector<Vertex> &moved) const;
 
     /** Columns of the crest's two ends, and the last one; the first is 0. */
     int first_dam_column, last_dam_column, last_column;
@@ -90,10 +131,17 @@ namespace Voussoir
                   const double       growth,
                   const double       largest_cell);
 
+    /** Moves the columns of a bank so that one meets the foot of its ledge. */
+    void
+    place_foot(Ledge &ledge, const int bank);
+
     void
     place_rows(const double rock_extent,
                const double growth,
                const double largest_cell);
+
+    void
+    step_rows();
 
     void
     follow_contour();
@@ -144,21 +192,27 @@ namespace Voussoir
                 const unsigned int beyond,
                 const bool         inside);
 
-    /** Moves the vertices to where the quadrilaterals are least distorted. */
+    [[noreturn]] void
+    refuse_daylight(const Ledge &ledge, const double distance) const;
+
+    /** Moves vertices to where the quadrilaterals are least distorted. */
     void
-    smooth(const unsigned int columns_per_block);
+    smooth(const std::array<LedgeLine, 2> &lines,
+           const bool                      joints_stay,
+           const unsigned int              n_steps,
+           std::vector<Vertex>            &moved) const;
 
-    /** Joints, the ends of the crest, of ledges and of the rock stay where
-     *  they are. */
+    /** The ends of the crest, of ledges and of the rock stay where they are,
+     *  and joints. */
     bool
-    may_move_along(const unsigned int vertex,
-                   const unsigned int columns_per_block) const;
+    may_move_along(const unsigned int vertex, const bool joints_stay) const;
 
     bool
-    may_move_up(const unsigned int vertex) const;
+    may_move_up(const unsigned int vertex, const double z) const;
 
     const ArchDamSections &sections;
     const double           height;
+    const int              columns_per_block;
 
     // The grid: s and contour elevation of the columns, elevation of the rows.
     std::vector<double> columns, contour, rows;

@@ -10,7 +10,9 @@ namespace Voussoir
   /**
    * The lines that the vertices of the cross-section are swept along: through
    * the dam, and on both sides into the river's direction. They run in layers
-   * from downstream to upstream.
+   * from downstream to upstream, level except where a ledge dips: its vertices
+   * have another place in the cross-section of each layer, on a plane in space,
+   * and the others make way.
    */
   class ArchDamSweep
   {
@@ -31,8 +33,8 @@ namespace Voussoir
                  const double               growth,
                  const double               largest_cell);
 
-    /** x, y of all vertices on the line of a vertex of the section [m]. */
-    std::vector<dealii::Point<2>>
+    /** All vertices on the line of a vertex of the section [m]. */
+    std::vector<dealii::Point<3>>
     operator()(const unsigned int vertex) const;
 
     /** Layers beside the dam that come nearest to a length [m]. */
@@ -42,16 +44,39 @@ namespace Voussoir
     unsigned int first_in_dam, n_layers;
 
   private:
+    /** x, y on the sweep of a horizontal line through the dam. */
+    dealii::Point<2>
+    point(const ArchDamSections::Line &line, const unsigned int layer) const;
+
+    /** Finds the vertices of the layers, from the middle of the dam on. */
+    void
+    lay_ledges(const ArchDamCrossSection &section);
+
+    ArchDamCrossSection::LedgeLine
+    ledge_line(const ArchDamCrossSection::Ledge &ledge,
+               const unsigned int                layer,
+               const double                      near) const;
+
     /** Where a line that leaves the dam at an angle has come after a length. */
     dealii::Tensor<1, 2>
     path(const double angle, const double length) const;
 
-    const unsigned int                 n_thickness;
-    const double                       turning_length, full_length;
-    std::vector<ArchDamSections::Line> lines;
-    std::vector<double>                points; // beside the dam, up to 1
-    double upstream_end   = std::numeric_limits<double>::lowest();
-    double downstream_end = std::numeric_limits<double>::max();
+    using Vertices = std::vector<ArchDamCrossSection::Vertex>;
+
+    const ArchDamSections &sections;
+    const unsigned int     n_thickness;
+    const double           turning_length, full_length;
+    std::vector<double>    points; // beside the dam, up to 1
+
+    Vertices                           vertices; // at the middle of the dam
+    std::vector<ArchDamSections::Line> lines;    // of them
+
+    // Vertices where ledges dip, and the layers of them that come next.
+    std::vector<Vertices> moved;
+    unsigned int          first_moved = 0;
+
+    double              upstream_end   = std::numeric_limits<double>::lowest();
+    double              downstream_end = std::numeric_limits<double>::max();
   };
 } // namespace Voussoir
 

@@ -66,7 +66,14 @@ namespace Voussoir
         lay_ledge(ledges[bank], 2 * bank - 1);
     make_quads();
     line_contour();
-    smooth({{middle_line(0), middle_line(1)}}, true, n_first_steps, vertices);
+    in_canyon.resize(vertices.size());
+    for (const Quad &quad : quads)
+      for (const unsigned int v : quad.vertices)
+        in_canyon[v] = in_canyon[v] || quad.inside;
+    smooth({{middle_line(0), middle_line(1)}},
+           std::vector<bool>(vertices.size(), true),
+           n_first_steps,
+           vertices);
     check_shapes(vertices);
   }
 
@@ -113,11 +120,10 @@ namespace Voussoir
 
 
   // A ledge that dips meets each section of the dam at another place, which
-  // joints must not follow: its foot is in a column between them.
+  // joints must not follow: its foot is in a column well between them.
   void
   ArchDamCrossSection::place_foot(Ledge &ledge, const int bank)
   {
-    const bool        dips = ledge.slope.norm() > 0.;
     const std::string entry =
       "\"Elevation\" in section \"" + ledge.place + "\" ";
     if (ledge.elevation >= height)
@@ -126,7 +132,7 @@ namespace Voussoir
     const int    n     = last_dam_column - first_dam_column;
     const double end   = bank < 0 ? sections.right_end : sections.left_end;
     const double width = (sections.left_end - sections.right_end) / n;
-    if (dips && columns_per_block == 1)
+    if (ledge.dips() && columns_per_block == 1)
       {
         std::ostringstream text;
         text << "The wedge of section \"" << ledge.place
@@ -152,13 +158,18 @@ namespace Voussoir
       end;
     double nearest = std::numeric_limits<double>::max();
     for (int i = first_dam_column + 1; i < last_dam_column; ++i)
-      if (const double distance = std::abs(columns[i] - foot);
-          columns[i] * bank > 0. && distance < nearest &&
-          !(dips && (i - first_dam_column) % columns_per_block == 0))
-        {
-          nearest           = distance;
-          ledge.foot_column = i;
-        }
+      {
+        // to a joint, in columns
+        const int in_block = (i - first_dam_column) % columns_per_block;
+        const int to_joint = std::min(in_block, columns_per_block - in_block);
+        if (const double distance = std::abs(columns[i] - foot);
+            columns[i] * bank > 0. && distance < nearest &&
+            (!ledge.dips() || 3 * to_joint >= columns_per_block))
+          {
+            nearest           = distance;
+            ledge.foot_column = i;
+          }
+      }
     const double old     = columns[ledge.foot_column];
     const double towards = foot / old, beyond = (end - foot) / (end - old);
     if (std::min(towards, beyond) < column_stretch.first ||
@@ -387,9 +398,8 @@ namespace Voussoir
     if (ledge.foot_column < 0)
       return {0., {}};
     return {columns[ledge.foot_column], [&](const double s) {
-              return ledge.slope.norm() > 0. ?
-                       ledge.level(sections.line(s, 0.).centre) :
-                       ledge.elevation;
+              return ledge.dips() ? ledge.level(sections.line(s, 0.).centre) :
+                                    ledge.elevation;
             }};
   }
 

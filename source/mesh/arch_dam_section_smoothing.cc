@@ -22,7 +22,7 @@ namespace Voussoir
     constexpr double flat = 0.1;
 
     // Steps while a ledge moves a little.
-    constexpr unsigned int n_later_steps = 15;
+    constexpr unsigned int n_later_steps = 20;
 
     // Of the angle between the edges of a quadrilateral beside a ledge.
     constexpr double least_sine = 0.15;
@@ -139,8 +139,9 @@ namespace Voussoir
 
 
   bool
-  ArchDamCrossSection::may_move_along(const unsigned int v,
-                                      const bool         joints_stay) const
+  ArchDamCrossSection::may_move_along(
+    const unsigned int       v,
+    const std::vector<bool> &joint_stays) const
   {
     if (on_contour[v] && (on_surface[v] || on_ledge[v]))
       return false;
@@ -152,7 +153,7 @@ namespace Voussoir
         return false;
     if (column == first_dam_column || column == last_dam_column)
       return false;
-    if (joints_stay && column > first_dam_column && column < last_dam_column)
+    if (joint_stays[v] && column > first_dam_column && column < last_dam_column)
       return (column - first_dam_column) % columns_per_block != 0;
     return column > 0 && column < last_column;
   }
@@ -170,7 +171,7 @@ namespace Voussoir
   // symmetric.
   void
   ArchDamCrossSection::smooth(const std::array<LedgeLine, 2> &lines,
-                              const bool                      joints_stay,
+                              const std::vector<bool>        &joint_stays,
                               const unsigned int              n_steps,
                               std::vector<Vertex>            &moved) const
   {
@@ -194,7 +195,7 @@ namespace Voussoir
               return Vertex{vertex.s, vertex.z + dz, vertex.column};
             };
 
-            if (may_move_along(v, joints_stay))
+            if (may_move_along(v, joint_stays))
               moved[v] = along(distortion.newton_step(v, width, along));
             if (may_move_up(v, vertex.z))
               moved[v].z += distortion.newton_step(v, cell_height, up);
@@ -206,7 +207,7 @@ namespace Voussoir
 
   void
   ArchDamCrossSection::follow(const std::array<LedgeLine, 2> &lines,
-                              const bool                      joints_stay,
+                              const bool                      in_dam,
                               std::vector<Vertex>            &moved) const
   {
     for (unsigned int v = 0; v < moved.size(); ++v)
@@ -217,7 +218,10 @@ namespace Voussoir
             moved[v].s = line.foot;
           moved[v].z = line.level(moved[v].s);
         }
-    smooth(lines, joints_stay, n_later_steps, moved);
+    smooth(lines,
+           in_dam ? in_canyon : std::vector<bool>(moved.size()),
+           n_later_steps,
+           moved);
   }
 
 

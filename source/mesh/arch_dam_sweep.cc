@@ -19,6 +19,28 @@ namespace Voussoir
     constexpr double relative_turning_length = 0.35;
 
 
+    // Part of a cell by which the foot of a ledge moves at once.
+    constexpr double relative_step = 0.1;
+
+
+    using LedgeLines = std::array<ArchDamCrossSection::LedgeLine, 2>;
+
+
+    // A part of the way from some lines to others.
+    LedgeLines
+    between(const LedgeLines &from, const LedgeLines &to, const double part)
+    {
+      LedgeLines result;
+      for (const unsigned int bank : {0, 1})
+        result[bank] = {(1. - part) * from[bank].foot + part * to[bank].foot,
+                        [&, bank, part](const double s) {
+                          return (1. - part) * from[bank].level(s) +
+                                 part * to[bank].level(s);
+                        }};
+      return result;
+    }
+
+
     // On the downstream (-1) or the upstream (1) face, or between them.
     Point<2>
     face(const ArchDamSections::Line &line, const double side)
@@ -59,8 +81,8 @@ namespace Voussoir
 
     first_in_dam = points.size() - 1;
     n_layers     = 2 * first_in_dam + n_thickness;
-    if (section.ledges[0].slope.norm() + section.ledges[1].slope.norm() > 0.)
-      lay_ledges(section);
+    if (section.ledges[0].dips() || section.ledges[1].dips())
+      lay_ledges(section, relative_step * cell_size);
   }
 
 
@@ -115,14 +137,12 @@ namespace Voussoir
   // Step by step from the middle of the dam, so that no cell is overrun. Beyond
   // the ledges the section stays as it is at their ends.
   void
-  ArchDamSweep::lay_ledges(const ArchDamCrossSection &section)
+  ArchDamSweep::lay_ledges(const ArchDamCrossSection &section,
+                           const double               step)
   {
-    constexpr unsigned int n_parts = 4; // of the way between two layers
-
-    using LedgeLines = std::array<ArchDamCrossSection::LedgeLine, 2>;
     std::array<unsigned int, 2> begin{{first_in_dam, first_in_dam}};
     for (const unsigned int bank : {0, 1})
-      if (section.ledges[bank].slope.norm() > 0.)
+      if (section.ledges[bank].dips())
         begin[bank] -= layers_along(section.ledges[bank].length);
     const unsigned int middle = first_in_dam + n_thickness / 2,
                        end    = first_in_dam + n_thickness;
@@ -137,26 +157,20 @@ namespace Voussoir
              layer += direction)
           {
             LedgeLines next = lines;
+            double     way  = 0.;
             for (const unsigned int bank : {0, 1})
-              if (section.ledges[bank].slope.norm() > 0. &&
-                  layer >= begin[bank])
-                next[bank] =
-                  ledge_line(section.ledges[bank], layer, lines[bank].foot);
-            for (unsigned int part = 1; part <= n_parts; ++part)
-              {
-                const double t = double(part) / n_parts;
-                LedgeLines   between;
-                for (const unsigned int bank : {0, 1})
-                  between[bank] = {(1. - t) * lines[bank].foot +
-                                     t * next[bank].foot,
-                                   [&, bank, t](const double s) {
-                                     return (1. - t) * lines[bank].level(s) +
-                                            t * next[bank].level(s);
-                                   }};
-                section.follow(part == n_parts ? next : between,
-                               layer >= first_in_dam,
-                               current);
-              }
+              if (section.ledges[bank].dips() && layer >= begin[bank])
+                {
+                  next[bank] =
+                    ledge_line(section.ledges[bank], layer, lines[bank].foot);
+                  way =
+                    std::max(way, std::abs(next[bank].foot - lines[bank].foot));
+                }
+            const unsigned int n_steps = 1 + std::floor(way / step);
+            for (unsigned int i = 1; i <= n_steps; ++i)
+              section.follow(between(lines, next, double(i) / n_steps),
+                             layer >= first_in_dam,
+                             current);
             section.check_shapes(current);
             moved[layer - first_moved] = current;
             lines                      = next;

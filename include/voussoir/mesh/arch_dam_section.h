@@ -41,6 +41,12 @@ namespace Voussoir
 
       dealii::Point<2> foot; // x, y at the dam's middle [m]
 
+      bool
+      dips() const
+      {
+        return slope.norm() > 0.;
+      }
+
       /** Elevation of its plane. */
       double
       level(const dealii::Point<2> &x) const
@@ -102,11 +108,11 @@ namespace Voussoir
     /**
      * Moves vertices near @p lines, of both banks, onto them, and the others to
      * where the quadrilaterals are little distorted. Those on the contour stay
-     * on it, and with @p joints_stay those of joints in their columns.
+     * on it, and with @p in_dam those of joints in their columns.
      */
     void
     follow(const std::array<LedgeLine, 2> &lines,
-           const bool                      joints_stay,
+           const bool                      in_dam,
            std::vector<Vertex>            &moved) const;
 
     /** Throws UserError that names a ledge if quadrilaterals in its bank are
@@ -195,17 +201,21 @@ namespace Voussoir
     [[noreturn]] void
     refuse_daylight(const Ledge &ledge, const double distance) const;
 
-    /** Moves vertices to where the quadrilaterals are least distorted. */
+    /** Moves vertices to where the quadrilaterals are least distorted.
+     *
+     * @param joint_stays whether vertices in the columns of joints stay there
+     */
     void
     smooth(const std::array<LedgeLine, 2> &lines,
-           const bool                      joints_stay,
+           const std::vector<bool>        &joint_stays,
            const unsigned int              n_steps,
            std::vector<Vertex>            &moved) const;
 
     /** The ends of the crest, of ledges and of the rock stay where they are,
-     *  and joints. */
+     *  and what stays of the joints. */
     bool
-    may_move_along(const unsigned int vertex, const bool joints_stay) const;
+    may_move_along(const unsigned int       vertex,
+                   const std::vector<bool> &joint_stays) const;
 
     bool
     may_move_up(const unsigned int vertex, const double z) const;
@@ -226,7 +236,7 @@ namespace Voussoir
     std::pair<int, int> surface_columns;
 
     std::map<std::pair<unsigned int, unsigned int>, unsigned int> middles;
-    std::vector<bool> on_contour, on_surface, on_ledge;
+    std::vector<bool> on_contour, on_surface, on_ledge, in_canyon;
   };
 } // namespace Voussoir
 

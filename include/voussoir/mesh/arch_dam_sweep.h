@@ -48,9 +48,10 @@ namespace Voussoir
     dealii::Point<2>
     point(const ArchDamSections::Line &line, const unsigned int layer) const;
 
-    /** Finds the vertices of the layers, from the middle of the dam on. */
+    /** Finds the vertices of the layers, from the middle of the dam on, in
+     *  steps of at most this length [m]. */
     void
-    lay_ledges(const ArchDamCrossSection &section);
+    lay_ledges(const ArchDamCrossSection &section, const double step);
 
     ArchDamCrossSection::LedgeLine
     ledge_line(const ArchDamCrossSection::Ledge &ledge,
@@ -75,8 +76,8 @@ namespace Voussoir
     std::vector<Vertices> moved;
     unsigned int          first_moved = 0;
 
-    double              upstream_end   = std::numeric_limits<double>::lowest();
-    double              downstream_end = std::numeric_limits<double>::max();
+    double upstream_end   = std::numeric_limits<double>::lowest();
+    double downstream_end = std::numeric_limits<double>::max();
   };
 } // namespace Voussoir
 

@@ -30,9 +30,9 @@ namespace Voussoir
     // Of smoothing, until the vertices hardly move.
     constexpr unsigned int n_first_steps = 120;
 
-    // Least and largest width of columns that make way for the foot of a ledge,
-    // over that of equal ones.
-    constexpr std::pair<double, double> column_stretch{0.5, 1.6};
+    // How much wider or narrower columns may become that make way for the foot
+    // of a ledge.
+    constexpr double column_stretch = 1.8;
   } // namespace
 
 
@@ -156,28 +156,32 @@ namespace Voussoir
         n_steps)
         .first *
       end;
-    double nearest = std::numeric_limits<double>::max();
+
+    // by how much the columns on both sides of one become wider or narrower
+    const auto stretch = [&](const int i) {
+      const double towards = foot / columns[i],
+                   beyond  = (end - foot) / (end - columns[i]);
+      return std::max({towards, beyond, 1. / towards, 1. / beyond});
+    };
+    double least = column_stretch;
     for (int i = first_dam_column + 1; i < last_dam_column; ++i)
       {
-        // to a joint, in columns
         const int in_block = (i - first_dam_column) % columns_per_block;
         const int to_joint = std::min(in_block, columns_per_block - in_block);
-        if (const double distance = std::abs(columns[i] - foot);
-            columns[i] * bank > 0. && distance < nearest &&
-            (!ledge.dips() || 3 * to_joint >= columns_per_block))
+        if (columns[i] * bank > 0. &&
+            (!ledge.dips() || 3 * to_joint >= columns_per_block) &&
+            stretch(i) < least)
           {
-            nearest           = distance;
+            least             = stretch(i);
             ledge.foot_column = i;
           }
       }
+    if (ledge.foot_column < 0)
+      throw UserError(entry + "is so near the crest or the base that cells "
+                              "there would be narrow; choose another elevation "
+                              "or a smaller \"Cell size\".");
     const double old     = columns[ledge.foot_column];
     const double towards = foot / old, beyond = (end - foot) / (end - old);
-    if (std::min(towards, beyond) < column_stretch.first ||
-        std::max(towards, beyond) > column_stretch.second)
-      throw UserError(entry +
-                      "is so near the crest or the base that cells there "
-                      "would be narrow; choose another elevation or a "
-                      "smaller \"Cell size\".");
     for (int i = first_dam_column; i <= last_dam_column; ++i)
       if (columns[i] * bank > 0.)
         columns[i] = std::abs(columns[i]) <= std::abs(old) ?
@@ -386,7 +390,7 @@ namespace Voussoir
     text << "The bottom of the wedge of section \"" << ledge.place
          << "\" comes out of the ground, or close to it, " << std::abs(distance)
          << " m from its foot; choose another "
-         << "\"Elevation\", a smaller \"Dip\" or a smaller \"Cell size\".";
+         << "\"Elevation\" or a smaller \"Dip\", \"Width\" or \"Cell size\".";
     throw UserError(text.str());
   }
 

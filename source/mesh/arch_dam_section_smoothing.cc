@@ -24,8 +24,9 @@ namespace Voussoir
     // Steps while a ledge moves a little.
     constexpr unsigned int n_later_steps = 20;
 
-    // Of the angle between the edges of a quadrilateral beside a ledge.
-    constexpr double least_sine = 0.15;
+    // Beside a ledge: of the angle between edges of a quadrilateral, and length
+    // of an edge over the size of a cell.
+    constexpr double least_sine = 0.2, least_edge = 0.1;
 
 
     using Vertex = ArchDamCrossSection::Vertex;
@@ -237,9 +238,11 @@ namespace Voussoir
             return Tensor<1, 2>({to.s - from.s, to.z - from.z});
           };
           const Tensor<1, 2> a = edge(i + 1), b = edge(i + 3);
+          const bool         is_flat =
+            a[0] * b[1] - a[1] * b[0] < least_sine * a.norm() * b.norm() ||
+            a.norm() < least_edge * std::min(quad.width, quad.height);
           const Ledge &ledge = ledges[moved[quad.vertices[i]].s < 0. ? 0 : 1];
-          if (ledge.foot_column >= 0 &&
-              a[0] * b[1] - a[1] * b[0] < least_sine * a.norm() * b.norm())
+          if (ledge.foot_column >= 0 && is_flat)
             throw UserError("The bottom of the wedge of section \"" +
                             ledge.place +
                             "\" makes cells beside it nearly flat; choose "

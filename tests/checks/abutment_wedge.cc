@@ -18,7 +18,7 @@ namespace Voussoir
      * each wedge is a body of its own once the dam is cut off its rock, and the
      * bottom is a plane of the dip and the direction asked for, which meets the
      * edge of dam and rock at the elevation asked for in the dam's middle. The
-     * dam's surfaces stay where they are without wedges.
+     * dam's joints stay upright planes.
      */
     class AbutmentWedgeCheck : public Check
     {
@@ -87,9 +87,8 @@ namespace Voussoir
               vertices[v] = mesh.vertices[mesh.cells[cell][v]];
             quality.take(vertices);
           }
-        verdicts.above(at + "scaled Jacobian",
-                       quality.scaled_jacobian,
-                       least_jacobian);
+        verdicts.is_true(at + "all scaled Jacobians above 0.15",
+                         quality.scaled_jacobian > 0.15);
 
         double tilt = 0., off_foot = 0.;
         for (const unsigned int bank : {0, 1})
@@ -120,6 +119,9 @@ namespace Voussoir
           }
         verdicts.below(at + "normals off the plane [degrees]", tilt, 1e-4);
         verdicts.below(at + "foot away from there [m]", off_foot, 1e-6);
+        verdicts.below(at + "joints off their planes [m]",
+                       largest_bend(mesh),
+                       1e-6);
 
         split_interfaces(mesh,
                          {"left wedge bottom",
@@ -155,23 +157,51 @@ namespace Voussoir
         return result;
       }
 
-      /** Mean elevation of the faces' and the layers' ... */
+      /** Of the joints in plan. */
+      static double
+      largest_bend(const CoarseMesh &mesh)
+      {
+        double bend = 0.;
+        for (const auto &[name, faces] : mesh.face_sets)
+          if (name.rfind("joint ", 0) == 0)
+            {
+              const auto x = vertices(mesh, name);
+              const auto downstream =
+                std::min_element(x.begin(),
+                                 x.end(),
+                                 [](const auto &a, const auto &b) {
+                                   return a[1] < b[1];
+                                 });
+              const auto upstream =
+                std::max_element(x.begin(),
+                                 x.end(),
+                                 [](const auto &a, const auto &b) {
+                                   return a[1] < b[1];
+                                 });
+              Tensor<1, 3> along = *upstream - *downstream;
+              along[2]           = 0.;
+              along /= along.norm();
+              for (const Point<3> &y : x)
+                keep_largest(
+                  bend, std::abs(cross_product_3d(along, y - *downstream)[2]));
+            }
+        return bend;
+      }
+
+      /** Elevation of the bottom where it meets the dam's middle surface: the
+       *  middle vertex of those on the edge of dam and rock. */
       static double
       foot(const CoarseMesh &mesh, const std::string &name)
       {
-        // those of the bottom on the edge of dam and rock, from downstream to
-        // upstream; the middle one is on the dam's middle surface
         const auto bottom    = vertices(mesh, name + " bottom"),
                    interface = vertices(mesh, "dam-rock interface");
-        std::map<double, double> elevation;
+        std::map<double, double> elevation; // by y
         for (const Point<3> &x : bottom)
           for (const Point<3> &y : interface)
             if (x.distance(y) < 1e-9)
               elevation[x[1]] = x[2];
         return std::next(elevation.begin(), elevation.size() / 2)->second;
       }
-
-      static constexpr double least_jacobian = 0.1;
 
       std::vector<std::string> elevations{"100"}, dips{"0"}, directions{"0"},
         cell_sizes{"22"};

@@ -27,22 +27,21 @@ namespace Voussoir
   {
     prm.add_parameter("Elevation",
                       elevation,
-                      "Of the wedge's bottom where it meets the bank at the "
-                      "dam's middle surface [m above the base]; the columns of "
-                      "cells, and so the joints of that bank, move there. 0: "
-                      "no wedge.",
+                      "At which the wedge's bottom meets the bank on the dam's "
+                      "middle surface; columns of cells, and so the joints of "
+                      "that bank, make way for it [m above the base]. 0: no "
+                      "wedge.",
                       Patterns::Double(0.));
     prm.add_parameter("Dip",
                       dip,
-                      "Of the bottom, which is a plane [degrees].",
+                      "Of the bottom, which is a plane; cells beside it become "
+                      "flat with a steep one [degrees].",
                       Patterns::Double(0., 45.));
-    prm.add_parameter(
-      "Dip direction",
-      direction,
-      "In which the bottom falls, from across the river towards "
-      "downstream: 0 straight into the canyon, 90 downstream "
-      "[degrees].",
-      Patterns::Double(-90., 90.));
+    prm.add_parameter("Dip direction",
+                      direction,
+                      "In which the bottom falls: 0 across the river into the "
+                      "canyon, 90 downstream, -90 upstream [degrees].",
+                      Patterns::Double(-90., 90.));
     prm.add_parameter("Width",
                       width,
                       "Into the bank, from where the bottom meets the canyon, "

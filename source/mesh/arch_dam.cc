@@ -41,7 +41,8 @@ namespace Voussoir
         prm.add_parameter("Joints",
                           n_joints,
                           "Number of contraction joints, at equal distances "
-                          "along the crest.",
+                          "along the crest; beside a wedge those of its bank "
+                          "move a little.",
                           Patterns::Integer(0));
         prm.add_parameter("Cell size",
                           cell_size,

@@ -1,4 +1,3 @@
-#include <voussoir/base/error.h>
 #include <voussoir/mesh/arch_dam_section.h>
 
 #include <deal.II/base/tensor.h>
@@ -20,13 +19,6 @@ namespace Voussoir
 
     // Corners whose det J is below this are treated as flat.
     constexpr double flat = 0.1;
-
-    // Steps while a ledge moves a little.
-    constexpr unsigned int n_later_steps = 20;
-
-    // Beside a ledge: of the angle between edges of a quadrilateral, and length
-    // of an edge over the size of a cell.
-    constexpr double least_sine = 0.2, least_edge = 0.1;
 
 
     using Vertex = ArchDamCrossSection::Vertex;
@@ -203,51 +195,5 @@ namespace Voussoir
           }
         before = moved;
       }
-  }
-
-
-  void
-  ArchDamCrossSection::follow(const std::array<LedgeLine, 2> &lines,
-                              const bool                      in_dam,
-                              std::vector<Vertex>            &moved) const
-  {
-    for (unsigned int v = 0; v < moved.size(); ++v)
-      if (on_ledge[v])
-        {
-          const LedgeLine &line = lines[moved[v].s < 0. ? 0 : 1];
-          if (on_contour[v])
-            moved[v].s = line.foot;
-          moved[v].z = line.level(moved[v].s);
-        }
-    smooth(lines,
-           in_dam ? in_canyon : std::vector<bool>(moved.size()),
-           n_later_steps,
-           moved);
-  }
-
-
-  void
-  ArchDamCrossSection::check_shapes(const std::vector<Vertex> &moved) const
-  {
-    for (const Quad &quad : quads)
-      for (unsigned int i = 0; i < 4; ++i)
-        {
-          const auto edge = [&](const unsigned int j) {
-            const Vertex &from = moved[quad.vertices[i]],
-                         &to   = moved[quad.vertices[j % 4]];
-            return Tensor<1, 2>({to.s - from.s, to.z - from.z});
-          };
-          const Tensor<1, 2> a = edge(i + 1), b = edge(i + 3);
-          const bool         is_flat =
-            a[0] * b[1] - a[1] * b[0] < least_sine * a.norm() * b.norm() ||
-            a.norm() < least_edge * std::min(quad.width, quad.height);
-          const Ledge &ledge = ledges[moved[quad.vertices[i]].s < 0. ? 0 : 1];
-          if (ledge.foot_column >= 0 && is_flat)
-            throw UserError("The bottom of the wedge of section \"" +
-                            ledge.place +
-                            "\" makes cells beside it nearly flat; choose "
-                            "another \"Elevation\", a smaller \"Dip\" or "
-                            "\"Cell size\" or a shorter wedge.");
-        }
   }
 } // namespace Voussoir

@@ -22,6 +22,9 @@ namespace Voussoir
     // of a ledge.
     constexpr double column_stretch = 1.8;
 
+    // That the foot of one that dips keeps from a joint, in blocks of many.
+    constexpr double columns_to_joint = 3.;
+
     // Steps while a ledge moves a little.
     constexpr unsigned int n_later_steps = 20;
 
@@ -81,7 +84,8 @@ namespace Voussoir
         const int in_block = (i - first_dam_column) % columns_per_block;
         const int to_joint = std::min(in_block, columns_per_block - in_block);
         if (columns[i] * bank > 0. &&
-            (!ledge.dips() || 3 * to_joint >= columns_per_block) &&
+            (!ledge.dips() ||
+             to_joint >= std::min(columns_per_block / 3., columns_to_joint)) &&
             stretch(i) < least)
           {
             least             = stretch(i);

@@ -3,6 +3,7 @@
 
 #include <voussoir/analysis/lost_equilibrium.h>
 #include <voussoir/base/mpi.h>
+#include <voussoir/output/interface_sums.h>
 
 #include "check.h"
 
@@ -90,6 +91,30 @@ namespace Voussoir
         return false;
       }
     return true;
+  }
+
+  /** Safety of a block at rest on its surfaces, as the observer "interfaces"
+   *  reports it; @p block as its entry has it. */
+  inline double
+  block_safety(const Simulation &simulation, const std::string &block)
+  {
+    const Contact      &contact = *simulation.run.contact;
+    const auto          blocks  = find_sliding_blocks(block,
+                                            "\"Blocks\"",
+                                            simulation.model.discretization,
+                                            contact);
+    std::vector<double> sums(InterfaceSum::n_quantities *
+                             contact.surfaces().size()),
+      areas(contact.surfaces().size());
+    for (const ContactPoint &point : contact.points())
+      {
+        add_to_sums(point, &sums[InterfaceSum::n_quantities * point.surface]);
+        areas[point.surface] += point.area;
+      }
+    const MPI_Comm communicator = simulation.model.grid.communicator();
+    sums                        = sum_over_ranks(sums, communicator);
+    areas                       = sum_over_ranks(areas, communicator);
+    return safety_from_sums(blocks[0], sums.data(), areas);
   }
 
   /** An entry with a vector. */

@@ -1,5 +1,4 @@
 #include <voussoir/mesh/generator.h>
-#include <voussoir/output/interface_sums.h>
 
 #include "contact_sums.h"
 
@@ -179,7 +178,7 @@ namespace Voussoir
         const auto parameters = make_case(file.with(changes));
         const auto simulation = make_simulation(*parameters, communicator);
         verdicts.near("at rest before: safety factor of the block",
-                      block_safety(*simulation),
+                      block_safety(*simulation, "wedge: left, right"),
                       safety,
                       0.01);
 
@@ -195,7 +194,8 @@ namespace Voussoir
               resistance / (mass * along + push * std::min(time / ramp, 1.));
             if (load > 1.05)
               before = mean_motion(*simulation)[1];
-            if (at_start == 0. && block_safety(*simulation) < 1.001)
+            if (at_start == 0. &&
+                block_safety(*simulation, "wedge: left, right") < 1.001)
               at_start = load;
             if (time < ramp)
               continue;
@@ -249,28 +249,6 @@ namespace Voussoir
       }
 
     private:
-      /** As the observer "interfaces" reports it. */
-      static double
-      block_safety(const Simulation &simulation)
-      {
-        const Contact      &contact = *simulation.run.contact;
-        const auto          blocks  = find_sliding_blocks("wedge: left, right",
-                                                "\"Blocks\"",
-                                                simulation.model.discretization,
-                                                contact);
-        std::vector<double> sums(2 * InterfaceSum::n_quantities), areas(2);
-        for (const ContactPoint &point : contact.points())
-          {
-            add_to_sums(point,
-                        &sums[InterfaceSum::n_quantities * point.surface]);
-            areas[point.surface] += point.area;
-          }
-        const MPI_Comm communicator = simulation.model.grid.communicator();
-        sums                        = sum_over_ranks(sums, communicator);
-        areas                       = sum_over_ranks(areas, communicator);
-        return safety_from_sums(blocks[0], sums.data(), areas);
-      }
-
       static constexpr double gravity = 9.81, density = 2700., height = 6.,
                               length = 12., ramp = 1.; // [s]
 

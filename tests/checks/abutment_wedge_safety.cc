@@ -1,0 +1,42 @@
+#include "contact_sums.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * A wedge in the bank of an arch dam that is so soft that it does not hold
+     * it, at rest under its own weight. Its bottom dips towards the river, away
+     * from side and back, so that it alone bears the wedge, a block on an
+     * inclined plane: its safety is friction over the tangent of the dip.
+     */
+    class AbutmentWedgeSafety : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const double dip = std::stod(
+                       file.given("Mesh/arch dam/Left wedge/Dip", "0")),
+                     friction = std::stod(
+                       file.given("Interfaces/planes/Friction coefficient",
+                                  "0"));
+        const auto parameters = make_case(file);
+        const auto simulation = make_simulation(*parameters, communicator);
+        verdicts.near("safety factor of the wedge at rest",
+                      block_safety(*simulation,
+                                   "left wedge: left wedge bottom, left wedge "
+                                   "side, left wedge back"),
+                      friction / std::tan(dip * numbers::PI / 180.),
+                      0.01);
+      }
+    };
+
+    const Registry<Check>::Add<AbutmentWedgeSafety>
+      registered("abutment wedge safety", "A wedge on a plane that dips.");
+  } // namespace
+} // namespace Voussoir

@@ -72,7 +72,8 @@ namespace Voussoir
     Vertices                           vertices; // at the middle of the dam
     std::vector<ArchDamSections::Line> lines;    // of them
 
-    // Vertices where ledges dip, and the layers of them that come next.
+    // Where ledges dip: the vertices in layers one after the other, and the
+    // first of these.
     std::vector<Vertices> moved;
     unsigned int          first_moved = 0;
 

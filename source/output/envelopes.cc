@@ -82,11 +82,8 @@ namespace Voussoir
             Lanes high = -std::numeric_limits<double>::max(), low = -high;
             for (unsigned int p = 0; p < points.size(); ++p)
               {
-                SymmetricTensor3<Lanes> total = strain(cells, batch, p);
-                if (!batch.offsets.empty())
-                  total += batch.offsets[p];
-                const auto [largest, smallest] =
-                  largest_and_smallest_principal(stress(batch, p, total));
+                const auto [largest, smallest] = largest_and_smallest_principal(
+                  batch.laws[p](strain(cells, batch, p)));
                 high = std::max(high, largest);
                 low  = std::min(low, smallest);
               }
@@ -139,15 +136,7 @@ namespace Voussoir
         LaneSet                            watched;
         std::array<Tensor<1, 3, Lanes>, 8> vertices;
 
-        // of the law where it is elastic [Pa]
-        bool  isotropic   = true;
-        Lanes lame_lambda = 0., shear_modulus = 0.;
-
-        // of each point: what the law's strain is more than the total one, if
-        // there is a static stage
-        AlignedVector<SymmetricTensor3<Lanes>> offsets;
-
-        std::vector<LawStress> laws; // of each watched lane and point
+        std::vector<LawStressLanes> laws; // of each point
 
         std::array<StressExtremes, Lanes::size()> extremes;
       };
@@ -176,28 +165,22 @@ namespace Voussoir
                  Evaluation        &cells) const
       {
         Batch batch;
-        batch.number          = number;
-        batch.watched         = watched;
-        unsigned int material = 0;
+        batch.number  = number;
+        batch.watched = watched;
+        batch.laws.resize(points.size());
         for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
           {
             const bool exists =
               lane < matrix_free.n_active_entries_per_cell_batch(number);
             const auto cell =
               matrix_free.get_cell_iterator(number, exists ? lane : 0);
-            material = model.material_of_cell(cell);
             for (unsigned int v = 0; v < 8; ++v)
               for (unsigned int d = 0; d < 3; ++d)
                 batch.vertices[v][d][lane] = cell->vertex(v)[d];
             if (watched[lane])
-              for (const Point<3> &point : points.get_points())
-                batch.laws.emplace_back(model, cell, point);
+              for (unsigned int p = 0; p < points.size(); ++p)
+                batch.laws[p].set(lane, {model, cell, points.point(p)});
           }
-        const ElasticConstants elastic =
-          model.materials[material]->elastic_constants();
-        batch.isotropic     = model.materials[material]->isotropic();
-        batch.lame_lambda   = elastic.lame_lambda();
-        batch.shear_modulus = elastic.shear_modulus();
         if (!is_static)
           return batch;
         cells.reinit(number);
@@ -209,55 +192,9 @@ namespace Voussoir
             Lanes temperature = 0.;
             for (unsigned int j = 0; j < shape_values[p].size(); ++j)
               temperature += shape_values[p][j] * cells.begin_dof_values()[j];
-            SymmetricTensor3<Lanes> offset;
-            for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-              set_lane(offset,
-                       lane,
-                       model.materials[material]->strain_of_law(
-                         {}, lane_of(initial, lane), temperature[lane]));
-            batch.offsets.push_back(offset);
+            batch.laws[p].set_initial(initial, temperature);
           }
         return batch;
-      }
-
-      static SymmetricTensor<2, 3>
-      lane_of(const SymmetricTensor3<Lanes> &tensor, const unsigned int lane)
-      {
-        SymmetricTensor<2, 3> one;
-        for (unsigned int c = 0; c < 6; ++c)
-          one.access_raw_entry(c) = tensor.access_raw_entry(c)[lane];
-        return one;
-      }
-
-      static void
-      set_lane(SymmetricTensor3<Lanes>     &tensor,
-               const unsigned int           lane,
-               const SymmetricTensor<2, 3> &one)
-      {
-        for (unsigned int c = 0; c < 6; ++c)
-          tensor.access_raw_entry(c)[lane] = one.access_raw_entry(c);
-      }
-
-      /** Stress of the law under its strain at a point. */
-      SymmetricTensor3<Lanes>
-      stress(const Batch                   &batch,
-             const unsigned int             point,
-             const SymmetricTensor3<Lanes> &strain) const
-      {
-        SymmetricTensor3<Lanes> result = 2. * batch.shear_modulus * strain;
-        const Lanes             mean   = batch.lame_lambda * trace(strain);
-        for (unsigned int d = 0; d < 3; ++d)
-          result[d][d] += mean;
-        unsigned int first = 0;
-        for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-          if (batch.watched[lane])
-            {
-              const LawStress &law = batch.laws[first + point];
-              if (!batch.isotropic || !law.is_elastic(lane_of(result, lane)))
-                set_lane(result, lane, law(lane_of(strain, lane), {}, 0.));
-              first += points.size();
-            }
-        return result;
       }
 
       /** Of the values that @p cells has read. */

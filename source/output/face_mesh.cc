@@ -66,7 +66,10 @@ namespace Voussoir
     set_and_node.resize(places.nodes.size());
     for (const auto &[key, node] : places.nodes)
       set_and_node[node] = key;
-    points = std::make_unique<StressPoints>(model, places.list);
+    points = std::make_unique<StressPoints>(model,
+                                            places.list,
+                                            node_of_place,
+                                            places.nodes.size());
     number_nodes(places.nodes, sets.size());
     find_normals(places.normals);
     mean_stress.resize(places.nodes.size());
@@ -103,8 +106,11 @@ namespace Voussoir
                                places.nodes.size());
         const Point<3> unit = scalar.unit_support_point(j);
         if (is_new)
-          positions.push_back(
-            discretization.mapping.transform_unit_to_real_cell(cell, unit));
+          {
+            positions.push_back(
+              discretization.mapping.transform_unit_to_real_cell(cell, unit));
+            places.normals.resize(4 * places.nodes.size(), 0.);
+          }
         places.list.push_back({cell, unit});
         node_of_place.push_back(item->second);
         place_keys.push_back(
@@ -113,18 +119,19 @@ namespace Voussoir
         Tensor<1, 3> outward =
           inverse_jacobian(cell, unit)[across] * (face % 2 * 2. - 1.);
         outward /= outward.norm();
-        places.normals.push_back(1.);
+        double *sums = &places.normals[4 * item->second];
+        sums[0] += 1.;
         for (unsigned int d = 0; d < 3; ++d)
-          places.normals.push_back(outward[d]);
+          sums[1 + d] += outward[d];
       }
   }
 
 
   void
-  FaceMesh::find_normals(const std::vector<double> &normals_of_places)
+  FaceMesh::find_normals(const std::vector<double> &normals_of_nodes)
   {
     Vector sums = make_vector(4);
-    sum_at_nodes(sums, 4, normals_of_places);
+    sum_over_holders(sums, 4, normals_of_nodes);
     for (const unsigned int node_entry : entries)
       {
         const unsigned int entry = 4 * node_entry;
@@ -194,16 +201,16 @@ namespace Voussoir
 
 
   void
-  FaceMesh::sum_at_nodes(Vector                    &sums,
-                         const unsigned int         width,
-                         const std::vector<double> &values_of_places) const
+  FaceMesh::sum_over_holders(Vector                    &sums,
+                             const unsigned int         width,
+                             const std::vector<double> &values) const
   {
     sums.zero_out_ghost_values();
     sums = 0.;
-    for (unsigned int i = 0; i < node_of_place.size(); ++i)
-      for (unsigned int c = 0; c < width; ++c)
-        sums.local_element(width * entries[node_of_place[i]] + c) +=
-          values_of_places[width * i + c];
+    for (unsigned int node = 0; node < entries.size(); ++node)
+      std::copy_n(&values[width * node],
+                  width,
+                  sums.begin() + width * entries[node]);
     sums.compress(VectorOperation::add);
     sums.update_ghost_values();
   }
@@ -223,17 +230,71 @@ namespace Voussoir
   }
 
 
-  const Tensor<1, 3> &
-  FaceMesh::normal(const unsigned int node) const
+  const Point<3> &
+  FaceMesh::position(const unsigned int node) const
   {
-    return normals[node];
+    return positions[node];
   }
 
 
-  const std::vector<FaceMesh::Key> &
-  FaceMesh::keys() const
+  void
+  FaceMesh::check_not_level(const std::string &place) const
   {
-    return place_keys;
+    const bool level =
+      std::any_of(normals.begin(), normals.end(), [](const auto &normal) {
+        return std::abs(normal[2]) > 1. - 1e-6;
+      });
+    if (Utilities::MPI::max(int(level), communicator()) == 1)
+      throw UserError(place +
+                      " names faces that are level somewhere, where arch and "
+                      "cantilever have no direction; name the upstream and "
+                      "downstream faces of the dam.");
+  }
+
+
+  std::array<Tensor<1, 3>, 2>
+  FaceMesh::arch_and_cantilever(const unsigned int node) const
+  {
+    const Tensor<1, 3> &n = normals[node];
+    Tensor<1, 3>        arch({-n[1], n[0], 0.}); // z x n
+    arch /= arch.norm();
+    return {{arch, cross_product_3d(n, arch)}};
+  }
+
+
+  std::vector<FaceMesh::Quadrilateral>
+  FaceMesh::quadrilaterals() const
+  {
+    const unsigned int         per_edge = discretization.degree + 1;
+    std::vector<Quadrilateral> result;
+    for (unsigned int f = 0; f < set_of_face.size(); ++f)
+      for (unsigned int j = 0; j + 1 < per_edge; ++j)
+        for (unsigned int i = 0; i + 1 < per_edge; ++i)
+          {
+            const unsigned int *corner =
+              &node_of_place[(f * per_edge + j) * per_edge + i];
+            result.push_back({set_of_face[f],
+                              {{corner[0],
+                                corner[1],
+                                corner[per_edge],
+                                corner[per_edge + 1]}}});
+          }
+    return result;
+  }
+
+
+  std::map<std::string, KeyedValues>
+  FaceMesh::keyed_values(std::vector<double> &values,
+                         const unsigned int   width,
+                         const std::string   &what) const
+  {
+    std::map<std::string, KeyedValues> result;
+    for (const unsigned int number : number_of_set)
+      result[all_names[number] + what].width = width;
+    for (const auto &[set, key, node] : place_keys)
+      result[all_names[number_of_set[set]] + what].items.emplace_back(
+        key, &values[width * node]);
+    return result;
   }
 
 
@@ -247,17 +308,19 @@ namespace Voussoir
   const std::vector<SymmetricTensor<2, 3>> &
   FaceMesh::stress(const Vector &displacement)
   {
-    std::vector<double> components;
-    components.reserve(6 * node_of_place.size());
-    for (const auto &tensor : points->evaluate(displacement))
+    const auto &sums = points->evaluate(displacement);
+    components.resize(6 * sums.size());
+    for (unsigned int node = 0; node < sums.size(); ++node)
       for (unsigned int c = 0; c < 6; ++c)
-        components.push_back(tensor.access_raw_entry(c));
-    sum_at_nodes(stress_sums, 6, components);
+        components[6 * node + c] = sums[node].access_raw_entry(c);
+    sum_over_holders(stress_sums, 6, components);
     for (unsigned int node = 0; node < mean_stress.size(); ++node)
-      for (unsigned int c = 0; c < 6; ++c)
-        mean_stress[node].access_raw_entry(c) =
-          stress_sums.local_element(6 * entries[node] + c) /
-          n_places_of_node[node];
+      {
+        const double *sum   = stress_sums.begin() + 6 * entries[node];
+        const double  share = 1. / n_places_of_node[node];
+        for (unsigned int c = 0; c < 6; ++c)
+          mean_stress[node].access_raw_entry(c) = share * sum[c];
+      }
     return mean_stress;
   }
 

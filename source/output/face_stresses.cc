@@ -38,17 +38,7 @@ namespace Voussoir
       check(const ObservedModel &model) const override
       {
         pictures.check(model);
-        const auto mesh  = make_mesh(model);
-        int        level = 0;
-        for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
-          if (std::abs(mesh->normal(node)[2]) > 1. - 1e-6)
-            level = 1;
-        if (Utilities::MPI::max(level,
-                                model.discretization.grid.communicator()) == 1)
-          throw UserError(place +
-                          " names faces that are level somewhere, where arch "
-                          "and cantilever have no direction; name the upstream "
-                          "and downstream faces of the dam.");
+        make_mesh(model)->check_not_level(place);
       }
 
       void
@@ -59,16 +49,11 @@ namespace Voussoir
         pictures.prepare(model, start_time, restarted);
         schedule = Schedule(envelope_interval, model.time_step);
         mesh     = make_mesh(model);
-        arch_directions.clear();
-        cantilever_directions.clear();
+        directions.clear();
         envelopes.assign(n_values * mesh->n_nodes(), 0.);
         for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
           {
-            const Tensor<1, 3> n = mesh->normal(node);
-            Tensor<1, 3>       arch({-n[1], n[0], 0.}); // z x n
-            arch /= arch.norm();
-            arch_directions.push_back(arch);
-            cantilever_directions.push_back(cross_product_3d(n, arch));
+            directions.push_back(mesh->arch_and_cantilever(node));
             for (unsigned int c = 0; c < n_extremes; ++c)
               envelopes[n_values * node + c] =
                 (is_largest(c) ? -1. : 1.) * std::numeric_limits<double>::max();
@@ -156,14 +141,7 @@ namespace Voussoir
       std::map<std::string, KeyedValues>
       checkpoint_values() override
       {
-        const auto                         names = split_list(sets);
-        std::map<std::string, KeyedValues> values;
-        for (const std::string &name : names)
-          values[name].width = n_values;
-        for (const auto &[set, key, node] : mesh->keys())
-          values[names[set]].items.emplace_back(key,
-                                                &envelopes[n_values * node]);
-        return values;
+        return mesh->keyed_values(envelopes, n_values);
       }
 
     private:
@@ -200,8 +178,8 @@ namespace Voussoir
             };
             const auto [largest, smallest] =
               largest_and_smallest_principal(tensors[node]);
-            for (const double value : {along(arch_directions[node]),
-                                       along(cantilever_directions[node]),
+            for (const double value : {along(directions[node][0]),
+                                       along(directions[node][1]),
                                        1e-6 * largest,
                                        1e-6 * smallest})
               result.push_back(value);
@@ -215,7 +193,9 @@ namespace Voussoir
 
       Schedule                  schedule;
       std::unique_ptr<FaceMesh> mesh;
-      std::vector<Tensor<1, 3>> arch_directions, cantilever_directions;
+
+      // of each node: arch, cantilever
+      std::vector<std::array<Tensor<1, 3>, 2>> directions;
 
       // of each node: largest and smallest arch stress, cantilever stress,
       // largest principal stress at its largest, smallest at its smallest

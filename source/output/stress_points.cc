@@ -1,5 +1,7 @@
 #include <voussoir/output/stress_points.h>
 
+#include <numeric>
+
 namespace Voussoir
 {
   using namespace dealii;
@@ -17,63 +19,160 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    /** A place, or the sum of several of one point under a law that is linear:
+     *  its stress under their summed strains is the sum of their stresses. */
+    struct Sample
+    {
+      unsigned int point;
+      LawStress    law;
+
+      // gradients of the shape functions by the node's x in a vector with
+      // ghosts
+      std::map<unsigned int, Tensor<1, 3>> weights;
+      double                               temperature = 0.; // change [K]
+    };
+
+
+    /** @p temperature with its ghosts, or null */
+    void
+    add(const StressPoints::Place &place,
+        const Discretization      &discretization,
+        const Vector              *temperature,
+        Sample                    &sample)
+    {
+      const auto &scalar = discretization.fe.base_element(0);
+      const auto &partitioner =
+        *discretization.matrix_free.get_vector_partitioner();
+      const Tensor<2, 3> to_space =
+        transpose(inverse_jacobian(place.cell, place.unit));
+      const auto nodes = discretization.cell_nodes(place.cell);
+      for (unsigned int j = 0; j < nodes.size(); ++j)
+        for (const auto &carrier : discretization.carriers(nodes[j]))
+          {
+            const Tensor<1, 3> unit = scalar.shape_grad(j, place.unit);
+            const unsigned int entry =
+              partitioner.global_to_local(3 * carrier.node);
+            // at a node only those in line with it count
+            if (unit.norm() > 1e-12)
+              sample.weights[entry] += carrier.weight * (to_space * unit);
+            if (temperature != nullptr)
+              sample.temperature += carrier.weight *
+                                    scalar.shape_value(j, place.unit) *
+                                    temperature->local_element(entry);
+          }
+    }
+
+
+    std::vector<unsigned int>
+    counted(const std::size_t n)
+    {
+      std::vector<unsigned int> numbers(n);
+      std::iota(numbers.begin(), numbers.end(), 0);
+      return numbers;
+    }
+  } // namespace
+
+
   StressPoints::StressPoints(const ObservedModel      &model,
                              const std::vector<Place> &places)
+    : StressPoints(model, places, counted(places.size()), places.size())
+  {}
+
+
+  StressPoints::StressPoints(const ObservedModel             &model,
+                             const std::vector<Place>        &places,
+                             const std::vector<unsigned int> &point_of_place,
+                             const unsigned int               n_points)
+    : stress(n_points)
   {
-    const Discretization &discretization = model.discretization;
-    const auto           &scalar         = discretization.fe.base_element(0);
-    const auto           &partitioner =
-      *discretization.matrix_free.get_vector_partitioner();
     const bool is_static = model.initial.displacement.size() > 0;
     if (is_static)
-      model.initial.temperature.update_ghost_values();
-    for (const Place &place : places)
       {
-        const Tensor<2, 3> to_space =
-          transpose(inverse_jacobian(place.cell, place.unit));
-        const auto nodes  = discretization.cell_nodes(place.cell);
-        double     degree = 0.;
-        for (unsigned int j = 0; j < nodes.size(); ++j)
-          for (const auto &carrier : discretization.carriers(nodes[j]))
-            {
-              const unsigned int entry =
-                partitioner.global_to_local(3 * carrier.node);
-              weights.push_back(
-                {entry,
-                 carrier.weight *
-                   (to_space * scalar.shape_grad(j, place.unit))});
-              if (is_static)
-                degree += carrier.weight * scalar.shape_value(j, place.unit) *
-                          model.initial.temperature.local_element(entry);
-            }
-        end_of_weights.push_back(weights.size());
-        laws.emplace_back(model, place.cell, place.unit);
-        temperature.push_back(degree);
+        model.initial.temperature.update_ghost_values();
+        model.initial.displacement.update_ghost_values();
       }
-    initial_strain.resize(places.size());
-    stress.resize(places.size());
+    std::vector<Sample>                                              samples;
+    std::map<std::pair<unsigned int, const Material *>, std::size_t> linear;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      {
+        const LawStress law(model, places[i].cell, places[i].unit);
+        std::size_t     sample = samples.size();
+        if (law.is_always_elastic())
+          sample = linear.insert({{point_of_place[i], &law.law()}, sample})
+                     .first->second;
+        if (sample == samples.size())
+          samples.push_back({point_of_place[i], law, {}, 0.});
+        add(places[i],
+            model.discretization,
+            is_static ? &model.initial.temperature : nullptr,
+            samples[sample]);
+      }
+
+    for (std::size_t first = 0; first < samples.size(); first += Lanes::size())
+      {
+        const unsigned int n_samples =
+          std::min<std::size_t>(Lanes::size(), samples.size() - first);
+        Group      &group       = groups.emplace_back();
+        Lanes       temperature = 0.;
+        std::size_t longest     = 0;
+        for (unsigned int lane = 0; lane < n_samples; ++lane)
+          {
+            const Sample &sample = samples[first + lane];
+            point_of_sample.push_back(sample.point);
+            group.laws.set(lane, sample.law);
+            temperature[lane] = sample.temperature;
+            longest           = std::max(longest, sample.weights.size());
+          }
+        const std::size_t begin = weights.size();
+        weights.resize(begin + longest);
+        for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+          {
+            // where a lane has nothing more, an entry of its own counts nothing
+            const auto &own =
+              samples[first + (lane < n_samples ? lane : 0)].weights;
+            for (std::size_t i = begin; i < weights.size(); ++i)
+              weights[i].entries[lane] = own.begin()->first;
+            if (lane >= n_samples)
+              continue;
+            std::size_t i = begin;
+            for (const auto &[entry, gradient] : own)
+              {
+                weights[i].entries[lane] = entry;
+                for (unsigned int d = 0; d < 3; ++d)
+                  weights[i].gradient[d][lane] = gradient[d];
+                ++i;
+              }
+          }
+        group.end_of_weights = weights.size();
+        if (is_static)
+          group.laws.set_initial(strain(groups.size() - 1,
+                                        model.initial.displacement),
+                                 temperature);
+      }
     if (is_static)
       {
         model.initial.temperature.zero_out_ghost_values();
-        model.initial.displacement.update_ghost_values();
-        for (unsigned int p = 0; p < places.size(); ++p)
-          initial_strain[p] = strain(p, model.initial.displacement);
         model.initial.displacement.zero_out_ghost_values();
       }
   }
 
 
-  SymmetricTensor<2, 3>
-  StressPoints::strain(const unsigned int point,
+  SymmetricTensor3<Lanes>
+  StressPoints::strain(const unsigned int group,
                        const Vector      &displacement) const
   {
-    Tensor<2, 3> gradient;
-    for (std::size_t i = point == 0 ? 0 : end_of_weights[point - 1];
-         i < end_of_weights[point];
+    Tensor<2, 3, Lanes> gradient;
+    for (std::size_t i = group == 0 ? 0 : groups[group - 1].end_of_weights;
+         i < groups[group].end_of_weights;
          ++i)
       for (unsigned int d = 0; d < 3; ++d)
-        gradient[d] += displacement.local_element(weights[i].entry + d) *
-                       weights[i].gradient;
+        {
+          Lanes value;
+          value.gather(displacement.begin() + d, weights[i].entries.data());
+          gradient[d] += value * weights[i].gradient;
+        }
     return symmetrize(gradient);
   }
 
@@ -82,9 +181,20 @@ namespace Voussoir
   StressPoints::evaluate(const Vector &displacement)
   {
     displacement.update_ghost_values();
-    for (unsigned int p = 0; p < stress.size(); ++p)
-      stress[p] =
-        laws[p](strain(p, displacement), initial_strain[p], temperature[p]);
+    std::fill(stress.begin(), stress.end(), SymmetricTensor<2, 3>());
+    for (unsigned int g = 0; g < groups.size(); ++g)
+      {
+        const auto        sample = groups[g].laws(strain(g, displacement));
+        const std::size_t first  = g * Lanes::size();
+        const std::size_t n =
+          std::min<std::size_t>(Lanes::size(), point_of_sample.size() - first);
+        for (std::size_t lane = 0; lane < n; ++lane)
+          {
+            auto &point = stress[point_of_sample[first + lane]];
+            for (unsigned int c = 0; c < 6; ++c)
+              point.access_raw_entry(c) += sample.access_raw_entry(c)[lane];
+          }
+      }
     displacement.zero_out_ghost_values();
     return stress;
   }

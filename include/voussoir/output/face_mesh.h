@@ -40,25 +40,44 @@ namespace Voussoir
     unsigned int
     n_nodes() const;
 
-    /** Outward unit normal at a node, the mean of its faces. */
-    const dealii::Tensor<1, 3> &
-    normal(const unsigned int node) const;
+    const dealii::Point<3> &
+    position(const unsigned int node) const;
+
+    /** Refuses faces that are level somewhere, where arch and cantilever have
+     *  no direction; @p place names the entry with them. All ranks must call
+     *  this together. */
+    void
+    check_not_level(const std::string &place) const;
+
+    /** Directions of arch, along the horizontal, and cantilever, along the
+     *  steepest line, at a node. */
+    std::array<dealii::Tensor<1, 3>, 2>
+    arch_and_cantilever(const unsigned int node) const;
+
+    /** Part of an owned face between four neighbouring nodes, the lower
+     *  direction of the face faster. */
+    struct Quadrilateral
+    {
+      unsigned int                set;
+      std::array<unsigned int, 4> nodes;
+    };
+
+    /** All of them. */
+    std::vector<Quadrilateral>
+    quadrilaterals() const;
 
     /** Total stress at each node [Pa]; all ranks must call this together. */
     const std::vector<dealii::SymmetricTensor<2, 3>> &
     stress(const Vector &displacement);
 
-    /** A place in an owned cell, by a key that does not depend on the ranks,
-     *  and its node; for checkpoints. */
-    struct Key
-    {
-      unsigned int  set;
-      std::uint64_t key;
-      unsigned int  node;
-    };
-
-    const std::vector<Key> &
-    keys() const;
+    /** Numbers of the nodes for a checkpoint, by the name of the set.
+     *
+     * @param values @p width of each node
+     * @param what   follows the name */
+    std::map<std::string, KeyedValues>
+    keyed_values(std::vector<double> &values,
+                 const unsigned int   width,
+                 const std::string   &what = "") const;
 
     using SetAndNode = std::pair<unsigned int, dealii::types::global_dof_index>;
 
@@ -85,6 +104,15 @@ namespace Voussoir
           const std::vector<VtuText>     &texts = {}) const;
 
   private:
+    /** A place in an owned cell, by a key that does not depend on the ranks,
+     *  and its node. */
+    struct Key
+    {
+      unsigned int  set;
+      std::uint64_t key;
+      unsigned int  node;
+    };
+
     using NodeNumbers = std::map<SetAndNode, unsigned int>;
 
     /** What is gathered on the way over the faces. */
@@ -93,7 +121,8 @@ namespace Voussoir
       NodeNumbers                      nodes;
       std::vector<StressPoints::Place> list;
 
-      /** Of each place one, and the outward unit normal. */
+      /** Of each node the number of places and the sum of their outward unit
+       *  normals. */
       std::vector<double> normals;
     };
 
@@ -104,20 +133,19 @@ namespace Voussoir
              const unsigned int          face,
              Places                     &places);
 
-    /** Means over the places of each node. */
+    /** Means over the places of each node, of all ranks. */
     void
-    find_normals(const std::vector<double> &normals_of_places);
+    find_normals(const std::vector<double> &normals_of_nodes);
 
     /** A vector of @p width numbers for each node, with ghosts. */
     Vector
     make_vector(const unsigned int width) const;
 
-    /** Sums @p width numbers of each visited place over the places of a node,
-     *  on all ranks that hold the node. */
+    /** Sums @p width numbers of each node over the ranks that hold it. */
     void
-    sum_at_nodes(Vector                    &sums,
-                 const unsigned int         width,
-                 const std::vector<double> &values_of_places) const;
+    sum_over_holders(Vector                    &sums,
+                     const unsigned int         width,
+                     const std::vector<double> &values) const;
 
     /** Agrees with the other ranks on numbers for the nodes. */
     void
@@ -131,7 +159,7 @@ namespace Voussoir
     std::vector<unsigned int>      number_of_set; // in all_names
 
     std::vector<dealii::Point<3>>              positions;
-    std::vector<dealii::Tensor<1, 3>>          normals;
+    std::vector<dealii::Tensor<1, 3>>          normals; // outward, mean
     std::vector<unsigned int>                  n_places_of_node;
     std::vector<unsigned int>                  node_of_place;
     std::vector<Key>                           place_keys;
@@ -146,6 +174,7 @@ namespace Voussoir
 
     std::vector<unsigned int> entries; // of the nodes in a vector
     Vector                    stress_sums;
+    std::vector<double>       components; // of this rank's stresses
   };
 } // namespace Voussoir
 

@@ -3,6 +3,8 @@
 
 #include <voussoir/output/observer.h>
 
+#include <optional>
+
 namespace Voussoir
 {
   /** Stress of a material's law at a point of a cell for output, with the
@@ -30,11 +32,50 @@ namespace Voussoir
     bool
     is_elastic(const dealii::SymmetricTensor<2, 3> &elastic_stress) const;
 
+    /** Whether it is so under any strain. */
+    bool
+    is_always_elastic() const;
+
+    const Material &
+    law() const;
+
   private:
     const Material     *material;
     const PointHistory *history; // or null
     PointHistory::Place place{0, 0};
     unsigned int        q = 0;
+  };
+
+
+  /** Stress of laws at as many points as there are lanes, at the full SIMD
+   *  width where they are isotropic and elastic. Lanes without a law have no
+   *  stress. */
+  class LawStressLanes
+  {
+  public:
+    void
+    set(const unsigned int lane, const LawStress &law);
+
+    /** Strain and change of temperature [K] before the earthquake, once the
+     *  laws are set; without this there are none. */
+    void
+    set_initial(const SymmetricTensor3<Lanes> &strain,
+                const Lanes                   &temperature);
+
+    /** Total stress [Pa] under the total strain. */
+    SymmetricTensor3<Lanes>
+    operator()(const SymmetricTensor3<Lanes> &strain) const;
+
+  private:
+    std::array<std::optional<LawStress>, Lanes::size()> laws;
+
+    // of the laws where they are isotropic and elastic [Pa]
+    Lanes lame_lambda = 0., shear_modulus = 0.;
+
+    // what the strain of the laws is more than the total one
+    SymmetricTensor3<Lanes> offset;
+
+    bool all_are_elastic = true; // under any strain
   };
 } // namespace Voussoir
 

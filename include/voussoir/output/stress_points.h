@@ -12,36 +12,49 @@ namespace Voussoir
   class StressPoints
   {
   public:
-    /** A point of an owned cell. */
+    /** A place in an owned cell. */
     struct Place
     {
       Discretization::Cell cell;
       dealii::Point<3>     unit; // in the reference cell
     };
 
+    /** Each place is a point. */
     StressPoints(const ObservedModel &model, const std::vector<Place> &places);
+
+    /** The stress of a point is the sum over the places whose entry in
+     *  @p point_of_place it is. */
+    StressPoints(const ObservedModel             &model,
+                 const std::vector<Place>        &places,
+                 const std::vector<unsigned int> &point_of_place,
+                 const unsigned int               n_points);
 
     /** Total stress at each point [Pa]; all ranks must call this together. */
     const std::vector<dealii::SymmetricTensor<2, 3>> &
     evaluate(const Vector &displacement);
 
   private:
+    /** Of a node, for as many samples as there are lanes, each with a node of
+     *  its own. */
     struct Weight
     {
-      unsigned int         entry; // of the node's x in a vector with ghosts
-      dealii::Tensor<1, 3> gradient;
+      std::array<unsigned int, Lanes::size()> entries; // of the node's x
+      dealii::Tensor<1, 3, Lanes>             gradient;
     };
 
-    dealii::SymmetricTensor<2, 3>
-    strain(const unsigned int point, const Vector &displacement) const;
+    /** As many samples as there are lanes. */
+    struct Group
+    {
+      std::size_t    end_of_weights = 0;
+      LawStressLanes laws;
+    };
 
-    std::vector<Weight>      weights;
-    std::vector<std::size_t> end_of_weights; // of each point
-    std::vector<LawStress>   laws;           // of each point
+    SymmetricTensor3<Lanes>
+    strain(const unsigned int group, const Vector &displacement) const;
 
-    // of each point, if there is a static stage
-    std::vector<dealii::SymmetricTensor<2, 3>> initial_strain;
-    std::vector<double>                        temperature; // change [K]
+    std::vector<Weight>       weights;
+    std::vector<Group>        groups;
+    std::vector<unsigned int> point_of_sample;
 
     std::vector<dealii::SymmetricTensor<2, 3>> stress;
   };

@@ -1,0 +1,644 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/mpi.h>
+#include <voussoir/base/parameter_file.h>
+#include <voussoir/base/usual_range.h>
+#include <voussoir/materials/principal_stress.h>
+#include <voussoir/output/face_mesh.h>
+#include <voussoir/output/table.h>
+
+#include <numeric>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    const std::string section = "section \"Output/over-stress\"";
+    const std::string place   = "\"Face sets\" in " + section;
+
+
+    /** Share of a triangle in which a linear function, given at its corners, is
+     *  positive. */
+    double
+    positive_share(std::array<double, 3> values)
+    {
+      std::sort(values.begin(), values.end());
+      const auto [low, middle, high] = values;
+      if (!(high > 0.))
+        return 0.;
+      if (low >= 0.)
+        return 1.;
+      if (middle <= 0.)
+        return high * high / ((high - low) * (high - middle));
+      return 1. - low * low / ((middle - low) * (high - low));
+    }
+
+
+    /** Areas of faces on which a quantity, linear between the nodes as pictures
+     *  show it, exceeds certain levels. */
+    class AreaAbove
+    {
+    public:
+      /** @param levels increasing */
+      AreaAbove(const FaceMesh &mesh, const std::vector<double> &levels)
+        : quadrilaterals(mesh.quadrilaterals())
+        , levels(levels)
+      {
+        for (const auto &quadrilateral : quadrilaterals)
+          {
+            std::array<Point<3>, 4> corners;
+            Point<3>                middle;
+            for (unsigned int v = 0; v < 4; ++v)
+              {
+                corners[v] = mesh.position(quadrilateral.nodes[v]);
+                middle += 0.25 * corners[v];
+              }
+            areas.emplace_back();
+            for (unsigned int e = 0; e < 4; ++e)
+              areas.back()[e] =
+                0.5 * cross_product_3d(corners[edges[e][0]] - middle,
+                                       corners[edges[e][1]] - middle)
+                        .norm();
+            whole_areas.push_back(
+              std::accumulate(areas.back().begin(), areas.back().end(), 0.));
+          }
+      }
+
+      /** Adds the area of this rank to @p sums, one for each set and level
+       *  [m2]. */
+      void
+      add(const std::vector<double> &value_of_node, double *sums) const
+      {
+        for (unsigned int q = 0; q < quadrilaterals.size(); ++q)
+          {
+            const auto &[set, nodes] = quadrilaterals[q];
+            std::array<double, 4> values;
+            for (unsigned int v = 0; v < 4; ++v)
+              values[v] = value_of_node[nodes[v]];
+            const double high = std::max(std::max(values[0], values[1]),
+                                         std::max(values[2], values[3]));
+            if (!(high > levels[0]))
+              continue;
+            const double low    = std::min(std::min(values[0], values[1]),
+                                        std::min(values[2], values[3])),
+                         middle = 0.25 * (values[0] + values[1] + values[2] +
+                                          values[3]);
+            for (unsigned int l = 0; l < levels.size() && high > levels[l]; ++l)
+              sums[set * levels.size() + l] +=
+                low > levels[l] ? whole_areas[q] :
+                                  part_above(q, values, middle, levels[l]);
+          }
+      }
+
+      /** Area of this rank in each set [m2]. */
+      std::vector<double>
+      total(const unsigned int n_sets) const
+      {
+        std::vector<double> sums(n_sets);
+        for (unsigned int q = 0; q < quadrilaterals.size(); ++q)
+          sums[quadrilaterals[q].set] += whole_areas[q];
+        return sums;
+      }
+
+    private:
+      double
+      part_above(const unsigned int           quadrilateral,
+                 const std::array<double, 4> &values,
+                 const double                 middle,
+                 const double                 level) const
+      {
+        double area = 0.;
+        for (unsigned int e = 0; e < 4; ++e)
+          area += areas[quadrilateral][e] *
+                  positive_share({{values[edges[e][0]] - level,
+                                   values[edges[e][1]] - level,
+                                   middle - level}});
+        return area;
+      }
+
+      // around the quadrilateral
+      static constexpr std::array<std::array<unsigned int, 2>, 4> edges{
+        {{{0, 1}}, {{1, 3}}, {{3, 2}}, {{2, 0}}}};
+
+      std::vector<FaceMesh::Quadrilateral> quadrilaterals;
+      std::vector<double>                  levels;
+
+      // of the triangles between the edges and the middle, and all four [m2]
+      std::vector<std::array<double, 4>> areas;
+      std::vector<double>                whole_areas;
+    };
+
+
+    /**
+     * Over-stress of the faces of a dam after a linear analysis: how far, how
+     * long and on what area the tension exceeds the strength, and whether that
+     * calls for a non-linear analysis (Ghanaat, "Failure modes approach to
+     * safety evaluation of dams", 13th World Conference on Earthquake
+     * Engineering, 2004; USACE EM 1110-2-6053, 2007).
+     */
+    class OverStress : public Observer
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Face sets", sets, "Faces to look at.");
+        prm.add_parameter("Stress",
+                          stress,
+                          "What is compared with the strength: the largest "
+                          "principal stress, or the larger one of arch and "
+                          "cantilever stress.",
+                          Patterns::Selection("principal|arch and cantilever"));
+        prm.add_parameter(
+          "Tensile strength",
+          strengths,
+          "Static tensile strength of the concrete, one for all faces or one "
+          "for each [Pa]. The demand-capacity ratio is the tension over it." +
+            usually(Usual::tensile_strength),
+          Patterns::List(Patterns::Double(0.), 1));
+        prm.add_parameter("Ratios",
+                          ratios,
+                          "Demand-capacity ratios above which time and area "
+                          "are summed up, increasing from 1 [-].",
+                          Patterns::List(Patterns::Double(0.), 1));
+        prm.add_parameter(
+          "Longest time",
+          longest_time,
+          "Accumulated time above the ratio 1 that a linear analysis allows "
+          "[s]. It falls linearly to zero at the \"Largest ratio\". The limits "
+          "are those ascribed to USACE EM 1110-2-6053 for arch dams, gravity "
+          "dams have 0.3 s; compare them with the code that applies.",
+          Patterns::Double(0.));
+        prm.add_parameter("Largest ratio",
+                          largest_ratio,
+                          "Demand-capacity ratio that it allows [-].",
+                          Patterns::Double(1.));
+        prm.add_parameter("Largest share",
+                          largest_share,
+                          "Share of a face above the ratio 1 at any time that "
+                          "it allows [%]; gravity dams have 15 % of the "
+                          "section.",
+                          Patterns::Double(0., 100.));
+      }
+
+      void
+      check(const ObservedModel &model) const override
+      {
+        const auto mesh = make_mesh(model);
+        if (stress != "principal")
+          mesh->check_not_level(place);
+        const auto face_sets = split_list(sets);
+        if (strengths.size() != 1 && strengths.size() != face_sets.size())
+          throw UserError("\"Tensile strength\" in " + section + " has " +
+                          std::to_string(strengths.size()) + " values for " +
+                          std::to_string(face_sets.size()) +
+                          " face sets; give one for all or one for each.");
+        for (const double strength : strengths)
+          if (strength <= 0.)
+            throw UserError("\"Tensile strength\" in " + section +
+                            " is 0; give the static tensile strength of the "
+                            "concrete in Pa.");
+        if (ratios[0] != 1. ||
+            std::adjacent_find(ratios.begin(),
+                               ratios.end(),
+                               std::greater_equal<double>()) != ratios.end())
+          throw UserError("\"Ratios\" in " + section +
+                          " must begin with 1 and increase from each to the "
+                          "next; sort them and remove repeated ones.");
+        if (longest_time > 0. && largest_ratio <= 1.)
+          throw UserError("\"Largest ratio\" in " + section +
+                          " must be above 1, so that the time allowed can fall "
+                          "to zero there; set \"Longest time = 0\" to allow "
+                          "none.");
+        check_elastic(model, face_sets);
+      }
+
+      void
+      prepare(const ObservedModel &observed, const double, const bool) override
+      {
+        names     = split_list(sets);
+        log       = &observed.log;
+        folder    = observed.folder;
+        time_step = observed.time_step;
+        mesh      = make_mesh(observed);
+        areas     = std::make_unique<AreaAbove>(*mesh, ratios);
+        directions.clear();
+        strength_of_node.clear();
+        for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
+          {
+            if (stress != "principal")
+              directions.push_back(mesh->arch_and_cantilever(node));
+            const unsigned int set = mesh->sets_and_nodes()[node].first;
+            strength_of_node.push_back(
+              strengths[strengths.size() == 1 ? 0 : set]);
+          }
+        largest.assign(2 * mesh->n_nodes(), 0.);
+        times.assign(n_ratios() * mesh->n_nodes(), 0.);
+        next_step = 0;
+        at_once.assign(n_areas(), {{0., 0.}});
+        waiting_areas.clear();
+        waiting_times.clear();
+      }
+
+      void
+      observe(const State &state) override
+      {
+        if (state.step < next_step) // that of the checkpoint, seen before
+          return;
+        const double interval = state.step == 0 ? 0. : time_step;
+        next_step             = state.step + 1;
+        find_ratios(state.displacement);
+        for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
+          {
+            const double ratio = ratio_of_node[node];
+            if (!(ratio <= largest[2 * node])) // a NaN stays
+              {
+                largest[2 * node]     = ratio;
+                largest[2 * node + 1] = state.time;
+              }
+            if (ratio > ratios[0])
+              times[n_ratios() * node - 1 +
+                    (std::lower_bound(ratios.begin(), ratios.end(), ratio) -
+                     ratios.begin())] += interval;
+          }
+        waiting_times.push_back(state.time);
+        waiting_areas.resize(waiting_areas.size() + n_areas(), 0.);
+        areas->add(ratio_of_node, &*waiting_areas.end() - n_areas());
+        if (waiting_times.size() >= 1000)
+          find_largest_areas();
+      }
+
+      void
+      finish(const State &state, nlohmann::json &summary) override
+      {
+        find_largest_areas();
+        const std::vector<Face>  faces = find_faces();
+        std::vector<std::string> reasons;
+        nlohmann::json          &result = summary["over-stress"];
+        for (const Face &face : faces)
+          {
+            result[face.name] = json(face);
+            for (const std::string &reason : reasons_of(face))
+              reasons.push_back(reason);
+          }
+        std::string verdict = "linear analysis suffices";
+        if (!reasons.empty())
+          verdict = "non-linear analysis is called for: ";
+        for (std::size_t i = 0; i < reasons.size(); ++i)
+          verdict += (i == 0 ? "" : "; ") + reasons[i];
+        result["verdict"] = verdict;
+        log->line("Over-stress of the faces: ", verdict);
+        write_curves(faces);
+        write_fields(state.time);
+      }
+
+      nlohmann::json
+      save() override
+      {
+        find_largest_areas();
+        return {{"next step", next_step}, {"largest areas", at_once}};
+      }
+
+      void
+      load(const nlohmann::json &saved) override
+      {
+        saved.at("next step").get_to(next_step);
+        saved.at("largest areas").get_to(at_once);
+      }
+
+      std::map<std::string, KeyedValues>
+      checkpoint_values() override
+      {
+        auto values = mesh->keyed_values(largest, 2);
+        values.merge(mesh->keyed_values(times, n_ratios(), ", times"));
+        return values;
+      }
+
+    private:
+      /** What is found of a face set. */
+      struct Face
+      {
+        std::string name;
+        double      area; // [m2]
+
+        // largest demand-capacity ratio [-], when [s] and where [m]
+        double   largest, time;
+        Point<3> where;
+
+        // of each ratio of the list: accumulated time of the point that has
+        // most [s], area ever above it and largest one at a moment [m2]
+        std::vector<double> accumulated, ever, at_once, time_at_once;
+      };
+
+      std::unique_ptr<FaceMesh>
+      make_mesh(const ObservedModel &model) const
+      {
+        return std::make_unique<FaceMesh>(
+          model, split_list(sets), place, "face_set", model.names.face_sets);
+      }
+
+      /** The tension of cracked concrete says nothing about its demand. */
+      static void
+      check_elastic(const ObservedModel            &model,
+                    const std::vector<std::string> &face_sets)
+      {
+        int cracking = -1; // number of a material
+        for (const std::string &name : face_sets)
+          model.discretization.grid.for_each_face(
+            name, [&](const auto &cell, const unsigned int) {
+              const int material = model.material_of_cell(cell);
+              if (model.material_memory.of(material) != nullptr)
+                cracking = material;
+            });
+        cracking =
+          Utilities::MPI::max(cracking,
+                              model.discretization.grid.communicator());
+        if (cracking >= 0)
+          throw UserError(
+            "The faces of " + section + " have cells of the material \"" +
+            model.names.materials[cracking] +
+            "\", whose stress is limited by its strength, but over-stress is "
+            "that of a linear analysis; choose a linear elastic law, or leave "
+            "out the observer \"over-stress\".");
+      }
+
+      unsigned int
+      n_ratios() const
+      {
+        return ratios.size();
+      }
+
+      /** Of each set and ratio. */
+      std::size_t
+      n_areas() const
+      {
+        return names.size() * n_ratios();
+      }
+
+      /** Finds the demand-capacity ratio of each node. */
+      void
+      find_ratios(const Vector &displacement)
+      {
+        const auto &tensors = mesh->stress(displacement);
+        ratio_of_node.resize(tensors.size());
+        for (unsigned int first = 0; first < tensors.size();
+             first += Lanes::size())
+          {
+            const unsigned int n =
+              std::min<std::size_t>(Lanes::size(), tensors.size() - first);
+            if (stress == "principal")
+              {
+                SymmetricTensor3<Lanes> together;
+                for (unsigned int lane = 0; lane < n; ++lane)
+                  for (unsigned int c = 0; c < 6; ++c)
+                    together.access_raw_entry(c)[lane] =
+                      tensors[first + lane].access_raw_entry(c);
+                const Lanes largest =
+                  largest_and_smallest_principal(together).first;
+                for (unsigned int lane = 0; lane < n; ++lane)
+                  ratio_of_node[first + lane] = largest[lane];
+              }
+            else
+              for (unsigned int node = first; node < first + n; ++node)
+                {
+                  const auto &[arch, cantilever] = directions[node];
+                  ratio_of_node[node] =
+                    std::max(arch * (tensors[node] * arch),
+                             cantilever * (tensors[node] * cantilever));
+                }
+          }
+        for (unsigned int node = 0; node < tensors.size(); ++node)
+          ratio_of_node[node] /= strength_of_node[node];
+      }
+
+      /** Sums the areas of waiting moments over the ranks. */
+      void
+      find_largest_areas()
+      {
+        const auto sums = sum_over_ranks(waiting_areas, mesh->communicator());
+        for (std::size_t i = 0; i < sums.size(); ++i)
+          {
+            auto &[area, time] = at_once[i % n_areas()];
+            if (sums[i] > area)
+              {
+                area = sums[i];
+                time = waiting_times[i / n_areas()];
+              }
+          }
+        waiting_areas.clear();
+        waiting_times.clear();
+      }
+
+      /** Time above each ratio, whatever the next one, of a node [s]. */
+      std::vector<double>
+      accumulated_times(const unsigned int node) const
+      {
+        const double       *own = &times[n_ratios() * node];
+        std::vector<double> above(own, own + n_ratios());
+        for (unsigned int r = n_ratios() - 1; r > 0; --r)
+          above[r - 1] += above[r];
+        return above;
+      }
+
+      std::vector<Face>
+      find_faces() const
+      {
+        const auto          communicator = mesh->communicator();
+        std::vector<double> ratio, ever(n_areas()), accumulated(n_areas());
+        // of each set: largest ratio, time, place
+        std::vector<std::array<double, 5>> most(
+          names.size(), {{-std::numeric_limits<double>::max()}});
+        for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
+          {
+            const unsigned int set   = mesh->sets_and_nodes()[node].first;
+            const Point<3>    &where = mesh->position(node);
+            const auto         above = accumulated_times(node);
+            ratio.push_back(largest[2 * node]);
+            most[set] = std::max(most[set],
+                                 {{largest[2 * node],
+                                   largest[2 * node + 1],
+                                   where[0],
+                                   where[1],
+                                   where[2]}});
+            for (unsigned int r = 0; r < n_ratios(); ++r)
+              accumulated[set * n_ratios() + r] =
+                std::max(accumulated[set * n_ratios() + r], above[r]);
+          }
+        areas->add(ratio, ever.data());
+        ever = sum_over_ranks(ever, communicator);
+        Utilities::MPI::max(accumulated, communicator, accumulated);
+        const auto total =
+          sum_over_ranks(areas->total(names.size()), communicator);
+        for (const auto &other : Utilities::MPI::all_gather(communicator, most))
+          for (unsigned int set = 0; set < names.size(); ++set)
+            most[set] = std::max(most[set], other[set]);
+
+        std::vector<Face> faces;
+        for (unsigned int set = 0; set < names.size(); ++set)
+          {
+            const auto &[greatest, time, x, y, z] = most[set];
+            Face &face                            = faces.emplace_back();
+            face.name                             = names[set];
+            face.area                             = total[set];
+            face.largest                          = greatest;
+            face.time                             = time;
+            face.where                            = Point<3>(x, y, z);
+            for (unsigned int i = set * n_ratios(); i < (set + 1) * n_ratios();
+                 ++i)
+              {
+                face.accumulated.push_back(accumulated[i]);
+                face.ever.push_back(ever[i]);
+                face.at_once.push_back(at_once[i][0]);
+                face.time_at_once.push_back(at_once[i][1]);
+              }
+          }
+        return faces;
+      }
+
+      static std::string
+      number(const double value)
+      {
+        std::ostringstream text;
+        text << std::setprecision(3) << value;
+        return text.str();
+      }
+
+      nlohmann::json
+      json(const Face &face) const
+      {
+        nlohmann::json result{{"largest ratio", face.largest},
+                              {"at the time [s]", face.time},
+                              {"at [m]",
+                               {face.where[0], face.where[1], face.where[2]}},
+                              {"area [m2]", face.area}};
+        for (unsigned int r = 0; r < ratios.size(); ++r)
+          result["above " + number(ratios[r])] = {
+            {"accumulated time [s]", face.accumulated[r]},
+            {"area at any time [m2]", face.ever[r]},
+            {"share at any time [%]", 100. * face.ever[r] / face.area},
+            {"largest area at once [m2]", face.at_once[r]},
+            {"largest share at once [%]", 100. * face.at_once[r] / face.area},
+            {"time of the largest area at once [s]", face.time_at_once[r]}};
+        return result;
+      }
+
+      /** Accumulated time that a linear analysis allows above a ratio [s]. */
+      double
+      allowed_time(const double ratio) const
+      {
+        return ratio >= largest_ratio ?
+                 0. :
+                 longest_time * (largest_ratio - ratio) / (largest_ratio - 1.);
+      }
+
+      /** Why a face calls for a non-linear analysis; none if it does not. */
+      std::vector<std::string>
+      reasons_of(const Face &face) const
+      {
+        std::vector<std::string> reasons;
+        if (!(face.largest <= largest_ratio))
+          reasons.push_back("the demand-capacity ratio of the " + face.name +
+                            " reaches " + number(face.largest) +
+                            ", more than " + number(largest_ratio));
+        const double share = 100. * face.ever[0] / face.area;
+        if (!(share <= largest_share))
+          reasons.push_back(number(share) + " % of the " + face.name +
+                            " is above the ratio 1 at some time, more than " +
+                            number(largest_share) + " %");
+        // where the curve is furthest above its limit
+        unsigned int worst  = 0;
+        double       excess = 0.;
+        for (unsigned int r = 0; r < ratios.size(); ++r)
+          if (const double own = face.accumulated[r] - allowed_time(ratios[r]);
+              own > excess && ratios[r] < largest_ratio)
+            {
+              worst  = r;
+              excess = own;
+            }
+        if (excess > 0.)
+          reasons.push_back(
+            "the " + face.name + " is above the ratio " +
+            number(ratios[worst]) + " for " + number(face.accumulated[worst]) +
+            " s, longer than " + number(allowed_time(ratios[worst])) + " s");
+        return reasons;
+      }
+
+      void
+      write_curves(const std::vector<Face> &faces) const
+      {
+        if (Utilities::MPI::this_mpi_process(mesh->communicator()) != 0)
+          return;
+        std::vector<std::string> titles{"ratio", "allowed time [s]"};
+        for (const Face &face : faces)
+          for (const std::string title : {"accumulated time [s]",
+                                          "area at any time [m2]",
+                                          "largest area at once [m2]"})
+            titles.push_back(face.name + ' ' + title);
+        std::string text = csv_heading(titles) + '\n';
+        for (unsigned int r = 0; r < ratios.size(); ++r)
+          {
+            std::vector<double> line{ratios[r], allowed_time(ratios[r])};
+            for (const Face &face : faces)
+              line.insert(line.end(),
+                          {face.accumulated[r], face.ever[r], face.at_once[r]});
+            text += csv_line(line) + '\n';
+          }
+        const std::string file = folder + "/over_stress.csv";
+        log->attempted(file, write_file(file, text));
+      }
+
+      void
+      write_fields(const double time) const
+      {
+        std::vector<std::string> fields{"largest_ratio",
+                                        "time_of_largest_ratio_s"};
+        for (const double ratio : ratios)
+          fields.push_back("time_above_" + number(ratio) + "_s");
+        std::vector<double> fields_of_nodes;
+        for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
+          {
+            const double *own = &largest[2 * node];
+            fields_of_nodes.insert(fields_of_nodes.end(), own, own + 2);
+            for (const double seconds : accumulated_times(node))
+              fields_of_nodes.push_back(seconds);
+          }
+        mesh->write(fields, fields_of_nodes, "over_stress", time);
+      }
+
+      std::string         sets   = "upstream face, downstream face";
+      std::string         stress = "principal";
+      std::vector<double> strengths{0.};
+      std::vector<double>
+             ratios{1., 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.};
+      double longest_time = 0.4, largest_ratio = 2., largest_share = 20.;
+
+      std::vector<std::string>   names; // of the face sets
+      Log                       *log = nullptr;
+      std::string                folder;
+      double                     time_step = 0.; // [s]
+      std::unique_ptr<FaceMesh>  mesh;
+      std::unique_ptr<AreaAbove> areas;
+
+      // of each node: arch and cantilever if they are wanted, strength [Pa],
+      // ratio now, largest one and when [s], and for each ratio of the list the
+      // time above it, but not above the next one [s]
+      std::vector<std::array<Tensor<1, 3>, 2>> directions;
+      std::vector<double>                      strength_of_node, ratio_of_node;
+      std::vector<double>                      largest, times;
+
+      unsigned long long next_step = 0; // to be counted
+
+      // of each set and ratio the largest area at a moment [m2], and when [s];
+      // areas of this rank at the moments that are not looked at yet
+      std::vector<std::array<double, 2>> at_once;
+      std::vector<double>                waiting_areas, waiting_times;
+    };
+
+    const Registry<Observer>::Add<OverStress> registered(
+      "over-stress",
+      "How far, how long and on what area the tension on the faces of a dam "
+      "exceeds its strength, in over_stress.csv and over_stress.vtu, and "
+      "whether a linear analysis suffices.");
+  } // namespace
+} // namespace Voussoir

@@ -104,7 +104,9 @@ namespace Voussoir
       collect = [&](const nlohmann::json &node, const std::string &section) {
         for (const auto &[name, child] : node.items())
           if (child.contains("value") && child["value"].is_string())
-            look_at(name, section, child["documentation"], child["value"]);
+            for (const std::string &value :
+                 Utilities::split_string_list(child["value"]))
+              look_at(name, section, child["documentation"], value);
           else if (child.is_object())
             collect(child, section.empty() ? name : section + "/" + name);
       };

@@ -76,7 +76,8 @@ namespace Voussoir
       "paths, separated by semicolons; a star stands for any letters, and of "
       "several numbers the largest is taken, or the smallest if the name "
       "begins with that. Empty: displacements of the histories, opening, slip "
-      "and safety of interfaces and blocks, energy lost in cracks.");
+      "and safety of interfaces and blocks, share of the faces and time of "
+      "over-stress, energy lost in cracks.");
     prm.add_parameter("Ranks of a run",
                       ranks_of_run,
                       "Ranks that each run gets, so that several go on side by "
@@ -198,6 +199,8 @@ namespace Voussoir
       "interfaces/surfaces/*/residual slip [mm];"
       "interfaces/surfaces/*/slip rate at the end [mm/s];"
       "interfaces/blocks/*/smallest safety;"
+      "over-stress/*/above 1/share at any time [%];"
+      "over-stress/*/above 1/accumulated time [s];"
       "energy balance/lost to cracks and plastic flow [J]";
     std::vector<SummaryNumber> result;
     for (const std::string &path :

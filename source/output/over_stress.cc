@@ -257,14 +257,16 @@ namespace Voussoir
                 largest[2 * node]     = ratio;
                 largest[2 * node + 1] = state.time;
               }
-            if (ratio > ratios[0])
-              times[n_ratios() * node - 1 +
-                    (std::lower_bound(ratios.begin(), ratios.end(), ratio) -
-                     ratios.begin())] += interval;
+            const std::size_t n_below =
+              std::lower_bound(ratios.begin(), ratios.end(), ratio) -
+              ratios.begin();
+            if (n_below > 0)
+              times[n_ratios() * node + n_below - 1] += interval;
           }
         waiting_times.push_back(state.time);
         waiting_areas.resize(waiting_areas.size() + n_areas(), 0.);
-        areas->add(ratio_of_node, &*waiting_areas.end() - n_areas());
+        areas->add(ratio_of_node,
+                   waiting_areas.data() + waiting_areas.size() - n_areas());
         if (waiting_times.size() >= 1000)
           find_largest_areas();
       }
@@ -569,23 +571,21 @@ namespace Voussoir
       {
         if (Utilities::MPI::this_mpi_process(mesh->communicator()) != 0)
           return;
-        std::vector<std::string> titles{"ratio", "allowed time [s]"};
+        std::vector<std::string>         titles{"ratio", "allowed time [s]"};
+        std::vector<std::vector<double>> columns{ratios, {}};
+        for (const double ratio : ratios)
+          columns[1].push_back(allowed_time(ratio));
         for (const Face &face : faces)
-          for (const std::string title : {"accumulated time [s]",
-                                          "area at any time [m2]",
-                                          "largest area at once [m2]"})
-            titles.push_back(face.name + ' ' + title);
-        std::string text = csv_heading(titles) + '\n';
-        for (unsigned int r = 0; r < ratios.size(); ++r)
-          {
-            std::vector<double> line{ratios[r], allowed_time(ratios[r])};
-            for (const Face &face : faces)
-              line.insert(line.end(),
-                          {face.accumulated[r], face.ever[r], face.at_once[r]});
-            text += csv_line(line) + '\n';
-          }
+          for (const auto &[title, values] :
+               {std::make_pair("accumulated time [s]", &face.accumulated),
+                std::make_pair("area at any time [m2]", &face.ever),
+                std::make_pair("largest area at once [m2]", &face.at_once)})
+            {
+              titles.push_back(face.name + ' ' + title);
+              columns.push_back(*values);
+            }
         const std::string file = folder + "/over_stress.csv";
-        log->attempted(file, write_file(file, text));
+        log->attempted(file, write_file(file, csv_of_columns(titles, columns)));
       }
 
       void

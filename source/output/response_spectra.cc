@@ -172,16 +172,8 @@ namespace Voussoir
       {
         if (Utilities::MPI::this_mpi_process(log->communicator()) != 0)
           return;
-        std::string text = csv_heading(titles) + '\n';
-        for (unsigned int i = 0; i < columns[0].size(); ++i)
-          {
-            std::vector<double> line;
-            for (const std::vector<double> &column : columns)
-              line.push_back(column[i]);
-            text += csv_line(line) + '\n';
-          }
         const std::string file = folder + "/response_spectra.csv";
-        log->attempted(file, write_file(file, text));
+        log->attempted(file, write_file(file, csv_of_columns(titles, columns)));
       }
 
       std::string  components    = "x, y, z";

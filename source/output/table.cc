@@ -57,6 +57,22 @@ namespace Voussoir
   } // namespace
 
 
+  std::string
+  csv_of_columns(const std::vector<std::string>         &titles,
+                 const std::vector<std::vector<double>> &columns)
+  {
+    std::string text = csv_heading(titles) + '\n';
+    for (std::size_t i = 0; i < columns[0].size(); ++i)
+      {
+        std::vector<double> line;
+        for (const std::vector<double> &column : columns)
+          line.push_back(column[i]);
+        text += csv_line(line) + '\n';
+      }
+    return text;
+  }
+
+
   void
   TimeTable::open(Log                            &log,
                   const std::string              &filename,

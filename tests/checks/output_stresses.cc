@@ -1,9 +1,4 @@
-#include <voussoir/output/observer.h>
-
-#include <filesystem>
-#include <fstream>
-
-#include "check.h"
+#include "observed.h"
 
 namespace Voussoir
 {
@@ -11,34 +6,6 @@ namespace Voussoir
 
   namespace
   {
-    /** An observer with some entries, and what it makes of some states. */
-    nlohmann::json
-    observed(const std::string                        &name,
-             const std::map<std::string, std::string> &entries,
-             const Simulation                         &simulation,
-             const std::vector<State>                 &states)
-    {
-      const auto       observer = Registry<Observer>::create(name, "the check");
-      ParameterHandler prm;
-      observer->declare_parameters(prm);
-      for (const auto &[entry, value] : entries)
-        prm.set(entry, value);
-      ObservedModel model = simulation.run.observed;
-      model.folder        = "observed";
-      if (Utilities::MPI::this_mpi_process(
-            simulation.model.grid.communicator()) == 0)
-        std::filesystem::create_directories(model.folder);
-      MPI_Barrier(simulation.model.grid.communicator());
-      observer->check(model);
-      observer->prepare(model, 0., false);
-      for (const State &state : states)
-        observer->observe(state);
-      nlohmann::json summary;
-      observer->finish(states.back(), summary);
-      return summary[name];
-    }
-
-
     /**
      * Stresses on the faces and section forces of a block with a known stress:
      * y is the direction of the river, the face "back" is upstream.

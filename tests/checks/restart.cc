@@ -370,6 +370,7 @@ namespace Voussoir
         for (const std::string table : {"/histories.csv",
                                         "/energy.csv",
                                         "/section_forces.csv",
+                                        "/over_stress.csv",
                                         "/response_spectra.csv"})
           {
             if (!std::filesystem::exists(reference + table))

@@ -15,6 +15,12 @@ namespace Voussoir
   std::string
   csv_line(const std::vector<double> &values);
 
+  /** All lines of such a file, heading included, from its columns, which have
+   *  the same length. */
+  std::string
+  csv_of_columns(const std::vector<std::string>         &titles,
+                 const std::vector<std::vector<double>> &columns);
+
   /** A file of comma-separated values over time, with the time in the first
    *  column. The first rank writes it, what the others say is ignored. Lines
    *  that cannot be written wait until they can. */

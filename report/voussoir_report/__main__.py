@@ -26,7 +26,8 @@ def main():
     options = arguments()
     try:
         # takes a second, and --help shall not
-        from . import case, damage, faces, interfaces, motions, page, scenes, structure
+        from . import (case, damage, faces, interfaces, motions, over_stress, page, scenes,
+                       structure)
         from .run import ReportError, read_runs
     except ImportError as error:
         sys.exit(f"voussoir-report: {error}; install python3-numpy, python3-matplotlib, python3-vtk9 "
@@ -38,9 +39,9 @@ def main():
         scenes.open_display()
         makers = (case.headline_section, case.case_section, structure.mesh_section,
                   structure.modes_section, motions.input_section, motions.motion_section,
-                  faces.face_stress_section, interfaces.joints_section, structure.opened_section,
-                  interfaces.planes_section, damage.damage_section, motions.energy_section,
-                  case.statistics_section)
+                  faces.face_stress_section, over_stress.over_stress_section,
+                  interfaces.joints_section, structure.opened_section, interfaces.planes_section,
+                  damage.damage_section, motions.energy_section, case.statistics_section)
         # drawing takes nearly all of the time: one process for each core
         fork = multiprocessing.get_context("fork")
         with concurrent.futures.ProcessPoolExecutor(mp_context=fork) as pool:

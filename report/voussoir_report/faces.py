@@ -22,9 +22,9 @@ def developed(dam, corners, side):
     return np.stack([sign * dam.developed(corners[..., 0]), corners[..., 2]], axis=-1)
 
 
-def face_panels(run, field):
+def face_panels(run, field, file=FILE):
     """Panels of a field on both faces."""
-    grid, dam = grid_of(run, FILE), dam_of(run)
+    grid, dam = grid_of(run, file), dam_of(run)
     panels = []
     for side, (title, _) in SIDES.items():
         if f"{side} face" in grid.names("face_set"):

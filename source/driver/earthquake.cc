@@ -54,6 +54,43 @@ namespace Voussoir
     }
 
 
+    void
+    say_fit(const SpectrumFit &fit, const SpectrumMatch &match, Log &log)
+    {
+      constexpr double accepted = 0.1;
+      const auto [largest, at]  = fit.largest_misfit();
+      const char axis           = "xyz"[fit.component];
+      log.line("Ground motion ",
+               axis,
+               ": the record times ",
+               fit.factor,
+               match.method == "one factor" ? "" : ", changed by wavelets,",
+               " is off its target spectrum by ",
+               100. * fit.mean_misfit(),
+               " % on average and ",
+               100. * largest,
+               " % at most, at ",
+               at,
+               " s, between ",
+               match.shortest_period,
+               " and ",
+               match.longest_period,
+               " s; Arias intensity ",
+               fit.arias_before,
+               " m/s before, ",
+               fit.arias_after,
+               " m/s after");
+      if (match.method == "each component" && fit.mean_misfit() > accepted)
+        log.warn("the ground motion ",
+                 axis,
+                 " is off its target spectrum by ",
+                 100. * fit.mean_misfit(),
+                 " % on average; choose a record whose own spectrum is more "
+                 "like the target, or match fewer periods in section \"Ground "
+                 "motion/Matching\"");
+    }
+
+
     // What hardly is the earthquake that was meant.
     void
     check_peaks(const GroundMotionSignals &motion,
@@ -163,8 +200,11 @@ namespace Voussoir
     if (ground_motion.type == "none")
       return;
     const double        end_time = parameters.time.end_time;
-    GroundMotionSignals motion = ground_motion.build(parameters.file.folder());
+    GroundMotionSignals motion =
+      ground_motion.build(parameters.file.folder(), &fits);
     log(ground_motion.summary(motion, end_time));
+    for (const SpectrumFit &fit : fits)
+      say_fit(fit, ground_motion.match, log);
     for (unsigned int d = 0; d < 3; ++d)
       if (motion[d])
         for (std::size_t i = 0; i * sample_interval <= end_time; ++i)

@@ -45,6 +45,50 @@ namespace Voussoir
            Utilities::MPI::min(qualities[i].smallest_angle, communicator)}};
       return result;
     }
+
+
+    /** Spectra of a matched motion beside their targets. */
+    void
+    write_spectra(const std::vector<SpectrumFit> &fits,
+                  const std::string              &folder,
+                  Log                            &log)
+    {
+      if (fits.empty() ||
+          Utilities::MPI::this_mpi_process(log.communicator()) != 0)
+        return;
+      std::vector<std::string>         titles{"period [s]"};
+      std::vector<std::vector<double>> columns{fits[0].periods};
+      for (const SpectrumFit &fit : fits)
+        for (const auto &[title, values] :
+             {std::make_pair(" target [m/s2]", &fit.target),
+              std::make_pair(" scaled record [m/s2]", &fit.before),
+              std::make_pair(" matched [m/s2]", &fit.after)})
+          {
+            titles.push_back("xyz"[fit.component] + std::string(title));
+            columns.push_back(*values);
+          }
+      const std::string name = folder + "/ground_motion_spectra.csv";
+      log.attempted(name, write_file(name, csv_of_columns(titles, columns)));
+    }
+
+
+    nlohmann::json
+    json(const std::vector<SpectrumFit> &fits)
+    {
+      nlohmann::json result;
+      for (const SpectrumFit &fit : fits)
+        {
+          const auto [largest, at]                     = fit.largest_misfit();
+          result[std::string(1, "xyz"[fit.component])] = {
+            {"mean misfit [%]", 100. * fit.mean_misfit()},
+            {"largest misfit [%]", 100. * largest},
+            {"at period [s]", at},
+            {"factor", fit.factor},
+            {"Arias intensity of the scaled record [m/s]", fit.arias_before},
+            {"Arias intensity [m/s]", fit.arias_after}};
+        }
+      return result;
+    }
   } // namespace
 
 
@@ -53,6 +97,7 @@ namespace Voussoir
   {
     write_modes();
     write_ground_motion();
+    write_spectra(earthquake.fits, folder.path(), log);
     energy.open(folder.path(), folder.start_time(), folder.restarts(), log);
     for (const auto &observer : model.parameters.observers)
       observer.second->prepare(observed,
@@ -109,7 +154,7 @@ namespace Voussoir
 
   namespace
   {
-    /** The spectrum that an artificial motion follows [m/s2]. */
+    /** The spectrum that an artificial or matched motion follows [m/s2]. */
     nlohmann::json
     target_spectrum(const GroundMotion &motion)
     {
@@ -183,9 +228,11 @@ namespace Voussoir
     if (contact && loop_seconds > 0.)
       result["contact share of the loop"] =
         Utilities::MPI::min(contact->seconds(), communicator) / loop_seconds;
-    if (model.parameters.ground_motion.type == "spectrum")
-      result["target spectrum"] =
-        target_spectrum(model.parameters.ground_motion);
+    if (const GroundMotion &motion = model.parameters.ground_motion;
+        motion.type == "spectrum" || motion.match.wanted())
+      result["target spectrum"] = target_spectrum(motion);
+    if (!earthquake.fits.empty())
+      result["spectrum fit"] = json(earthquake.fits);
     if (!rest.summary.is_null())
       result["static state"] = rest.summary;
     if (!modes.list.empty())

@@ -76,6 +76,7 @@ namespace Voussoir
     declare_section("Sine", sine);
     declare_section("Pulse", pulse);
     declare_section("Spectrum", spectrum);
+    declare_section("Matching", match);
   }
 
 
@@ -224,6 +225,21 @@ namespace Voussoir
 
     if (type == "spectrum")
       spectrum.check();
+
+    if (!match.wanted())
+      return;
+    if (type != "record")
+      throw UserError("\"Method\" in section \"Ground motion/Matching\" "
+                      "matches records to a spectrum, but \"Type\" in section "
+                      "\"Ground motion\" is \"" +
+                      type + "\"; set \"Method = none\".");
+    for (unsigned int c = 0; c < 3; ++c)
+      if (!record.files[c].empty() && peak_acceleration[c] == 0)
+        throw UserError("\"Peak acceleration " + axis_names[c] +
+                        "\" in section \"Ground motion\" is 0, but the target "
+                        "spectrum of a record that is matched is a multiple of "
+                        "it; set it.");
+    match.check(spectrum.spectrum);
   }
 
 
@@ -287,12 +303,57 @@ namespace Voussoir
 
       return {part.time_step, record.baseline.apply(part).acceleration};
     }
+
+    void
+    check_it_moves(const double peak, const unsigned int component)
+    {
+      if (peak == 0)
+        throw UserError("\"Peak acceleration " + axis_names[component] +
+                        "\" in section \"Ground motion\" cannot be reached, "
+                        "because the part of the record that is used is zero "
+                        "throughout; choose another file or time window.");
+    }
   } // namespace
 
 
   GroundMotionSignals
-  GroundMotion::build(const std::string &folder) const
+  GroundMotion::build_matched(const std::string        &folder,
+                              std::vector<SpectrumFit> *fits) const
   {
+    std::vector<TimeSeries>  records;
+    std::vector<SpectrumFit> components;
+    for (unsigned int c = 0; c < 3; ++c)
+      if (!record.files[c].empty())
+        {
+          records.push_back(read_component(record, c, folder));
+          check_it_moves(peak(records.back().values), c);
+          SpectrumFit &fit = components.emplace_back();
+          fit.component    = c;
+          fit.periods      = match.periods();
+          for (const double period : fit.periods)
+            fit.target.push_back(standard_gravity * peak_acceleration[c] *
+                                 spectrum.spectrum.amplification(period));
+        }
+    fit_to_spectrum(records, match, spectrum.damping_ratio, components);
+    GroundMotionSignals signals;
+    for (SpectrumFit &fit : components)
+      {
+        fit.multiply(overload_factor);
+        signals[fit.component] = std::make_unique<Tabulated>(fit.acceleration);
+      }
+    if (fits != nullptr)
+      *fits = std::move(components);
+    return signals;
+  }
+
+
+  GroundMotionSignals
+  GroundMotion::build(const std::string        &folder,
+                      std::vector<SpectrumFit> *fits) const
+  {
+    if (type == "record" && match.wanted())
+      return build_matched(folder, fits);
+
     std::array<TimeSeries, 3> artificial;
     if (type == "spectrum")
       artificial = spectrum.generate();
@@ -310,12 +371,8 @@ namespace Voussoir
           {
             const TimeSeries motion    = read_component(record, c, folder);
             const double     unchanged = peak(motion.values);
-            if (peak_acceleration[c] > 0 && unchanged == 0)
-              throw UserError("\"Peak acceleration " + axis_names[c] +
-                              "\" in section \"Ground motion\" cannot be "
-                              "reached, because the part of the record that is "
-                              "used is zero throughout; choose another file or "
-                              "time window.");
+            if (peak_acceleration[c] > 0)
+              check_it_moves(unchanged, c);
             signals[c] = scaled(motion,
                                 peak_acceleration[c] > 0 ? largest / unchanged :
                                                            overload_factor);

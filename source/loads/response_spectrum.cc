@@ -54,38 +54,40 @@ namespace Voussoir
 
       double u = 0, v = 0;
     };
-
-    double
-    largest_displacement(const TimeSeries &acceleration,
-                         const double      period,
-                         const double      damping_ratio)
-    {
-      const std::vector<double> &a = acceleration.values;
-
-      const unsigned int substeps =
-        std::max(1., std::ceil(40. * acceleration.time_step / period));
-      const double h = acceleration.time_step / substeps;
-
-      Oscillator oscillator(2. * dealii::numbers::PI / period,
-                            damping_ratio,
-                            h);
-      double     largest = 0;
-      const auto step    = [&](const double a_0, const double slope) {
-        oscillator.advance(a_0, slope);
-        largest = std::max(largest, std::abs(oscillator.displacement()));
-      };
-
-      for (std::size_t i = 1; i < a.size(); ++i)
-        {
-          const double slope = (a[i] - a[i - 1]) / acceleration.time_step;
-          for (unsigned int j = 0; j < substeps; ++j)
-            step(a[i - 1] + j * h * slope, slope);
-        }
-      for (double t = 0; t < period; t += h)
-        step(0, 0);
-      return largest;
-    }
   } // namespace
+
+
+  PeakResponse
+  peak_response(const TimeSeries &acceleration,
+                const double      period,
+                const double      damping_ratio)
+  {
+    const std::vector<double> &a = acceleration.values;
+
+    const unsigned int substeps =
+      std::max(1., std::ceil(40. * acceleration.time_step / period));
+    const double h = acceleration.time_step / substeps;
+
+    Oscillator oscillator(2. * dealii::numbers::PI / period, damping_ratio, h);
+    PeakResponse peak;
+    std::size_t  n_steps = 0;
+    const auto   step    = [&](const double a_0, const double slope) {
+      oscillator.advance(a_0, slope);
+      ++n_steps;
+      if (std::abs(oscillator.displacement()) > std::abs(peak.displacement))
+        peak = {oscillator.displacement(), n_steps * h};
+    };
+
+    for (std::size_t i = 1; i < a.size(); ++i)
+      {
+        const double slope = (a[i] - a[i - 1]) / acceleration.time_step;
+        for (unsigned int j = 0; j < substeps; ++j)
+          step(a[i - 1] + j * h * slope, slope);
+      }
+    for (double t = 0; t < period; t += h)
+      step(0, 0);
+    return peak;
+  }
 
 
   ResponseSpectrum
@@ -103,9 +105,9 @@ namespace Voussoir
             spectrum.pseudo_acceleration.push_back(peak(acceleration.values));
             continue;
           }
-        const double omega = 2. * dealii::numbers::PI / period;
-        const double displacement =
-          largest_displacement(acceleration, period, damping_ratio);
+        const double omega        = 2. * dealii::numbers::PI / period;
+        const double displacement = std::abs(
+          peak_response(acceleration, period, damping_ratio).displacement);
         spectrum.displacement.push_back(displacement);
         spectrum.pseudo_acceleration.push_back(omega * omega * displacement);
       }

@@ -28,6 +28,9 @@ namespace Voussoir
     std::array<std::vector<double>, 3> accelerations;
     static constexpr double            sample_interval = 1e-3;
 
+    /** How recorded components fit the spectrum that they are matched to. */
+    std::vector<SpectrumFit> fits;
+
     /** The time to which a motion that never ends was followed down from the
      *  free surface, on which it depends a little [s]; 0 otherwise. */
     double followed_to = 0.;

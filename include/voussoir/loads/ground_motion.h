@@ -4,6 +4,7 @@
 #include <voussoir/loads/baseline.h>
 #include <voussoir/loads/record.h>
 #include <voussoir/loads/signal.h>
+#include <voussoir/loads/spectrum_match.h>
 #include <voussoir/loads/spectrum_motion.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -85,6 +86,7 @@ namespace Voussoir
     Sine           sine;
     Pulse          pulse;
     SpectrumMotion spectrum;
+    SpectrumMatch  match;
 
     void
     declare(dealii::ParameterHandler &prm);
@@ -97,9 +99,13 @@ namespace Voussoir
      * The motion in SI units, all factors included; nothing but null pointers
      * for the type "none". Paths of records are relative to @p folder, the one
      * of the parameter file. Throws UserError on unreadable records.
+     *
+     * @param fits if not null, how records fit the spectrum that they are
+     *   matched to
      */
     GroundMotionSignals
-    build(const std::string &folder) const;
+    build(const std::string        &folder,
+          std::vector<SpectrumFit> *fits = nullptr) const;
 
     /**
      * Lines for the log: peaks of each component up to @p end_time [s], and for
@@ -108,6 +114,12 @@ namespace Voussoir
      */
     std::string
     summary(const GroundMotionSignals &signals, const double end_time) const;
+
+  private:
+    /** From records that are matched to a spectrum. */
+    GroundMotionSignals
+    build_matched(const std::string        &folder,
+                  std::vector<SpectrumFit> *fits) const;
   };
 } // namespace Voussoir
 

@@ -18,6 +18,19 @@ namespace Voussoir
     std::vector<double> pseudo_acceleration;
   };
 
+  /** The largest displacement relative to the ground, with its sign [m], and
+   *  when [s]. */
+  struct PeakResponse
+  {
+    double displacement = 0., time = 0.;
+  };
+
+  /** Of the oscillator of a natural period [s], as response_spectrum(). */
+  PeakResponse
+  peak_response(const TimeSeries &acceleration,
+                const double      period,
+                const double      damping_ratio);
+
   /**
    * The response spectrum of a ground acceleration [m/s2] for oscillators of a
    * damping ratio below one, by the solution that is exact for an acceleration

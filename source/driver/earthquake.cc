@@ -2,6 +2,7 @@
 #include <voussoir/driver/earthquake.h>
 
 #include <algorithm>
+#include <iomanip>
 
 namespace Voussoir
 {
@@ -60,7 +61,8 @@ namespace Voussoir
       constexpr double accepted = 0.1;
       const auto [largest, at]  = fit.largest_misfit();
       const char axis           = "xyz"[fit.component];
-      log.line("Ground motion ",
+      log.line(std::setprecision(3),
+               "Ground motion ",
                axis,
                ": the record times ",
                fit.factor,

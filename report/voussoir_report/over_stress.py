@@ -50,11 +50,10 @@ def curves(run):
     """Accumulated time against ratio beside the limit."""
     table = run.table(CURVES)
     figure, axes = charts.new_figure()
-    charts.lines(axes, [(name, table["ratio"], table[f"{name} accumulated time [s]"])
-                        for name in faces_of(run)])
     axes.plot(table["ratio"], table["allowed time [s]"], color="0.3", linestyle="--", label="allowed")
-    charts.finish(axes, f"{run.prefix}accumulated time above a ratio", "demand-capacity ratio [-]",
-                  "time [s]")
+    charts.lines(axes, [(name, table["ratio"], table[f"{name} accumulated time [s]"])
+                        for name in faces_of(run)],
+                 f"{run.prefix}accumulated time above a ratio", "demand-capacity ratio [-]", "time [s]")
     axes.set_ylim(bottom=0.)
     return charts.picture(figure, f"{run.prefix}Accumulated time above each ratio",
                           f"over_stress_{run.label}")

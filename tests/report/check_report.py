@@ -151,6 +151,9 @@ def check_wall(page):
     is_true("no joints, no modes, no damage", not any(
         word in heading for heading in page.headings for word in ("Joint", "modes", "Damage")))
     is_true("motion and energies are there", {"Input motion", "Energy balance"} <= set(page.headings))
+    compare("time above a strength that is never reached [s]",
+            page.number("back", "longest time above 1 [s]"), 0., 0.)
+    is_true("a linear analysis suffices", ["This run", "linear analysis suffices"] in page.rows)
     is_true("all pictures are in the page",
             len(page.pictures) > 6 and all(p.startswith("data:image/png") for p in page.pictures))
 

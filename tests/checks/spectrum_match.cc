@@ -129,9 +129,16 @@ namespace Voussoir
                        std::abs(motion.velocity.back()) +
                          std::abs(motion.displacement.back()),
                        1e-9);
-        verdict->above("  Arias intensity over that of the scaled record",
-                       fits[0].arias_after / fits[0].arias_before,
-                       0.3);
+        double squares = 0.;
+        for (const double a : motion.acceleration)
+          squares += a * a * motion.time_step;
+        verdict->near("  Arias intensity [m/s]",
+                      fits[0].arias_after,
+                      numbers::PI / (2. * standard_gravity) * squares,
+                      0.01);
+        verdict->is_true("  not that of the scaled record",
+                         std::abs(fits[0].arias_after / fits[0].arias_before -
+                                  1.) > 0.01);
       }
 
       // two targets, twice and eight times the records' own spectra: the factor

@@ -1,4 +1,4 @@
-"""Makes a report of one run or of several to compare."""
+"""Makes a report of one run, of several to compare, or of a study."""
 
 import argparse
 import concurrent.futures
@@ -6,7 +6,8 @@ import multiprocessing
 import pathlib
 import sys
 
-EPILOG = """A run is the output folder that it left, or LABEL=FOLDER to name it in legends.
+EPILOG = """A run is the output folder that it left, or LABEL=FOLDER to name it in legends; the
+folder of a study stands for its runs, some of them in detail, and adds a table and curves.
 The page needs nothing else and can be sent by mail; a FILE that ends in .pdf is
 printed (needs the package weasyprint)."""
 
@@ -15,11 +16,24 @@ def arguments():
     parser = argparse.ArgumentParser(
         prog="voussoir-report", description=__doc__, epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("runs", nargs="+", metavar="RUN", help="output folder of a run")
+    parser.add_argument("runs", nargs="+", metavar="RUN", help="output folder of a run "
+                                                                      "or of a study")
     parser.add_argument("-o", "--output", metavar="FILE", help="the report (report.html in the folder of "
                                                                "the first run)")
     parser.add_argument("--pictures", metavar="FOLDER", help="writes the pictures there too, as PNG")
     return parser.parse_args()
+
+
+def with_runs_of_studies(folders, study):
+    """The arguments with the runs of a study instead of its folder."""
+    result = []
+    for folder in folders:
+        if study.is_study(folder):
+            found = study.Study(folder)
+            result += [f"{found.label_of(run)}={found.folder_of(run)}" for run in found.in_detail]
+        else:
+            result.append(folder)
+    return result
 
 
 def main():
@@ -27,14 +41,16 @@ def main():
     try:
         # takes a second, and --help shall not
         from . import (case, damage, faces, interfaces, motions, over_stress, page, scenes,
-                       structure)
+                       structure, study)
         from .run import ReportError, read_runs
     except ImportError as error:
         sys.exit(f"voussoir-report: {error}; install python3-numpy, python3-matplotlib, python3-vtk9 "
                  "and python3-jinja2.")
     try:
-        runs = read_runs(options.runs)
-        file = pathlib.Path(options.output or runs[0].folder / "report.html")
+        studies = [study.Study(folder) for folder in options.runs if study.is_study(folder)]
+        runs = read_runs(with_runs_of_studies(options.runs, study))
+        folder = studies[0].folder if studies else runs[0].folder
+        file = pathlib.Path(options.output or folder / "report.html")
         page.check(file)
         scenes.open_display()
         makers = (case.headline_section, case.case_section, structure.mesh_section,
@@ -46,6 +62,7 @@ def main():
         fork = multiprocessing.get_context("fork")
         with concurrent.futures.ProcessPoolExecutor(mp_context=fork) as pool:
             pending = [pool.submit(make, runs) for make in makers]
+            pending.insert(1, pool.submit(study.study_section, runs, studies))
             sections = [section for section in (made.result() for made in pending) if section]
         page.write(runs, sections, file)
         if options.pictures:

@@ -252,6 +252,22 @@ def check_refusals(scratch, wall):
     is_true("a table that ends within a line", run_report(cut).returncode == 0)
 
 
+def check_study(folder):
+    """Of an elastic wall under once and twice the motion."""
+    subprocess.run([program, case, "--set", f"Output/Folder={folder}", "Time/End time=1",
+                    "Study/Vary=Ground motion/Overload factor = 1, 2",
+                    "Study/Quantities=histories/crest/largest displacement [m]"], check=True,
+                   stdout=subprocess.DEVNULL)
+    answer = run_report(folder)
+    is_true("a report of a study is made", answer.returncode == 0)
+    page = Page((folder / "report.html").read_text(encoding="utf-8"))
+    column = "largest displacement [m]"
+    compare("displacement at twice the motion over that at once", page.number("2", column) /
+            page.number("1", column), 2., 0.5)
+    is_true("it has a chapter of its own, and those of the runs",
+            "Study" in page.headings and "Energy balance" in page.headings)
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         scratch = pathlib.Path(name)
@@ -267,6 +283,7 @@ def main():
         check_resonance()
         check_arch(scratch)
         check_refusals(scratch, wall)
+        check_study(scratch / "study")
 
         both = scratch / "both.html"
         answer = run_report(f"first={wall}", f"second={wall}", "-o", both)

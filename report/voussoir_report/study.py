@@ -1,0 +1,145 @@
+"""A study: a table of its runs and curves over what was varied."""
+
+import csv
+import json
+import pathlib
+
+from . import charts
+from .page import Pictures, Section, Table, number
+from .run import ReportError
+
+MOST = 6  # runs of a study that are shown in detail
+
+
+class Study:
+    """The folder of a study, as the program has left it."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        try:
+            data = json.loads((self.folder / "study.json").read_text())
+        except ValueError as error:
+            raise ReportError(f'"{folder}/study.json" cannot be read ({error}); start the study '
+                              "again, which writes it anew.") from None
+        self.runs, self.limits = data["runs"], data.get("limits", [])
+
+    def folder_of(self, run):
+        return self.folder / pathlib.Path(run["folder"]).name
+
+    def label_of(self, run):
+        return ", ".join(f"{short(entry)} {value}" for entry, value in run["values"].items())
+
+    @property
+    def entries(self):
+        """What is varied, the first run's order."""
+        return list(self.runs[0]["values"]) if self.runs else []
+
+    @property
+    def quantities(self):
+        found = {}
+        for run in self.runs:
+            found.update(dict.fromkeys(run.get("quantities", {})))
+        return list(found)
+
+    @property
+    def in_detail(self):
+        """Runs with results, at most so many, evenly chosen."""
+        there = [run for run in self.runs if (self.folder_of(run) / "summary.json").is_file()
+                 and (self.folder_of(run) / "parameters.prm").is_file()]
+        if len(there) <= MOST:
+            return there
+        step = (len(there) - 1) / (MOST - 1)
+        return [there[round(i * step)] for i in range(MOST)]
+
+
+def is_study(folder):
+    return (pathlib.Path(folder) / "study.json").is_file()
+
+
+def short(path):
+    """Last name of a path; a stroke in brackets is part of a unit."""
+    name, bracket, unit = path.partition(" [")
+    return name.rsplit("/", 1)[-1] + bracket + unit
+
+
+def numeric(text):
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def abscissa(study):
+    """The entry of most numbers, over which curves are drawn; None without any."""
+    counts = {}
+    for entry in study.entries:
+        values = [numeric(run["values"].get(entry, "")) for run in study.runs]
+        if None not in values and len(set(values)) > 1:
+            counts[entry] = len(set(values))
+    # a random seed is a number, but no quantity
+    amounts = {entry: n for entry, n in counts.items() if short(entry) != "Seed"}
+    return max(amounts, key=amounts.get) if amounts else None
+
+
+def curves(study, over, quantity):
+    """Points of a quantity for each combination of the other entries."""
+    found = {}
+    for run in study.runs:
+        if quantity in run.get("quantities", {}):
+            others = ", ".join(f"{short(entry)} {value}" for entry, value in run["values"].items()
+                               if entry != over)
+            found.setdefault(others, []).append((float(run["values"][over]), run["quantities"][quantity]))
+    return {label: sorted(points) for label, points in found.items()}
+
+
+def spread(study, over, quantity):
+    """Value, 16 %, median and 84 % of the statistics over other entries, if the study has them."""
+    file = study.folder / "study_statistics.csv"
+    if not file.is_file():
+        return []
+    with open(file, newline="") as lines:
+        rows = [row for row in csv.DictReader(lines) if row["quantity"] == quantity and over in row]
+    return sorted([float(row[over]), *(float(row[title]) for title in ("16 %", "median", "84 %"))]
+                  for row in rows if row["16 %"] and row["median"] and row["84 %"])
+
+
+def curve_picture(study, over, quantity):
+    figure, axes = charts.new_figure()
+    drawn = curves(study, over, quantity)
+    charts.cycle_colours(axes, len(drawn))
+    for label, points in drawn.items():
+        axes.plot(*zip(*points), marker="o", markersize=3.5, label=label or None)
+    if bands := spread(study, over, quantity):
+        xs, low, middle, high = zip(*bands)
+        axes.fill_between(xs, low, high, color="0.6", alpha=0.3, label="16 to 84 %")
+        axes.plot(xs, middle, color="black", linewidth=2., label="median")
+    for limit in study.limits:
+        if limit["of"] == over:
+            axes.axvspan(limit["not met at"], limit["met at"], color="C3", alpha=0.25)
+    axes.set_ylim(bottom=min(0., axes.get_ylim()[0]))
+    place = quantity.rsplit(short(quantity), 1)[0].strip("/")
+    charts.finish(axes, "", short(over), short(quantity), False)
+    return charts.picture(figure, f"{place}: {short(quantity)} over {short(over)}",
+                          f"study_{short(quantity)}")
+
+
+def study_section(_, studies):
+    """Tables and curves of all studies; None without any."""
+    parts = []
+    for study in studies:
+        head = [*(short(entry) for entry in study.entries), *(short(q) for q in study.quantities), "verdict"]
+        rows = [[*(run["values"].get(entry, "–") for entry in study.entries),
+                 *(number(run["quantities"][q]) if q in run.get("quantities", {}) else "–"
+                   for q in study.quantities), run["verdict"].split(". ")[0]] for run in study.runs]
+        parts.append(Table(head, rows, f"The runs of {study.folder.name}; each number as study.csv has it"))
+        for limit in study.limits:
+            others = ", ".join(f"{short(entry)} {value}" for entry, value in limit["values"].items())
+            parts.append(f"{others + ': ' if others else ''}the limit of {short(limit['of'])} lies between "
+                         f"{number(limit['not met at'])} and {number(limit['met at'])} "
+                         f"(criterion: {limit['criterion']}).")
+        over = abscissa(study)
+        if over:
+            parts.append(Pictures([curve_picture(study, over, quantity) for quantity in study.quantities]))
+        if len(study.in_detail) < len(study.runs):
+            parts.append(f"{len(study.in_detail)} of its {len(study.runs)} runs follow in detail.")
+    return Section("Study", parts) if parts else None

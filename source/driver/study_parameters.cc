@@ -77,7 +77,7 @@ namespace Voussoir
       "several numbers the largest is taken, or the smallest if the name "
       "begins with that. Empty: displacements of the histories, opening, slip "
       "and safety of interfaces and blocks, share of the faces and time of "
-      "over-stress, energy lost in cracks.");
+      "over-stress, cracks that go through, energy lost in cracks.");
     prm.add_parameter("Ranks of a run",
                       ranks_of_run,
                       "Ranks that each run gets, so that several go on side by "
@@ -201,6 +201,7 @@ namespace Voussoir
       "interfaces/blocks/*/smallest safety;"
       "over-stress/*/above 1/share at any time [%];"
       "over-stress/*/above 1/accumulated time [s];"
+      "through cracks/widest opening from face to face [mm];"
       "energy balance/lost to cracks and plastic flow [J]";
     std::vector<SummaryNumber> result;
     for (const std::string &path :

@@ -120,7 +120,7 @@ def curve_picture(study, over, quantity):
     place = quantity.rsplit(short(quantity), 1)[0].strip("/")
     charts.finish(axes, "", short(over), short(quantity), False)
     return charts.picture(figure, f"{place}: {short(quantity)} over {short(over)}",
-                          f"study_{short(quantity)}")
+                          f"study_{quantity}")
 
 
 def study_section(_, studies):

@@ -59,14 +59,15 @@ namespace Voussoir
       std::vector<std::string>         titles{"period [s]"};
       std::vector<std::vector<double>> columns{fits[0].periods};
       for (const SpectrumFit &fit : fits)
-        for (const auto &[title, values] :
-             {std::make_pair(" target [m/s2]", &fit.target),
-              std::make_pair(" scaled record [m/s2]", &fit.before),
-              std::make_pair(" matched [m/s2]", &fit.after)})
-          {
-            titles.push_back("xyz"[fit.component] + std::string(title));
-            columns.push_back(*values);
-          }
+        {
+          const std::string component(1, "xyz"[fit.component]);
+          titles.push_back(component + " target [m/s2]");
+          titles.push_back(component + " scaled record [m/s2]");
+          titles.push_back(component + " matched [m/s2]");
+          columns.push_back(fit.target);
+          columns.push_back(fit.before);
+          columns.push_back(fit.after);
+        }
       const std::string name = folder + "/ground_motion_spectra.csv";
       log.attempted(name, write_file(name, csv_of_columns(titles, columns)));
     }

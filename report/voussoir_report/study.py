@@ -62,6 +62,12 @@ def short(path):
     return name.rsplit("/", 1)[-1] + bracket + unit
 
 
+def titled(path):
+    """The last name with what it is of, as "left wedge: smallest safety"."""
+    place = path.rsplit(short(path), 1)[0].strip("/")
+    return f"{place.rsplit('/', 1)[-1]}: {short(path)}" if place else short(path)
+
+
 def numeric(text):
     try:
         return float(text)
@@ -117,9 +123,8 @@ def curve_picture(study, over, quantity):
         if limit["of"] == over:
             axes.axvspan(limit["not met at"], limit["met at"], color="C3", alpha=0.25)
     axes.set_ylim(bottom=min(0., axes.get_ylim()[0]))
-    place = quantity.rsplit(short(quantity), 1)[0].strip("/")
     charts.finish(axes, "", short(over), short(quantity), False)
-    return charts.picture(figure, f"{place}: {short(quantity)} over {short(over)}",
+    return charts.picture(figure, f"{titled(quantity)} over {short(over)}",
                           f"study_{quantity}")
 
 
@@ -127,7 +132,7 @@ def study_section(_, studies):
     """Tables and curves of all studies; None without any."""
     parts = []
     for study in studies:
-        head = [*(short(entry) for entry in study.entries), *(short(q) for q in study.quantities), "verdict"]
+        head = [*map(short, study.entries), *map(titled, study.quantities), "verdict"]
         rows = [[*(run["values"].get(entry, "–") for entry in study.entries),
                  *(number(run["quantities"][q]) if q in run.get("quantities", {}) else "–"
                    for q in study.quantities), run["verdict"].split(". ")[0]] for run in study.runs]

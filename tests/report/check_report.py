@@ -261,7 +261,7 @@ def check_study(folder):
     answer = run_report(folder)
     is_true("a report of a study is made", answer.returncode == 0)
     page = Page((folder / "report.html").read_text(encoding="utf-8"))
-    column = "largest displacement [m]"
+    column = "crest: largest displacement [m]"
     compare("displacement at twice the motion over that at once", page.number("2", column) /
             page.number("1", column), 2., 0.5)
     is_true("it has a chapter of its own, and those of the runs",

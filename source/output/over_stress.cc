@@ -576,14 +576,14 @@ namespace Voussoir
         for (const double ratio : ratios)
           columns[1].push_back(allowed_time(ratio));
         for (const Face &face : faces)
-          for (const auto &[title, values] :
-               {std::make_pair("accumulated time [s]", &face.accumulated),
-                std::make_pair("area at any time [m2]", &face.ever),
-                std::make_pair("largest area at once [m2]", &face.at_once)})
-            {
-              titles.push_back(face.name + ' ' + title);
-              columns.push_back(*values);
-            }
+          {
+            titles.push_back(face.name + " accumulated time [s]");
+            titles.push_back(face.name + " area at any time [m2]");
+            titles.push_back(face.name + " largest area at once [m2]");
+            columns.push_back(face.accumulated);
+            columns.push_back(face.ever);
+            columns.push_back(face.at_once);
+          }
         const std::string file = folder + "/over_stress.csv";
         log->attempted(file, write_file(file, csv_of_columns(titles, columns)));
       }

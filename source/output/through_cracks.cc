@@ -105,17 +105,8 @@ namespace Voussoir
       void
       check(const ObservedModel &model) const override
       {
-        for (const auto &[entry, list] :
-             {std::make_pair("From", from), std::make_pair("To", to)})
-          {
-            const auto sets = split_list(list);
-            if (sets.empty())
-              throw UserError("\"" + std::string(entry) + "\" in " + section +
-                              " is empty; name a face set.");
-            for (const std::string &set : sets)
-              model.discretization.grid.check_face_set(
-                set, "\"" + std::string(entry) + "\" in " + section);
-          }
+        check_sets(model, "\"From\" in " + section, from);
+        check_sets(model, "\"To\" in " + section, to);
         if (std::none_of(model.materials.begin(),
                          model.materials.end(),
                          tells_of_cracks))
@@ -155,6 +146,18 @@ namespace Voussoir
       }
 
     private:
+      static void
+      check_sets(const ObservedModel &model,
+                 const std::string   &place,
+                 const std::string   &list)
+      {
+        const auto sets = split_list(list);
+        if (sets.empty())
+          throw UserError(place + " is empty; name a face set.");
+        for (const std::string &set : sets)
+          model.discretization.grid.check_face_set(set, place);
+      }
+
       static bool
       tells_of_cracks(const Material *material)
       {

@@ -24,13 +24,12 @@ def arguments():
     return parser.parse_args()
 
 
-def with_runs_of_studies(folders, study):
+def with_runs_of_studies(folders, studies):
     """The arguments with the runs of a study instead of its folder."""
     result = []
     for folder in folders:
-        if study.is_study(folder):
-            found = study.Study(folder)
-            result += [f"{found.label_of(run)}={found.folder_of(run)}" for run in found.in_detail]
+        if study := studies.get(folder):
+            result += [f"{study.label_of(run)}={study.folder_of(run)}" for run in study.in_detail]
         else:
             result.append(folder)
     return result
@@ -47,9 +46,9 @@ def main():
         sys.exit(f"voussoir-report: {error}; install python3-numpy, python3-matplotlib, python3-vtk9 "
                  "and python3-jinja2.")
     try:
-        studies = [study.Study(folder) for folder in options.runs if study.is_study(folder)]
-        runs = read_runs(with_runs_of_studies(options.runs, study))
-        folder = studies[0].folder if studies else runs[0].folder
+        studies = {folder: study.Study(folder) for folder in options.runs if study.is_study(folder)}
+        runs = read_runs(with_runs_of_studies(options.runs, studies))
+        folder = next(iter(studies.values())).folder if studies else runs[0].folder
         file = pathlib.Path(options.output or folder / "report.html")
         page.check(file)
         scenes.open_display()
@@ -62,7 +61,7 @@ def main():
         fork = multiprocessing.get_context("fork")
         with concurrent.futures.ProcessPoolExecutor(mp_context=fork) as pool:
             pending = [pool.submit(make, runs) for make in makers]
-            pending.insert(1, pool.submit(study.study_section, runs, studies))
+            pending.insert(1, pool.submit(study.study_section, runs, list(studies.values())))
             sections = [section for section in (made.result() for made in pending) if section]
         page.write(runs, sections, file)
         if options.pictures:

@@ -39,6 +39,7 @@ namespace Voussoir
               const bool           restarted) override
       {
         model = std::make_unique<ObservedModel>(observed);
+        aspect_ratio.reinit(0);
         pictures.prepare(observed, start_time, restarted);
       }
 
@@ -59,7 +60,8 @@ namespace Voussoir
         std::vector<CellField> of_cells;
         if (wants("mesh quality"))
           {
-            find_quality();
+            if (aspect_ratio.size() == 0)
+              find_quality();
             of_cells = {{&scaled_jacobian, "scaled_Jacobian"},
                         {&aspect_ratio, "aspect_ratio"}};
           }
@@ -106,7 +108,9 @@ namespace Voussoir
       PictureSeries pictures{"fields", "Output/fields"};
 
       std::unique_ptr<ObservedModel> model;
-      dealii::Vector<float>          scaled_jacobian, aspect_ratio;
+
+      // of the cells, once a picture wants them
+      dealii::Vector<float> scaled_jacobian, aspect_ratio;
     };
 
     const Registry<Observer>::Add<Fields> registered(

@@ -174,6 +174,7 @@ namespace Voussoir
         const Discretization &discretization = model->discretization;
         const auto            openings =
           memory_of_cells(*model).at(OutputName::crack_opening);
+        const auto begins = split_list(from), ends = split_list(to);
         std::vector<CrackedCell> mine;
         for (const auto &cell :
              discretization.dof_handler.active_cell_iterators())
@@ -183,8 +184,8 @@ namespace Voussoir
               const auto nodes = discretization.cell_nodes(cell);
               mine.push_back({openings[cell->active_cell_index()],
                               {},
-                              touches(cell, from),
-                              touches(cell, to)});
+                              touches(cell, begins),
+                              touches(cell, ends)});
               // vertices come first
               std::copy_n(nodes.begin(), 8, mine.back().corners.begin());
             }
@@ -193,10 +194,11 @@ namespace Voussoir
       }
 
       bool
-      touches(const Discretization::Cell &cell, const std::string &sets) const
+      touches(const Discretization::Cell     &cell,
+              const std::vector<std::string> &sets) const
       {
         const Grid &grid = model->discretization.grid;
-        for (const std::string &set : split_list(sets))
+        for (const std::string &set : sets)
           for (const unsigned int face : cell->face_indices())
             if (grid.in_face_set(cell, face, set))
               return true;

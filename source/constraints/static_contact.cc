@@ -14,6 +14,29 @@ namespace Voussoir
     }
 
 
+    /**
+     * Limits whose cohesion grows from none with the pressure of a spring on
+     * the gap @p b. A shear that jumps by all of it as a point closes leaves no
+     * equilibrium where a part of it holds the point closed; within the law,
+     * which allows more shear, this finds one.
+     */
+    ContactLimits
+    without_jump(const ContactLimits &limits,
+                 const Tensor<1, 3>  &b,
+                 const double         spring)
+    {
+      constexpr double cohesion_per_pressure = 10.;
+
+      ContactLimits result   = limits;
+      const double  pressure = -spring * b[0], // at which it opens:
+        lowest               = limits.opening > 0. ? 0. : -limits.tension;
+      result.cohesion =
+        std::min(limits.cohesion,
+                 cohesion_per_pressure * std::max(pressure - lowest, 0.));
+      return result;
+    }
+
+
     /** Minus the derivative of the force by the gap @p b, under which the force
      *  of the law has been found, for this spring. */
     Tensor<2, 3>
@@ -106,12 +129,12 @@ namespace Voussoir
         Tensor<1, 3>  b     = point.gap - multiplier[k] / spring[k];
         b[1] -= point.stick_point[0];
         b[2] -= point.stick_point[1];
-        const ContactForce found =
-          solve_contact(b, 1. / spring[k], point.limits);
-        point.force  = found.force;
-        point.status = found.status;
+        const ContactLimits limits = without_jump(point.limits, b, spring[k]);
+        const ContactForce  found  = solve_contact(b, 1. / spring[k], limits);
+        point.force                = found.force;
+        point.status               = found.status;
 
-        Tensor<2, 3> in_frame = tangent_of(found, b, point.limits, spring[k]);
+        Tensor<2, 3> in_frame = tangent_of(found, b, limits, spring[k]);
         in_frame[0][0] +=
           point.area * contact.solver->surfaces[point.surface].bar_stiffness;
         tangent[k] = in_global_axes(in_frame, point.frame);

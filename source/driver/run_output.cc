@@ -2,11 +2,9 @@
 
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
-#include <voussoir/base/version.h>
 #include <voussoir/driver/run.h>
 #include <voussoir/driver/summary_file.h>
 #include <voussoir/loads/response_spectrum.h>
-#include <voussoir/mesh/mesh_quality.h>
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/material_memory.h>
 #include <voussoir/output/table.h>
@@ -19,34 +17,6 @@ namespace Voussoir
 
   namespace
   {
-    // The worst cells of each material.
-    nlohmann::json
-    quality_summary(const Model &model, const MPI_Comm communicator)
-    {
-      const std::vector<std::string> names = model.parameters.material_names();
-      std::vector<MeshQuality>       qualities(names.size());
-      for (const auto &cell :
-           model.grid.triangulation().active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            std::array<Point<3>, 8> vertices;
-            for (const unsigned int v : cell->vertex_indices())
-              vertices[v] = cell->vertex(v);
-            qualities[model.material_of(cell)].take(vertices);
-          }
-      nlohmann::json result;
-      for (unsigned int i = 0; i < names.size(); ++i)
-        result[names[i]] = {
-          {"smallest scaled Jacobian",
-           Utilities::MPI::min(qualities[i].scaled_jacobian, communicator)},
-          {"largest aspect ratio",
-           Utilities::MPI::max(qualities[i].aspect_ratio, communicator)},
-          {"smallest angle [degrees]",
-           Utilities::MPI::min(qualities[i].smallest_angle, communicator)}};
-      return result;
-    }
-
-
     /** Spectra of a matched motion beside their targets. */
     void
     write_spectra(const std::vector<SpectrumFit> &fits,
@@ -206,25 +176,11 @@ namespace Voussoir
   Run::summary() const
   {
     const MPI_Comm communicator = log.communicator();
-    nlohmann::json result;
-    result["version"]      = version();
-    result["title"]        = model.parameters.title;
-    result["SIMD bits"]    = 64 * Lanes::size();
-    result["ranks"]        = Utilities::MPI::n_mpi_processes(communicator);
-    result["cells"]        = model.grid.triangulation().n_global_active_cells();
-    result["mesh quality"] = quality_summary(model, communicator);
-    result["unknowns"]     = model.discretization.dof_handler.n_dofs();
-    result["degree"]       = model.discretization.degree;
-    result["time step [s]"]           = time_step.length;
-    result["largest stable step [s]"] = time_step.limit;
-    result["steps"]                   = state.step;
-    result["end time [s]"]            = state.time;
-    result["loop time [s]"]           = loop_seconds;
+    nlohmann::json result       = setup->summary(communicator);
+    result["steps"]             = state.step;
+    result["end time [s]"]      = state.time;
+    result["loop time [s]"]     = loop_seconds;
     result["MDOF-steps/s"] = loop_seconds > 0. ? throughput(loop_seconds) : 0.;
-    Utilities::System::MemoryStats memory;
-    Utilities::System::get_memory_stats(memory);
-    result["peak memory of a rank [MB]"] =
-      Utilities::MPI::max(memory.VmHWM / 1024., communicator);
     // the rank that comes last to the exchange of contact does not wait there
     if (contact && loop_seconds > 0.)
       result["contact share of the loop"] =
@@ -248,7 +204,6 @@ namespace Voussoir
       result["materials"] =
         memory_summary(observed, model.parameters.material_names());
     result["energy balance"] = energy.summary();
-    result["names"]          = observed.names.json();
     return result;
   }
 

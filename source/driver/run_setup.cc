@@ -1,8 +1,12 @@
+#include <voussoir/base/version.h>
 #include <voussoir/driver/rest_state.h>
 #include <voussoir/driver/run_setup.h>
+#include <voussoir/mesh/mesh_quality.h>
 
 namespace Voussoir
 {
+  using namespace dealii;
+
   namespace
   {
     Damping
@@ -73,6 +77,34 @@ namespace Voussoir
                                            earthquake.base,
                                            time_step.length);
     }
+
+
+    // The worst cells of each material.
+    nlohmann::json
+    quality_summary(const Model &model, const MPI_Comm communicator)
+    {
+      const std::vector<std::string> names = model.parameters.material_names();
+      std::vector<MeshQuality>       qualities(names.size());
+      for (const auto &cell :
+           model.grid.triangulation().active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            std::array<Point<3>, 8> vertices;
+            for (const unsigned int v : cell->vertex_indices())
+              vertices[v] = cell->vertex(v);
+            qualities[model.material_of(cell)].take(vertices);
+          }
+      nlohmann::json result;
+      for (unsigned int i = 0; i < names.size(); ++i)
+        result[names[i]] = {
+          {"smallest scaled Jacobian",
+           Utilities::MPI::min(qualities[i].scaled_jacobian, communicator)},
+          {"largest aspect ratio",
+           Utilities::MPI::max(qualities[i].aspect_ratio, communicator)},
+          {"smallest angle [degrees]",
+           Utilities::MPI::min(qualities[i].smallest_angle, communicator)}};
+      return result;
+    }
   } // namespace
 
 
@@ -96,7 +128,7 @@ namespace Voussoir
       unloaded.contact->prepare_step(
         [&](const unsigned int node) {
           return model.mass.inverse.local_element(3 * node) *
-                 dealii::Tensor<2, 3>(dealii::unit_symmetric_tensor<3>());
+                 Tensor<2, 3>(unit_symmetric_tensor<3>());
         },
         time_step.length);
     const ObservedModel seen = observed("",
@@ -130,5 +162,29 @@ namespace Voussoir
             earthquake.base,
             ResultNames(model.parameters.material_names(), model.grid, contact),
             log};
+  }
+
+
+  nlohmann::json
+  RunSetup::summary(const MPI_Comm communicator) const
+  {
+    Utilities::System::MemoryStats memory;
+    Utilities::System::get_memory_stats(memory);
+    const ResultNames names(model.parameters.material_names(),
+                            model.grid,
+                            model.contact.get());
+    return {{"version", version()},
+            {"title", model.parameters.title},
+            {"SIMD bits", 64 * Lanes::size()},
+            {"ranks", Utilities::MPI::n_mpi_processes(communicator)},
+            {"cells", model.grid.triangulation().n_global_active_cells()},
+            {"mesh quality", quality_summary(model, communicator)},
+            {"unknowns", model.discretization.dof_handler.n_dofs()},
+            {"degree", model.discretization.degree},
+            {"time step [s]", time_step.length},
+            {"largest stable step [s]", time_step.limit},
+            {"peak memory of a rank [MB]",
+             Utilities::MPI::max(memory.VmHWM / 1024., communicator)},
+            {"names", names.json()}};
   }
 } // namespace Voussoir

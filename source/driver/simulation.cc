@@ -124,7 +124,7 @@ namespace Voussoir
                      "last_good",
                      0.);
       write_summary(folder.path(),
-                    {},
+                    setup.summary(log.communicator()),
                     std::string("stopped: ") + lost.what(),
                     log);
       throw UserError(std::string(lost.what()) +

@@ -211,6 +211,12 @@ namespace Voussoir
         outcome_of(combinations[i]);
     gather();
     write_tables();
+    if (std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome &run) {
+          return ended_early(run.summary);
+        }))
+      throw UserError("None of the runs of the study in \"" + folder +
+                      "\" came to its end; the first one " +
+                      verdict_of(outcomes.at(0).summary) + ".");
   }
 
 

@@ -132,7 +132,7 @@ namespace Voussoir
       }
     };
 
-    /** Runs of which one slides away in its static state. */
+    /** Runs of which one slides away in its static state, and then all. */
     class FailingRun : public Check
     {
     public:
@@ -161,6 +161,30 @@ namespace Voussoir
             verdicts.is_true("  and has its number or none",
                              runs.at(i).contains("quantities") != slides);
           }
+        const auto summary = [&](const unsigned int run) {
+          std::ifstream in(std::string(runs.at(run).at("folder")) +
+                           "/summary.json");
+          return nlohmann::json::parse(in);
+        };
+        for (const std::string number : {"unknowns", "cells", "time step [s]"})
+          verdicts.is_true("  its summary has the " + number,
+                           summary(1).at(number) == summary(0).at(number));
+
+        remove("failing", communicator);
+        bool refused = false;
+        try
+          {
+            results_of(study.with({"Study/Vary=Interfaces/plane/Friction "
+                                   "coefficient = 0.1, 0.05"}),
+                       communicator);
+          }
+        catch (const UserError &)
+          {
+            refused = true;
+          }
+        verdicts.is_true("a study of which nothing stands ends with an error",
+                         refused &&
+                           std::filesystem::exists("failing/study.json"));
       }
     };
 

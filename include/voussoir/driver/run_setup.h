@@ -36,6 +36,11 @@ namespace Voussoir
              const Contact        *contact,
              Log                  &log) const;
 
+    /** What summary.json says of the model, whatever becomes of the run. Called
+     *  on all ranks. */
+    nlohmann::json
+    summary(const MPI_Comm communicator) const;
+
     const Model                       &model;
     Damping                            damping;
     const TimeStep                     time_step;

@@ -202,7 +202,10 @@ namespace Voussoir
       report_equilibrium(iterations, clock.wall_time(), report);
       if (model.contact != nullptr &&
           model.contact->grout(stage, state.displacement))
-        solver.reset(); // other parts hold together now
+        {
+          state.grouted_displacement = state.displacement;
+          solver.reset(); // other parts hold together now
+        }
       return report;
     }
 

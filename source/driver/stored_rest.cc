@@ -15,6 +15,7 @@ namespace Voussoir
       StateContent    content;
       for (const auto &[name, vector] : std::map<std::string, Vector *>{
              {"displacement", &initial.displacement},
+             {"grouted displacement", &initial.grouted_displacement},
              {"temperature", &initial.temperature},
              {"force", &initial.force},
              {"contact force", &initial.contact_force}})
@@ -68,6 +69,7 @@ namespace Voussoir
     write_state(file,
                 {{"identity", identity},
                  {"static state", rest.initial.displacement.size() > 0},
+                 {"grouted", rest.initial.grouted_displacement.size() > 0},
                  {"contact force", rest.initial.contact_force.size() > 0},
                  {"contact",
                   rest.contact ? rest.contact->save() : nlohmann::json()},
@@ -87,6 +89,8 @@ namespace Voussoir
     if (header.at("static state"))
       initial.displacement = initial.temperature = initial.force =
         model.discretization.create_vector();
+    if (header.at("grouted"))
+      initial.grouted_displacement = model.discretization.create_vector();
     if (header.at("contact force"))
       initial.contact_force = model.discretization.create_vector();
 

@@ -1,5 +1,6 @@
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/mesh/mesh_quality.h>
+#include <voussoir/output/displacement_since.h>
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/picture_series.h>
 
@@ -18,18 +19,22 @@ namespace Voussoir
       {
         prm.add_parameter("Quantities",
                           quantities,
-                          "What to write: displacement [m], velocity [m/s], "
-                          "principal stress [MPa], mesh quality (scaled "
-                          "Jacobian and aspect ratio of the cells).",
-                          Patterns::MultipleSelection("displacement|velocity|"
-                                                      "principal stress|mesh "
-                                                      "quality"));
+                          "What to write: displacement [m], also since the "
+                          "static state or the last grouting of joints, "
+                          "velocity [m/s], principal stress [MPa], mesh "
+                          "quality (scaled Jacobian and aspect ratio of the "
+                          "cells).",
+                          Patterns::MultipleSelection(
+                            "displacement|" + since_static_state + "|" +
+                            since_grouting +
+                            "|velocity|principal stress|mesh quality"));
         pictures.declare_parameters(prm);
       }
 
       void
       check(const ObservedModel &observed) const override
       {
+        check_grouting(quantities, "Output/fields", observed);
         pictures.check(observed);
       }
 
@@ -55,6 +60,18 @@ namespace Voussoir
         std::vector<NodalField> nodal;
         if (wants("displacement"))
           nodal.push_back({&state.displacement, {"displacement"}});
+        std::map<std::string, Vector> since;
+        for (const std::string &quantity : {since_static_state, since_grouting})
+          if (wants(quantity))
+            {
+              Vector       &displacement = since[quantity] = state.displacement;
+              const Vector &origin = origin_of(quantity, model->initial);
+              if (origin.size() > 0)
+                displacement -= origin;
+              std::string name = quantity;
+              std::replace(name.begin(), name.end(), ' ', '_');
+              nodal.push_back({&displacement, {name}});
+            }
         if (wants("velocity"))
           nodal.push_back({&state.velocity, {"velocity"}});
         std::vector<CellField> of_cells;

@@ -1,4 +1,5 @@
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/output/displacement_since.h>
 #include <voussoir/output/point_recorder.h>
 #include <voussoir/output/table.h>
 
@@ -10,14 +11,18 @@ namespace Voussoir
   {
     struct Quantity
     {
-      const char *name, *unit;
+      std::string name, unit;
     };
-    constexpr unsigned int                   n_quantities = 4;
+    // those of PointMotion, then displacements from later states
+    constexpr unsigned int                   n_quantities = 6, n_recorded = 4;
     const std::array<Quantity, n_quantities> all_quantities{
       {{"displacement", "m"},
        {"velocity", "m/s"},
        {"acceleration", "m/s2"},
-       {"filtered acceleration", "m/s2"}}};
+       {"filtered acceleration", "m/s2"},
+       {since_static_state, "m"},
+       {since_grouting, "m"}}};
+    using Motion = std::array<Tensor<1, 3>, n_quantities>;
 
 
     /** Displacement, velocity and acceleration of named points, as columns of
@@ -38,10 +43,13 @@ namespace Voussoir
                           "What to write: displacement [m], velocity [m/s], "
                           "acceleration [m/s2], in which cracks and joints "
                           "that clap show as single steps, and that without "
-                          "what is above the filter frequency.",
+                          "what is above the filter frequency; displacement "
+                          "also since the static state or the last grouting of "
+                          "joints.",
                           Patterns::MultipleSelection(
                             "displacement|velocity|acceleration|filtered "
-                            "acceleration"));
+                            "acceleration|" +
+                            since_static_state + "|" + since_grouting));
         prm.add_parameter("Filter frequency",
                           filter_frequency,
                           "Of the filtered acceleration, which is the mean "
@@ -64,6 +72,7 @@ namespace Voussoir
       void
       check(const ObservedModel &model) const override
       {
+        check_grouting(quantities, "Output/histories", model);
         recorder.check(model);
       }
 
@@ -76,6 +85,9 @@ namespace Voussoir
           filter_frequency > 0. ? filter_frequency : model.carried_frequency;
         recorder.prepare(model, interval, 0.443 / filtered_at);
         largest.assign(recorder.points().size(), {});
+        for (unsigned int k = n_recorded; k < n_quantities; ++k)
+          origins[k] = recorder.displacement(
+            origin_of(all_quantities[k].name, model.initial));
         std::vector<std::string> columns;
         for (unsigned int p = 0; p < recorder.points().size(); ++p)
           for (unsigned int d = 0; d < 3; ++d)
@@ -120,6 +132,10 @@ namespace Voussoir
               largest[p][2];
             point["largest filtered acceleration [m/s2]"] = largest[p][3];
             point["filtered at [Hz]"]                     = filtered_at;
+            for (unsigned int k = n_recorded; k < n_quantities; ++k)
+              if (wanted(k))
+                point["largest " + all_quantities[k].name + " [m]"] =
+                  largest[p][k];
             if (is_relative(p))
               point["relative to"] = reference_name();
           }
@@ -166,6 +182,18 @@ namespace Voussoir
                          all_quantities[quantity].name) != list.end();
       }
 
+      /** Absolute. */
+      Motion
+      motion_of(const PointRecorder::Line &line, const unsigned int point) const
+      {
+        const PointMotion &recorded = line.points[point];
+        Motion             motion;
+        std::copy(recorded.begin(), recorded.end(), motion.begin());
+        for (unsigned int k = n_recorded; k < n_quantities; ++k)
+          motion[k] = motion[0] - origins[k][point];
+        return motion;
+      }
+
       void
       flush()
       {
@@ -175,11 +203,11 @@ namespace Voussoir
             std::vector<double> values;
             for (unsigned int p = 0; p < line.points.size(); ++p)
               {
-                PointMotion motion = line.points[p];
+                Motion motion = motion_of(line, p);
                 for (unsigned int k = 0; k < n_quantities; ++k)
                   {
                     if (is_relative(p))
-                      motion[k] -= line.points[reference][k];
+                      motion[k] -= motion_of(line, reference)[k];
                     largest[p][k] = std::max(largest[p][k], motion[k].norm());
                   }
                 for (unsigned int d = 0; d < 3; ++d)
@@ -200,6 +228,9 @@ namespace Voussoir
       TimeTable     table;
 
       double filtered_at = 0.; // [Hz]
+
+      // of each quantity and point: the displacement it counts from [m]
+      std::array<std::vector<Tensor<1, 3>>, n_quantities> origins;
 
       // of each point: amounts of its motion
       std::vector<std::array<double, n_quantities>> largest;

@@ -84,6 +84,25 @@ namespace Voussoir
   }
 
 
+  std::vector<Tensor<1, 3>>
+  PointRecorder::displacement(const Vector &displacement) const
+  {
+    const std::size_t         n = record.points.size();
+    std::vector<Tensor<1, 3>> result(n);
+    if (displacement.size() == 0)
+      return result;
+    const auto          shares = record.weights->share(displacement);
+    std::vector<double> values;
+    for (const Tensor<1, 3> &share : shares)
+      values.insert(values.end(), share.begin_raw(), share.end_raw());
+    values =
+      sum_over_ranks(values, record.model->discretization.grid.communicator());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      result[i / 3][i % 3] = values[i];
+    return result;
+  }
+
+
   void
   PointRecorder::observe(const State &state)
   {

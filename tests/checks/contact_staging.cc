@@ -1,6 +1,8 @@
 #include <voussoir/mesh/generator.h>
 
 #include "contact_sums.h"
+#include "csv_table.h"
+#include "same.h"
 
 namespace Voussoir
 {
@@ -205,6 +207,11 @@ namespace Voussoir
                       1e3 * overlap,
                       0.5e3 * n_blocks * nu * rho * gravity * H * L / E,
                       0.001);
+        compare_displacements(after("weight; water", "weight"),
+                              -0.5 * rho * gravity * H * H / E,
+                              nu * (1. + nu) * q * H / E,
+                              verdicts,
+                              communicator);
         compare(
           "then water: ", after("weight; water", "weight"), thrust_of_water);
         compare("joined from the start, weight and water: ",
@@ -214,6 +221,52 @@ namespace Voussoir
 
     private:
       static constexpr double gravity = 9.81;
+
+      /** The rise of a block's top, in all and from later states. The foot of a
+       *  block that stands free disturbs the plane sections a little. */
+      static void
+      compare_displacements(const ParameterFile &stages,
+                            const double         of_weight,
+                            const double         of_water,
+                            Verdicts            &verdicts,
+                            const MPI_Comm       communicator)
+      {
+        const auto parameters = make_case(stages.with(
+          {"Output/Folder=since",
+           "Output/Observers=histories, fields",
+           "Output/histories/Points=top: 5 0 8",
+           "Output/histories/Quantities=displacement, displacement since "
+           "static state, displacement since grouting",
+           "Output/fields/Times=0",
+           "Output/fields/Quantities=displacement since static state, "
+           "displacement since grouting",
+           "Time/End time=0.01"}));
+        RunOptions options;
+        options.quiet = options.overwrite = true;
+        Simulation(*parameters, options, communicator).run.march();
+        MPI_Barrier(communicator);
+
+        const CsvTable table("since/histories.csv");
+        const auto     rise = [&](const std::string &name) {
+          return table.numbers("top displacement " + name + "z [m]").at(0);
+        };
+        verdicts.near("rise of the top [mm]",
+                      1e3 * rise(""),
+                      1e3 * (of_weight + of_water),
+                      0.01);
+        verdicts.near("  since the blocks were grouted",
+                      1e3 * rise("since grouting "),
+                      1e3 * of_water,
+                      0.001);
+        verdicts.below("  since the static state [m]",
+                       std::abs(rise("since static state ")),
+                       1e-12);
+        for (const std::string origin : {"static_state", "grouting"})
+          verdicts.is_true("  pictures have displacement_since_" + origin,
+                           text_of("since/fields/fields-00000000.vtu")
+                               .find("\"displacement_since_" + origin + '"') !=
+                             std::string::npos);
+      }
     };
 
     const Registry<Check>::Add<Staging>

@@ -16,6 +16,10 @@ namespace Voussoir
     /** Displacement of the static stage [m]; zero without one. */
     Vector displacement;
 
+    /** Displacement when the last interfaces were grouted [m]; empty: none
+     *  was. */
+    Vector grouted_displacement;
+
     /** Change of temperature since the joints were closed, of each node in all
      *  three components [K]. */
     Vector temperature;

@@ -65,6 +65,11 @@ namespace Voussoir
     int
     reference() const;
 
+    /** Displacements of the points, on all ranks, which must call this
+     * together; zero if the vector is empty. */
+    std::vector<dealii::Tensor<1, 3>>
+    displacement(const Vector &displacement) const;
+
     /** To be called for the initial state and after each step. */
     void
     observe(const State &state);

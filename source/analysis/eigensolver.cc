@@ -166,6 +166,8 @@ namespace Voussoir
       Directions                w, p; // corrections, last changes
       unsigned int              n_w = 0, n_p = 0;
       std::vector<unsigned int> active;
+      unsigned int              n_found          = 0; // of those wanted
+      double                    largest_residual = 0.;
     };
 
 
@@ -218,11 +220,20 @@ namespace Voussoir
           }
       squares = sum_over_ranks(squares, problem.communicator);
       active.clear();
+      n_found          = number;
+      largest_residual = 0.;
       for (unsigned int j = 0; j < theta.size(); ++j)
-        if (!(squares[2 * j] <=
-              Utilities::fixed_power<2>(tolerance * theta[j]) *
-                squares[2 * j + 1]))
+        {
+          const double residual =
+            std::sqrt(squares[2 * j] / squares[2 * j + 1]) / theta[j];
+          if (residual <= tolerance)
+            continue;
           active.push_back(j);
+          if (j >= number)
+            continue;
+          --n_found;
+          largest_residual = std::max(largest_residual, residual);
+        }
     }
 
 
@@ -294,8 +305,10 @@ namespace Voussoir
       for (; iterations < max_iterations && improve(); ++iterations)
         {
           find_active();
-          if (active.empty() || active.front() >= number)
+          if (n_found == number)
             return true;
+          if (problem.watch)
+            problem.watch(iterations + 1, n_found, largest_residual);
           find_corrections();
         }
       return false;

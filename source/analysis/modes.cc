@@ -268,6 +268,30 @@ namespace Voussoir
                  "interfaces; set \"Interfaces = all tied\" in section "
                  "\"Modes\" if these should hold");
     }
+
+
+    /** Residuals fall by about the same factor in each iteration. */
+    void
+    say_progress(const unsigned int    iterations,
+                 const unsigned int    found,
+                 const double          residual,
+                 const ModeParameters &parameters,
+                 const double          seconds,
+                 Log                  &log)
+    {
+      if (!log.progress_is_due())
+        return;
+      const double done =
+        std::clamp(std::log(residual) / std::log(parameters.tolerance),
+                   1e-3,
+                   1.);
+      std::ostringstream text;
+      text << std::setprecision(2) << "of the modes: " << found << " of "
+           << parameters.number << " found in " << iterations
+           << " iterations, residual " << residual << ", time left "
+           << duration_text(seconds * (1. - done) / done);
+      log.progress(done, text.str());
+    }
   } // namespace
 
 
@@ -293,7 +317,17 @@ namespace Voussoir
                      system.precondition(motion, force);
                    },
                    system.size(),
-                   model.discretization.grid.communicator()},
+                   model.discretization.grid.communicator(),
+                   [&](const unsigned int iterations,
+                       const unsigned int found,
+                       const double       residual) {
+                     say_progress(iterations,
+                                  found,
+                                  residual,
+                                  parameters,
+                                  clock.wall_time(),
+                                  log);
+                   }},
                   std::move(start),
                   parameters.number,
                   parameters.tolerance);

@@ -1,17 +1,54 @@
 #include <voussoir/base/log.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <iomanip>
 
 namespace Voussoir
 {
+  namespace
+  {
+    using namespace std::chrono_literals;
+    constexpr auto bar_interval = 200ms, line_interval = 5000ms;
+
+    /** Whether what is said comes to a terminal that can overwrite a line. */
+    bool
+    is_watched()
+    {
+      const char *terminal = std::getenv("TERM");
+      if (isatty(STDOUT_FILENO) == 0 || terminal == nullptr ||
+          std::string(terminal) == "dumb")
+        return false;
+      // mpirun gives each process a terminal and passes on what comes there, so
+      // that its own output counts, the parent's
+      std::error_code   none;
+      const std::string output = std::filesystem::read_symlink(
+        "/proc/" + std::to_string(getppid()) + "/fd/1", none);
+      return output.rfind("/dev/pts/", 0) == 0 ||
+             output.rfind("/dev/tty", 0) == 0;
+    }
+  } // namespace
+
+
   Log::Log(const MPI_Comm communicator, const bool quiet)
     : mpi_communicator(communicator)
     , speaks(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
     , quiet(quiet)
+    , has_bar(speaks && !quiet && is_watched())
+    , last_bar(Clock::now())
+    , last_line(last_bar)
   {}
+
+
+  Log::~Log()
+  {
+    if (shows_bar)
+      show("");
+  }
 
 
   void
@@ -32,11 +69,67 @@ namespace Voussoir
   {
     if (!speaks)
       return;
-    if (!quiet)
-      std::cout << text << std::flush;
+    show(text);
+    write(text);
+    last_line = Clock::now();
+  }
+
+
+  void
+  Log::show(const std::string &text)
+  {
+    if (quiet)
+      return;
+    // to the beginning of the line, and all of it goes
+    std::cout << (shows_bar ? "\r\033[K" : "") << text << std::flush;
+    shows_bar = false;
+  }
+
+
+  void
+  Log::write(const std::string &text)
+  {
     file.append(text);
     if (!file.name().empty())
       attempted(file.name(), file.flush());
+  }
+
+
+  bool
+  Log::progress_is_due() const
+  {
+    const auto now = Clock::now();
+    return speaks && (now - last_line > line_interval ||
+                      (has_bar && now - last_bar > bar_interval));
+  }
+
+
+  void
+  Log::progress(const double share_done, const std::string &text)
+  {
+    if (!progress_is_due())
+      return;
+    constexpr std::size_t length = 20;
+    std::ostringstream    line;
+    line << std::fixed << std::setprecision(1) << std::setw(5)
+         << 100. * share_done << " %  " << text;
+    last_bar = Clock::now();
+    if (has_bar)
+      {
+        const auto full =
+          std::min<std::size_t>(std::lround(length * share_done), length);
+        // what is too long for the terminal is cut off instead of wrapped
+        show("\033[?7l[" + std::string(full, '#') +
+             std::string(length - full, '-') + "] " + line.str() + "\033[?7h");
+        shows_bar = true;
+      }
+    if (last_bar - last_line < line_interval)
+      return;
+    last_line = last_bar;
+    line << '\n';
+    if (!has_bar)
+      show(line.str());
+    write(line.str());
   }
 
 

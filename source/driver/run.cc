@@ -136,7 +136,6 @@ namespace Voussoir
                    crack_looks(crack_interval, time_step.length);
     first_step = last_look = next_look = state.step;
     clock.restart();
-    since_report.restart();
     since_checkpoint.restart();
     since_look.restart();
     if (folder.exists() && output.has_checkpoints() && !folder.restarts())
@@ -280,7 +279,7 @@ namespace Voussoir
     mine[save]     = take_checkpoint_request();
     if (first)
       {
-        mine[report] = since_report.wall_time() > 5.;
+        mine[report] = log.progress_is_due();
         if (output.checkpoint_interval > 0. &&
             since_checkpoint.wall_time() > 60. * output.checkpoint_interval)
           mine[save] = 1.;
@@ -302,10 +301,7 @@ namespace Voussoir
     since_look.restart();
 
     if (wanted[report] > 0.)
-      {
-        report_progress();
-        since_report.restart();
-      }
+      report_progress();
     const bool stops = wanted[stop_now] > 0.;
     const bool saved =
       folder.exists() && (stops || wanted[save] > 0.) && write_checkpoint();

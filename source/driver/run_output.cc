@@ -153,14 +153,11 @@ namespace Voussoir
       double(state.step - first_step) / double(n_steps() - first_step);
     const double       seconds = clock.wall_time();
     std::ostringstream text;
-    text << std::fixed << std::setprecision(1) << std::setw(5)
-         << 100. * double(state.step) / double(n_steps())
-         << " %  t = " << std::setprecision(3) << state.time << " s  "
-         << std::setprecision(1) << throughput(seconds)
-         << " MDOF-steps/s  energy error " << std::setprecision(3)
-         << 100. * energy.relative_error() << " %  time left "
-         << duration_text(seconds * (1. - done) / done);
-    log.line(text.str());
+    text << std::fixed << std::setprecision(3) << "t = " << state.time
+         << " s  time left " << duration_text(seconds * (1. - done) / done)
+         << "  energy error " << 100. * energy.relative_error() << " %  "
+         << std::setprecision(1) << throughput(seconds) << " MDOF-steps/s";
+    log.progress(double(state.step) / double(n_steps()), text.str());
   }
 
 

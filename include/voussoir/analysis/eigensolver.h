@@ -21,6 +21,10 @@ namespace Voussoir
     Operator    precondition; // an approximation of K^-1
     std::size_t size;         // entries of this rank
     MPI_Comm    communicator;
+
+    /** Told after each iteration on all ranks: iterations so far, eigenpairs of
+     *  those wanted that are good enough, largest residual of the others. */
+    std::function<void(unsigned int, unsigned int, double)> watch;
   };
 
   /** Eigenpairs from the lowest eigenvalue upwards. */

@@ -5,6 +5,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <chrono>
 #include <iostream>
 #include <map>
 #include <sstream>
@@ -19,6 +20,8 @@ namespace Voussoir
   {
   public:
     explicit Log(const MPI_Comm communicator, const bool quiet = false);
+
+    ~Log();
 
     /** Writes to this file from now on, first what was said before; no file is
      *  missing yet. Goes on in a file that is there, or begins a new one. */
@@ -37,6 +40,18 @@ namespace Voussoir
       (text << ... << parts) << '\n';
       (*this)(text.str());
     }
+
+    /** Whether it is time to say how far a long task is; only on the first
+     * rank.
+     */
+    bool
+    progress_is_due() const;
+
+    /** Says how far a long task is, with what it is about: a bar in the last
+     * line of a terminal, which goes when something else is said; elsewhere and
+     * in log.txt a line, not more often than every five seconds. */
+    void
+    progress(const double share_done, const std::string &text);
 
     /** Says what the results must not be read without, and again at the end and
      * in the summary of a run. Warnings that were said before are not repeated.
@@ -77,9 +92,20 @@ namespace Voussoir
     void
     add_warning(const std::string &text);
 
+    /** On the terminal. */
+    void
+    show(const std::string &text);
+
+    void
+    write(const std::string &text);
+
     MPI_Comm    mpi_communicator;
-    const bool  speaks, quiet;
+    const bool  speaks, quiet, has_bar;
+    bool        shows_bar = false;
     GrowingFile file; // what was said before it is open waits
+
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point last_bar, last_line; // of progress
 
     std::vector<std::string>           all_warnings;
     std::map<std::string, std::string> missing; // on the first rank

@@ -146,12 +146,11 @@ namespace Voussoir
     Checkpoint          checkpoint;
     State               last_good; // displacement, velocity and time alone
     dealii::TimerOutput timer;
-    dealii::Timer       clock, since_report, since_checkpoint, since_look,
-      since_stop_file;
-    unsigned long long first_step = 0;
-    unsigned long long last_look = 0, next_look = 0; // steps of `attend`
-    double             loop_seconds     = 0.;
-    bool               warned_of_energy = false, warned_of_cracks = false;
+    dealii::Timer       clock, since_checkpoint, since_look, since_stop_file;
+    unsigned long long  first_step = 0;
+    unsigned long long  last_look = 0, next_look = 0; // steps of `attend`
+    double              loop_seconds     = 0.;
+    bool                warned_of_energy = false, warned_of_cracks = false;
   };
 } // namespace Voussoir
 

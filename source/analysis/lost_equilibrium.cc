@@ -74,8 +74,8 @@ namespace Voussoir
       for (const ContactPoint &point : contact.points())
         {
           const unsigned int s = point.surface;
-          const bool ungrouted = point.initial_gap[0] > contact.cell_size;
-          held[s] += ungrouted || point.status == ContactStatus::sticking;
+          held[s] += !contact.is_joined(point) ||
+                     point.status == ContactStatus::sticking;
           opening[s] = std::max(opening[s], point.gap[0]);
           slip[s] = std::max(slip[s], std::hypot(point.gap[1], point.gap[2]));
         }

@@ -12,10 +12,6 @@ namespace Voussoir
 
   namespace
   {
-    // Sides of an interface nearer than this part of a cell touch.
-    constexpr double touching = 1e-6;
-
-
     std::vector<bool>
     among(const std::vector<std::string> &materials, const std::string &names)
     {
@@ -130,9 +126,8 @@ namespace Voussoir
   {
     const Contact &contact   = *model.contact;
     const bool     all       = parameters.interfaces == "all tied";
-    const double   narrow    = touching * contact.cell_size;
     const auto     is_closed = [&](const ContactPoint &point) {
-      return all || point.gap[0] <= narrow || point.force[0] > 0.;
+      return all || contact.touches(point) || point.force[0] > 0.;
     };
     std::vector<unsigned int> sums(3);
     for (const ContactPoint &point : contact.points())

@@ -360,6 +360,20 @@ namespace Voussoir
   }
 
 
+  bool
+  Contact::is_joined(const ContactPoint &point) const
+  {
+    return point.initial_gap[0] < not_grouted;
+  }
+
+
+  bool
+  Contact::touches(const ContactPoint &point) const
+  {
+    return point.gap[0] <= 1e-6 * cell_size;
+  }
+
+
   const std::vector<std::uint64_t> &
   Contact::keys() const
   {

@@ -151,7 +151,7 @@ namespace Voussoir
   StaticContact::stiffen(const double share)
   {
     for (unsigned int k = 0; k < spring.size(); ++k)
-      if (contact.points()[k].gap[0] < contact.cell_size) // else not grouted
+      if (contact.is_joined(contact.points()[k]))
         tangent[k] =
           (1. - share) * tangent[k] +
           share * spring[k] * Tensor<2, 3>(unit_symmetric_tensor<3>());
@@ -166,7 +166,7 @@ namespace Voussoir
       {
         const ContactPoint &point = contact.points()[k];
         tangent[k]                = Tensor<2, 3>();
-        if (point.gap[0] <= 1e-6 * contact.cell_size)
+        if (contact.touches(point))
           tangent[k] = spring[k] * Tensor<2, 3>(unit_symmetric_tensor<3>());
       }
   }

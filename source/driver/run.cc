@@ -5,8 +5,10 @@
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/material_memory.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iomanip>
+#include <tuple>
 
 namespace Voussoir
 {
@@ -19,9 +21,9 @@ namespace Voussoir
     // small models take less.
     constexpr double look_interval = 0.01, look_steps = 100.;
 
-    // Between two looks at the cracks [s], and how wide one may be over its
-    // cell: at a fiftieth, what it cuts off is a block of its own.
-    constexpr double crack_interval = 0.1, widest_share = 0.02;
+    // Between two looks at cracks and slips [s], and how wide one may be over
+    // its cell: at a fiftieth, what it cuts off is a block of its own.
+    constexpr double check_interval = 0.1, widest_share = 0.02;
   } // namespace
 
 
@@ -133,7 +135,7 @@ namespace Voussoir
     const OutputParameters &output       = model.parameters.output;
     const Schedule          energy_lines = energy_schedule(),
                    checkpoints(output.checkpoint_time, time_step.length),
-                   crack_looks(crack_interval, time_step.length);
+                   loose_checks(check_interval, time_step.length);
     first_step = last_look = next_look = state.step;
     clock.restart();
     since_checkpoint.restart();
@@ -160,8 +162,11 @@ namespace Voussoir
             check_energy();
             keep_last_good();
           }
-        if (crack_looks.due(state.step) || state.step == n_steps())
-          check_cracks();
+        if (loose_checks.due(state.step) || state.step == n_steps())
+          {
+            check_cracks();
+            check_slips();
+          }
         if (folder.exists() && output.checkpoint_time > 0. &&
             checkpoints.due(state.step))
           write_checkpoint();
@@ -224,6 +229,40 @@ namespace Voussoir
          << 100. * widest.share
          << " % of its cell: what cracks have cut off is loose from now on; "
             "that it comes loose can be relied on, how it moves then cannot";
+    log.warn(text.str());
+  }
+
+
+  void
+  Run::check_slips()
+  {
+    if (warned_of_slips || !contact)
+      return;
+    double       farthest = 0.;
+    unsigned int surface  = 0;
+    for (const ContactPoint &point : contact->points())
+      {
+        const double slip = std::hypot(point.gap[1], point.gap[2]);
+        if (contact->is_joined(point) && slip > farthest)
+          {
+            farthest = slip;
+            surface  = point.surface;
+          }
+      }
+    const auto all =
+      Utilities::MPI::all_gather(log.communicator(),
+                                 std::make_pair(farthest, surface));
+    std::tie(farthest, surface) = *std::max_element(all.begin(), all.end());
+    warned_of_slips             = farthest > 0.5 * contact->cell_size;
+    if (!warned_of_slips)
+      return;
+    std::ostringstream text;
+    text << std::setprecision(3) << "at t = " << state.time << " s \""
+         << contact->surface_names()[surface] << "\" has slipped by "
+         << farthest
+         << " m, more than half a cell of the interfaces: nodes still act on "
+            "those they faced at the start; that it slides so far can be "
+            "relied on, where it comes to rest cannot";
     log.warn(text.str());
   }
 

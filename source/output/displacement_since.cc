@@ -26,7 +26,7 @@ namespace Voussoir
       bool result = false;
       if (model.contact != nullptr)
         for (const ContactPoint &point : model.contact->points())
-          result = result || point.initial_gap[0] > model.contact->cell_size;
+          result = result || !model.contact->is_joined(point);
       return Utilities::MPI::logical_or(
         result, model.discretization.grid.communicator());
     }

@@ -98,6 +98,15 @@ namespace Voussoir
     const std::vector<dealii::Point<3>> &
     positions() const;
 
+    /** Whether the sides of a point may meet; before its interface is grouted
+     *  they may not. */
+    bool
+    is_joined(const ContactPoint &point) const;
+
+    /** Whether its sides touch, to a millionth of a cell. */
+    bool
+    touches(const ContactPoint &point) const;
+
     /** Numbers of the points that are the same on all partitions. */
     const std::vector<std::uint64_t> &
     keys() const;

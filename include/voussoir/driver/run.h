@@ -97,6 +97,10 @@ namespace Voussoir
     void
     check_cracks();
 
+    /** Warns of slips so far that nodes no longer face those they act on. */
+    void
+    check_slips();
+
     /** Warns of contact that was not solved. */
     void
     check_contact();
@@ -150,7 +154,8 @@ namespace Voussoir
     unsigned long long  first_step = 0;
     unsigned long long  last_look = 0, next_look = 0; // steps of `attend`
     double              loop_seconds     = 0.;
-    bool                warned_of_energy = false, warned_of_cracks = false;
+    bool                warned_of_energy = false, warned_of_cracks = false,
+         warned_of_slips = false;
   };
 } // namespace Voussoir
 

@@ -111,19 +111,20 @@ namespace Voussoir
 
 
   // A member is a number or the name of a set given before, both maybe with
-  // the name of an instance and a point before it.
+  // the name of an instance and a point before it; names with blanks stand in
+  // quotation marks.
   AbaqusSets::Numbers
   AbaqusSets::members_of(std::string_view item, bool is_ours) const
   {
-    const std::size_t point = item.rfind('.');
-    if (point != std::string_view::npos)
-      {
-        item.remove_prefix(point + 1);
-        is_ours = true;
-      }
+    const bool is_quoted = item.size() > 1 && item.back() == '"';
+    if (is_quoted)
+      item.remove_suffix(1);
+    const std::size_t begin = item.rfind(is_quoted ? '"' : '.') + 1; // or 0
+    is_ours = is_ours || item.substr(0, begin).find('.') != item.npos;
+    item.remove_prefix(begin);
     if (item.empty())
       return {};
-    if (std::isdigit(static_cast<unsigned char>(item.front())))
+    if (!is_quoted && std::isdigit(static_cast<unsigned char>(item.front())))
       {
         const auto number =
           file.to_number<std::int64_t>(item, "a number or a name");

@@ -33,6 +33,7 @@ namespace Voussoir
                                          "gmsh41.msh",
                                          "gmsh41_binary.msh",
                                          "abaqus.inp",
+                                         "abaqus_cae.inp",
                                          "ucd.inp",
                                          "vtk3.vtk",
                                          "vtk3_binary.vtk",

@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <regex>
 #include <thread>
 
 namespace Voussoir
@@ -55,6 +56,22 @@ namespace Voussoir
       return all;
     }
 
+    void
+    print(const ParameterHandler             &prm,
+          const ParameterHandler::OutputStyle style,
+          std::ostream                       &out)
+    {
+      std::ostringstream text;
+      prm.print_parameters(text, style);
+      // deal.II's parameter_gui takes the numbers of its callbacks for entries
+      out << (style == ParameterHandler::XML ?
+                std::regex_replace(text.str(),
+                                   std::regex("<actions>[^<]*</actions>"),
+                                   "") :
+                text.str());
+    }
+
+
     /** Every entry there is: a section for each class, of the same name. */
     void
     print_all_entries(std::ostream                       &out,
@@ -75,7 +92,7 @@ namespace Voussoir
       all.reader.declare(all.prm);
       all.prm.leave_subsection();
       all.prm.leave_subsection();
-      all.prm.print_parameters(out, style);
+      print(all.prm, style, out);
     }
 
     template <typename Map>
@@ -382,7 +399,7 @@ namespace Voussoir
       if (!arguments.defaults.empty())
         {
           if (first)
-            parameters.prm.print_parameters(std::cout, style);
+            print(parameters.prm, style, std::cout);
         }
       else if (!arguments.test_file.empty())
         {

@@ -81,7 +81,8 @@ namespace Voussoir
     prm.add_parameter("Ranks of a run",
                       ranks_of_run,
                       "Ranks that each run gets, so that several go on side by "
-                      "side; 0: all, one run after the other.");
+                      "side; 0: all, one run after the other.",
+                      Patterns::Integer(0));
 
     prm.enter_subsection("Limit");
     prm.add_parameter("Entry",

@@ -92,10 +92,15 @@ def dam_and_rock(source):
     return cells_of("dam", dam), cells_of("rock", rock) if rock else None
 
 
+def times_of(series):
+    """[s]; any one if there is a single picture."""
+    return list(getattr(series, "TimestepValues", None) or [0.])
+
+
 def largest_motion(dam, field, series):
     """Of all pictures [m]."""
     largest = 0.
-    for time in series.TimestepValues:
+    for time in times_of(series):
         dam.UpdatePipeline(time)
         largest = max(largest, dam.PointData.GetArray(field).GetRange(-1)[1])
     return largest
@@ -121,8 +126,8 @@ def warped(fields):
 def range_of(source, quantity, series):
     """Of a quantity over all pictures."""
     low, high = [], []
-    for time in getattr(series, "TimestepValues", None) or [None]:
-        source.UpdatePipeline() if time is None else source.UpdatePipeline(time)
+    for time in times_of(series):
+        source.UpdatePipeline(time)
         found = source.PointData.GetArray(quantity.field).GetRange()
         low.append(found[0])
         high.append(found[1])
@@ -205,8 +210,11 @@ def show_motion(fields, view_of):
     colour_by(dam, view, STATE, fields)
     if rock:
         show(rock, view, ROCK)
-    motion = f", motion {factor:g} times" if factor else ""
-    note(view, pv.AnnotateTimeFilter(Input=fields, Format="t = {time:.2f} s" + motion))
+    motion = f"motion {factor:g} times" if factor else "without motion"
+    if len(times_of(fields)) > 1:
+        note(view, pv.AnnotateTimeFilter(Input=fields, Format="t = {time:.2f} s, " + motion))
+    else:
+        note(view, pv.Text(Text=motion))
 
 
 def arrange(views, title):

@@ -1,5 +1,5 @@
 # Completion of voussoir's arguments in bash, from what the program itself says. Installed for
-# package bash-completion; or: source completion/voussoir
+# package bash-completion; or: source source/completion.bash
 
 # Paths of all entries, "Section/Entry=", of a case or of every class.
 _voussoir_entries() { # program, case

@@ -1,7 +1,10 @@
 #include <voussoir/base/parameter_file.h>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
+#include "csv_table.h"
 #include "with_files.h"
 
 namespace Voussoir
@@ -10,8 +13,23 @@ namespace Voussoir
 
   namespace
   {
-    /** A shipped case, coarsened: its summary shows what the "Expected:" in its
-     *  head says. */
+    /** When a column of a table is above a value for the first time [s]. */
+    double
+    first_time_above(const CsvTable    &table,
+                     const std::string &column,
+                     const double       value)
+    {
+      const auto times  = table.numbers("time [s]"),
+                 values = table.numbers(column);
+      for (std::size_t i = 0; i < times.size(); ++i)
+        if (values[i] > value)
+          return times[i];
+      return std::numeric_limits<double>::infinity();
+    }
+
+
+    /** A shipped case, coarsened: its summary and the order of its events show
+     *  what the "Expected:" in its head says. */
     class ShippedCase : public Check
     {
     public:
@@ -27,6 +45,11 @@ namespace Voussoir
                           "\"place in the summary: smallest: largest\" "
                           "separated by \";\", where the place is a JSON "
                           "pointer.");
+        prm.add_parameter("Events",
+                          events,
+                          "\"file: column: value\" separated by \";\": the "
+                          "columns rise above their values one after the "
+                          "other.");
       }
 
       void
@@ -60,10 +83,33 @@ namespace Voussoir
               text << ": it is " << value;
             verdicts.is_true(text.str(), value >= smallest && value <= largest);
           }
+        check_order(folder, verdicts);
       }
 
     private:
-      std::string name, changes, results;
+      void
+      check_order(const std::string &folder, Verdicts &verdicts) const
+      {
+        double previous = 0.;
+        for (const std::string &event : split_list(events, ';'))
+          {
+            const auto   parts = split_list(event, ':');
+            const double time =
+              first_time_above(CsvTable(folder + '/' + parts.at(0)),
+                               parts.at(1),
+                               std::stod(parts.at(2)));
+            std::ostringstream text;
+            text << parts[1] << " above " << parts[2];
+            const bool in_order = std::isfinite(time) && time >= previous;
+            if (!in_order)
+              text << " at " << time << " s, the event before it at "
+                   << previous << " s";
+            verdicts.is_true(text.str(), in_order);
+            previous = time;
+          }
+      }
+
+      std::string name, changes, results, events;
     };
 
     const Registry<Check>::Add<ShippedCase>

@@ -203,7 +203,7 @@ namespace Voussoir
                 force[d] -= row[3 * l + e] * gaps[l][e];
           }
         const ContactLimits &limits = points[cluster.first_point + k].limits;
-        if (force[0] < (limits.opening > 0. ? 0. : -limits.tension) ||
+        if (force[0] < limits.opening_force() ||
             tangential_norm(force) > limits.shear(false, force[0]))
           return false;
         holding[k] = force;
@@ -321,7 +321,7 @@ namespace Voussoir
       const ContactLimits &limits = point.limits;
       const Tensor<1, 3>  &F      = point.force;
       const Tensor<1, 3>   trial  = F - r * gap;
-      const bool open = trial[0] < (limits.opening > 0. ? 0. : -limits.tension);
+      const bool           open   = trial[0] < limits.opening_force();
 
       void
       set_normal_row() const

@@ -153,7 +153,7 @@ namespace Voussoir
     std::vector<Segment>
     make_segments(const ContactLimits &limits, const double stiffness)
     {
-      const double lowest   = limits.opening > 0. ? 0. : -limits.tension,
+      const double lowest   = limits.opening_force(),
                    friction = limits.locked ? 0. : limits.friction,
                    cohesion = limits.locked ? 0. : limits.cohesion;
       std::vector<Segment> segments;

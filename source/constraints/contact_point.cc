@@ -32,7 +32,7 @@ namespace Voussoir
           return 0.;
         }
       const double closing = -gap / flexibility;
-      open = closing < (limits.opening > 0. ? 0. : -limits.tension);
+      open                 = closing < limits.opening_force();
       if (!open)
         return closing;
       if (limits.opening > 0. && limits.tension > 0.)
@@ -201,7 +201,7 @@ namespace Voussoir
         , flexibility(flexibility)
         , limits(limits)
         , D(flexibility.full)
-        , lowest(limits.opening > 0. ? 0. : -limits.tension)
+        , lowest(limits.opening_force())
       {}
 
       /** Whether the force that undoes all motion is within the limits. */

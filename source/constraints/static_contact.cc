@@ -28,11 +28,11 @@ namespace Voussoir
       constexpr double cohesion_per_pressure = 10.;
 
       ContactLimits result   = limits;
-      const double  pressure = -spring * b[0], // at which it opens:
-        lowest               = limits.opening > 0. ? 0. : -limits.tension;
+      const double  pressure = -spring * b[0];
       result.cohesion =
         std::min(limits.cohesion,
-                 cohesion_per_pressure * std::max(pressure - lowest, 0.));
+                 cohesion_per_pressure *
+                   std::max(pressure - limits.opening_force(), 0.));
       return result;
     }
 

@@ -24,6 +24,14 @@ namespace Voussoir
     double opening  = 0.;    // largest so far, an intact bond has none [m]
     bool   locked   = false; // no slip (shear keys)
 
+    /** Normal force at which it opens [N]; an opened bond has its tension open
+     *  only. */
+    double
+    opening_force() const
+    {
+      return opening > 0. ? 0. : -tension;
+    }
+
     /** Largest shear force under this normal force [N]. */
     double
     shear(const bool open, const double normal_force) const;

@@ -3,6 +3,7 @@
 #include "contact_sums.h"
 #include "csv_table.h"
 #include "same.h"
+#include "with_files.h"
 
 namespace Voussoir
 {
@@ -241,9 +242,7 @@ namespace Voussoir
            "Output/fields/Quantities=displacement since static state, "
            "displacement since grouting",
            "Time/End time=0.01"}));
-        RunOptions options;
-        options.quiet = options.overwrite = true;
-        Simulation(*parameters, options, communicator).run.march();
+        make_simulation_with_files(*parameters, communicator)->run.march();
         MPI_Barrier(communicator);
 
         const CsvTable table("since/histories.csv");

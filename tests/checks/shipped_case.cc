@@ -1,7 +1,4 @@
-#include <voussoir/base/parameter_file.h>
-
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include "csv_table.h"
@@ -58,13 +55,7 @@ namespace Voussoir
           const MPI_Comm       communicator) override
       {
         const std::string folder = "shipped_" + name;
-        auto              list   = split_list(changes, ';');
-        list.push_back("Output/Folder=" +
-                       (std::filesystem::current_path() / folder).string());
-        const ParameterFile shipped(file.folder() + "/../../prm/" + name +
-                                      ".prm",
-                                    list);
-        Case                parameters(shipped);
+        Case              parameters(shipped_file(file, name, changes, folder));
         make_simulation_with_files(parameters, communicator)->run.march();
 
         const nlohmann::json summary = read_summary(folder);

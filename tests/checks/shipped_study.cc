@@ -1,8 +1,5 @@
-#include <voussoir/base/parameter_file.h>
 #include <voussoir/driver/study.h>
 #include <voussoir/driver/summary_numbers.h>
-
-#include <filesystem>
 
 #include "with_files.h"
 
@@ -41,18 +38,12 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const std::string folder =
-          (std::filesystem::current_path() / name).string();
-        auto list = split_list(changes, ';');
-        list.push_back("Output/Folder=" + folder);
-        RunOptions options;
+        const ParameterFile shipped = shipped_file(file, name, changes, name);
+        const std::string   folder  = shipped.given("Output/Folder");
+        RunOptions          options;
         options.quiet     = true;
         options.overwrite = true;
-        Study(ParameterFile(file.folder() + "/../../prm/" + name + ".prm",
-                            list),
-              options,
-              communicator)
-          .run();
+        Study(shipped, options, communicator).run();
         MPI_Barrier(communicator);
 
         std::ifstream     in(folder + "/study.json");

@@ -2,9 +2,8 @@
 #include <voussoir/driver/study_statistics.h>
 
 #include <filesystem>
-#include <fstream>
 
-#include "check.h"
+#include "with_files.h"
 
 namespace Voussoir
 {
@@ -162,9 +161,7 @@ namespace Voussoir
                              runs.at(i).contains("quantities") != slides);
           }
         const auto summary = [&](const unsigned int run) {
-          std::ifstream in(std::string(runs.at(run).at("folder")) +
-                           "/summary.json");
-          return nlohmann::json::parse(in);
+          return read_summary(runs.at(run).at("folder"));
         };
         for (const std::string number : {"unknowns", "cells", "time step [s]"})
           verdicts.is_true("  its summary has the " + number,

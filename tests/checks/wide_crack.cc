@@ -1,5 +1,3 @@
-#include <filesystem>
-
 #include "with_files.h"
 
 namespace Voussoir
@@ -22,8 +20,8 @@ namespace Voussoir
           const MPI_Comm       communicator) override
       {
         verdicts.is_true("60 mm: no warning",
-                         warnings_of(file, 0.06, communicator).empty());
-        const nlohmann::json warnings = warnings_of(file, 0.14, communicator);
+                         warnings_at(file, 0.06, communicator).empty());
+        const nlohmann::json warnings = warnings_at(file, 0.14, communicator);
         verdicts.is_true("140 mm: one warning, of cracks",
                          warnings.size() == 1 &&
                            warnings.at(0).get<std::string>().find("a crack is "
@@ -32,7 +30,7 @@ namespace Voussoir
         const std::string text = warnings.at(0);
         // looked at every tenth of a second
         verdicts.near("  at the time [s]",
-                      std::stod(text.substr(text.find("t = ") + 4)),
+                      time_in(text),
                       std::asin(std::sqrt(65. / 140.)) / (0.05 * numbers::PI) +
                         0.05,
                       0.03);
@@ -40,17 +38,15 @@ namespace Voussoir
 
     private:
       static nlohmann::json
-      warnings_of(const ParameterFile &file,
+      warnings_at(const ParameterFile &file,
                   const double         amplitude,
                   const MPI_Comm       communicator)
       {
-        const std::string folder = "wide_crack";
-        const auto        parameters =
-          make_case(file.with({"Output/Folder=" + folder,
-                               "Constraints/pull/Displacement=0, 0, " +
-                                 std::to_string(amplitude)}));
-        make_simulation_with_files(*parameters, communicator)->run.march();
-        return read_summary(folder).at("warnings");
+        return warnings_of(file,
+                           "Constraints/pull/Displacement=0, 0, " +
+                             std::to_string(amplitude),
+                           "wide_crack",
+                           communicator);
       }
     };
 

@@ -36,7 +36,7 @@ namespace Voussoir
           T + (std::sqrt(v * v + 2. * a * (half_cell - slip_of_T)) - v) / a;
         // looked at every tenth of a second
         verdicts.near("  at the time [s]",
-                      std::stod(text.substr(text.find("t = ") + 4)),
+                      time_in(text),
                       std::ceil(10. * t) / 10.,
                       1e-3);
       }
@@ -48,14 +48,13 @@ namespace Voussoir
                  const double         friction,
                  const MPI_Comm       communicator)
       {
-        const std::string folder = "wide_slip";
-        const auto        parameters =
-          make_case(file.with({"Output/Folder=" + folder,
-                               "Interfaces/plane/Friction coefficient=" +
-                                 std::to_string(friction)}));
-        make_simulation_with_files(*parameters, communicator)->run.march();
-        const nlohmann::json summary = read_summary(folder);
-        for (const std::string text : summary.at("warnings"))
+        const nlohmann::json warnings =
+          warnings_of(file,
+                      "Interfaces/plane/Friction coefficient=" +
+                        std::to_string(friction),
+                      "wide_slip",
+                      communicator);
+        for (const std::string text : warnings)
           if (text.find("\"plane\" has slipped") != std::string::npos)
             return text;
         return {};

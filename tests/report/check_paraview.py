@@ -16,25 +16,13 @@ if not (shutil.which("pvpython") and shutil.which("xvfb-run")):
     print("skipped: the package python3-paraview or xvfb is missing")
     sys.exit(77)
 
+sys.dont_write_bytecode = True
+import verdicts  # noqa: E402
+from verdicts import compare, is_true  # noqa: E402
+
 program, script, case = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
 HEIGHT = 20.
 SETTLEMENT = 2400. * 9.81 * HEIGHT**2 / (2. * 30e9)  # of the block, and opening of the joint [m]
-failed = []
-
-
-def compare(what, value, reference, allowed):
-    """Prints a number and its reference, with the error that is allowed in per cent."""
-    good = abs(value - reference) <= 0.01 * allowed * abs(reference)
-    print(f"{what} = {value:.5g}  (reference {reference:.5g}, allowed {allowed:g} %)  "
-          f"{'ok' if good else 'FAILED'}")
-    if not good:
-        failed.append(what)
-
-
-def is_true(what, good):
-    print(f"{what}  {'ok' if good else 'FAILED'}")
-    if not good:
-        failed.append(what)
 
 
 def show(folder, *picture, **environment):
@@ -49,7 +37,7 @@ with tempfile.TemporaryDirectory() as name:
                    stdout=subprocess.DEVNULL)
     answer = show(run, picture)
     is_true("it is shown", answer.returncode == 0)
-    if failed:
+    if answer.returncode != 0:
         print(answer.stdout)
         sys.exit(1)
     opening = re.search(r"largest opening of the joints \[mm\] from 0 to (\S+)", answer.stdout)
@@ -60,5 +48,4 @@ with tempfile.TemporaryDirectory() as name:
     is_true("with its tension over the run", "largest tension of the run [MPa] from 0" in answer.stdout)
     is_true("the picture is there", picture.stat().st_size > 10000)
     is_true("what is no run is refused", "is not the output folder of a run" in show(name).stdout)
-print(f"{len(failed)} failed" if failed else "all ok")
-sys.exit(1 if failed else 0)
+verdicts.end()

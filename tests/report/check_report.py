@@ -5,6 +5,7 @@ numbers that stand in the page with closed forms.
 usage: check_report.py PROGRAM FOLDER_OF_THE_REPORT CASE.prm
 """
 
+import functools
 import html.parser
 import pathlib
 import re
@@ -28,26 +29,13 @@ if not shutil.which("Xvfb"):
 program, report, case = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(report))
+import verdicts  # noqa: E402
+from verdicts import is_true  # noqa: E402
 from voussoir_report import grid, motion  # noqa: E402
 
 GRAVITY = 9.81
 AMPLITUDE, FREQUENCY, CYCLES = 0.1 * GRAVITY, 2., 5  # of the case [m/s2], [Hz]
-failed = []
-
-
-def compare(what, value, reference, allowed):
-    """Prints a number and its reference, with the error that is allowed in per cent."""
-    good = abs(value - reference) <= 0.01 * allowed * abs(reference) + 1e-12
-    print(f"{what} = {value:.5g}  (reference {reference:.5g}, allowed {allowed:g} %)  "
-          f"{'ok' if good else 'FAILED'}")
-    if not good:
-        failed.append(what)
-
-
-def is_true(what, good):
-    print(f"{what}  {'ok' if good else 'FAILED'}")
-    if not good:
-        failed.append(what)
+compare = functools.partial(verdicts.compare, round_off=1e-12)
 
 
 class Page(html.parser.HTMLParser):
@@ -289,8 +277,7 @@ def main():
         answer = run_report(f"first={wall}", f"second={wall}", "-o", both)
         is_true("two runs in one page", answer.returncode == 0 and
                 {"first", "second"} <= set(cell for row in Page(both.read_text()).rows for cell in row))
-    print(f"{len(failed)} failed" if failed else "all ok")
-    sys.exit(1 if failed else 0)
+    verdicts.end()
 
 
 if __name__ == "__main__":

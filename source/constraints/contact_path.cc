@@ -280,10 +280,12 @@ namespace Voussoir
            const std::vector<Tensor<1, 3>>  &given_gaps,
            const std::vector<ContactLimits> &limits,
            const double                      round_off_of_gaps,
-           const double                      cap)
+           const double                      cap,
+           std::mt19937                     &generator)
         : n(3 * limits.size())
         , flexibility(given_flexibility)
         , gaps(n)
+        , generator(generator)
       {
         double length = round_off_of_gaps / unsolved_contact, softest = 0.;
         for (unsigned int i = 0; i < n; ++i)
@@ -781,7 +783,7 @@ namespace Voussoir
       Vector widening, shift, x;
       double bond_slope = 0., softness = 0.;
 
-      std::mt19937 generator;
+      std::mt19937 &generator;
     };
   } // namespace
 
@@ -793,9 +795,13 @@ namespace Voussoir
                 const double                      round_off)
   {
     ContactForces best{{}, std::numeric_limits<double>::infinity()};
+    // the same for each cluster, but other starts for each cap, most of which
+    // cut nothing off
+    std::mt19937 generator;
     for (const double cap : caps)
       if (best.residual > unsolved_contact)
-        if (auto found = Path(flexibility, gaps, limits, round_off, cap).find();
+        if (auto found =
+              Path(flexibility, gaps, limits, round_off, cap, generator).find();
             found.residual < best.residual)
           best = std::move(found);
     return best;

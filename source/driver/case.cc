@@ -291,9 +291,10 @@ namespace Voussoir
                       "least one material and give it cell sets.");
     for (const auto &[name, material] : materials.objects)
       material->check("Section \"Materials/" + name + "\"");
-    if (discretization.quadrature == "one point" && discretization.degree > 1)
-      throw UserError("\"Quadrature\" in section \"Discretization\" is \"one "
-                      "point\", which cells of \"Degree\" " +
+    if (discretization.one_point(false) && discretization.degree > 1)
+      throw UserError("\"Quadrature\" in section \"Discretization\" is \"" +
+                      discretization.quadrature +
+                      "\", which cells of \"Degree\" " +
                       std::to_string(discretization.degree) +
                       " cannot do with; set \"Degree = 1\", or take \"Gauss\" "
                       "or \"Gauss-Lobatto\".");

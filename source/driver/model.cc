@@ -124,6 +124,15 @@ namespace Voussoir
     }
 
 
+    std::vector<bool>
+    have_memory(const std::vector<const Material *> &materials)
+    {
+      return for_each_material(materials, [](const Material &material) {
+        return material.n_history() > 0;
+      });
+    }
+
+
     // Rock of reduced inertia takes no inertial earthquake force.
     std::vector<double>
     driven_densities(const std::vector<const Material *> &materials)
@@ -328,14 +337,18 @@ namespace Voussoir
     , grid(
         meshes.solid,
         parameters.grid,
-        [this](const unsigned int cell) {
-          return materials[material_of_coarse_cell[cell]]->relative_cost();
+        [this, &parameters](const unsigned int cell) {
+          const Material &material = *materials[material_of_coarse_cell[cell]];
+          return material.relative_cost() *
+                 parameters.discretization.relative_cost(material.n_history() >
+                                                         0);
         },
         log.communicator())
     , discretization(grid,
                      parameters.discretization,
                      checked_supports(parameters, grid),
-                     material_of_cell())
+                     material_of_cell(),
+                     have_memory(materials))
     , mass(discretization,
            inertial_densities(materials),
            driven_densities(materials),

@@ -31,9 +31,28 @@ namespace Voussoir
       "cells bend as they should, while full integration at degree 1 makes "
       "them too stiff; but damage follows the mean strain of a cell only, and "
       "a damaged cell keeps its stiffness against bending: let cracks have "
-      "full integration or several cells through the wall. The mass is always "
-      "lumped at the Gauss-Lobatto nodes.",
-      Patterns::Selection("Gauss|Gauss-Lobatto|one point"));
+      "full integration or several cells through the wall. \"One point where "
+      "elastic\" has one point in materials that stay elastic and Gauss points "
+      "in those that crack or yield: for a dam in much rock. The mass is "
+      "always lumped at the Gauss-Lobatto nodes.",
+      Patterns::Selection(
+        "Gauss|Gauss-Lobatto|one point|one point where elastic"));
+  }
+
+
+  bool
+  DiscretizationParameters::one_point(const bool has_memory) const
+  {
+    return quadrature == "one point" ||
+           (quadrature == "one point where elastic" && !has_memory);
+  }
+
+
+  double
+  DiscretizationParameters::relative_cost(const bool has_memory) const
+  {
+    // eight points against one, measured
+    return quadrature == "one point where elastic" && has_memory ? 3. : 1.;
   }
 
 
@@ -55,11 +74,17 @@ namespace Voussoir
     const Grid                                            &grid,
     const DiscretizationParameters                        &parameters,
     const std::vector<Support>                            &supports,
-    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell)
+    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
+    const std::vector<bool>                               &has_memory)
     : grid(grid)
     , degree(parameters.degree)
     , fe(FE_Q<3>(parameters.degree), 3)
     , dof_handler(grid.triangulation())
+    , one_point_of_material(
+        [parameters, has_memory](const unsigned int material) {
+          return parameters.one_point(material < has_memory.size() &&
+                                      has_memory[material]);
+        })
   {
     check_size(grid.triangulation().n_global_active_cells(),
                degree,
@@ -91,18 +116,20 @@ namespace Voussoir
           material_of_cell(cell);
 
     std::vector<Quadrature<1>> quadratures;
-    if (parameters.quadrature == "one point")
+    if (parameters.one_point(true)) // everywhere
+      quadratures = {QGauss<1>(1)};
+    else if (parameters.quadrature == "Gauss-Lobatto")
+      quadratures = {QGaussLobatto<1>(degree + 1)};
+    else
+      quadratures = {QGauss<1>(degree + 1)};
+    crack_share = share_of_crack(quadratures[0], degree);
+    if (parameters.one_point(false))
       {
         // the points of the second are the corners, for OnePointCell
         static_assert(OnePointCell::corner_quadrature == 1);
-        quadratures = {QGauss<1>(1), QGaussLobatto<1>(2)};
+        quadratures.push_back(QGaussLobatto<1>(2));
         data.mapping_update_flags |= update_quadrature_points;
       }
-    else if (parameters.quadrature == "Gauss")
-      quadratures = {QGauss<1>(degree + 1)};
-    else
-      quadratures = {QGaussLobatto<1>(degree + 1)};
-    crack_share = share_of_crack(quadratures[0], degree);
     matrix_free.reinit(mapping,
                        std::vector<const DoFHandler<3> *>{&dof_handler},
                        std::vector<const AffineConstraints<double> *>{
@@ -131,6 +158,20 @@ namespace Voussoir
               node_positions[owned_node(indices[j])] =
                 nodes.quadrature_point(j);
         }
+  }
+
+
+  bool
+  Discretization::has_one_point(const unsigned int material) const
+  {
+    return one_point_of_material(material);
+  }
+
+
+  const Quadrature<3> &
+  Discretization::points(const unsigned int material) const
+  {
+    return has_one_point(material) ? centre : matrix_free.get_quadrature();
   }
 
 

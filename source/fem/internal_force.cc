@@ -9,19 +9,24 @@ namespace Voussoir
     // Calls run(material, cells) for the runs of batches of one material.
     template <typename Run>
     void
-    for_each_run(const Discretization::MatrixFree &matrix_free,
-                 const std::vector<unsigned int>  &material_of_batch,
-                 const unsigned int                first,
-                 const unsigned int                last,
-                 const Run                        &run)
+    for_each_run(const Discretization &discretization,
+                 const unsigned int    first,
+                 const unsigned int    last,
+                 const Run            &run)
     {
+      const auto &material_of_batch = discretization.material_of_batch;
       for (unsigned int begin = first; begin < last;)
         {
           unsigned int end = begin + 1;
           while (end < last &&
                  material_of_batch[end] == material_of_batch[begin])
             ++end;
-          run(material_of_batch[begin], CellRange{matrix_free, begin, end});
+          const unsigned int material = material_of_batch[begin];
+          run(material,
+              CellRange{discretization.matrix_free,
+                        begin,
+                        end,
+                        discretization.has_one_point(material)});
           begin = end;
         }
     }
@@ -37,14 +42,13 @@ namespace Voussoir
     // batches of one material.
     template <typename Run>
     CellLoop
-    on_runs(const std::vector<unsigned int> &material_of_batch, const Run &run)
+    on_runs(const Discretization &discretization, const Run &run)
     {
-      return [&](const Discretization::MatrixFree            &matrix_free,
+      return [&](const Discretization::MatrixFree &,
                  Vector                                      &dst,
                  const Vector                                &src,
                  const std::pair<unsigned int, unsigned int> &range) {
-        for_each_run(matrix_free,
-                     material_of_batch,
+        for_each_run(discretization,
                      range.first,
                      range.second,
                      [&](const unsigned int material, const CellRange &cells) {
@@ -141,7 +145,7 @@ namespace Voussoir
         kernels[material]->add_force(
           cells, factors[material], dst, src, damping_memory);
     };
-    const CellLoop loop = on_runs(discretization.material_of_batch, run);
+    const CellLoop loop = on_runs(discretization, run);
 
     // The library overlaps the exchange of one source vector with the cell
     // work; the others are exchanged beforehand.
@@ -178,11 +182,10 @@ namespace Voussoir
       kernels[material]->add_force(
         cells, factors[material], dst, src, damping_memory);
     };
-    discretization.matrix_free.cell_loop(
-      on_runs(discretization.material_of_batch, run),
-      force,
-      displacement,
-      true);
+    discretization.matrix_free.cell_loop(on_runs(discretization, run),
+                                         force,
+                                         displacement,
+                                         true);
     if (damping_memory != nullptr)
       damping_memory->zero_out_ghost_values();
   }
@@ -219,8 +222,7 @@ namespace Voussoir
     for (unsigned int m = 0; m < kernels.size(); ++m)
       if (PointHistory *history = memory.of(m))
         history->make_static_strains();
-    for_each_run(discretization.matrix_free,
-                 discretization.material_of_batch,
+    for_each_run(discretization,
                  0,
                  discretization.matrix_free.n_cell_batches(),
                  [&](const unsigned int material, const CellRange &cells) {
@@ -246,8 +248,9 @@ namespace Voussoir
                          const Vector      &src) {
       kernels[material]->add_thermal_force(cells, factors[material], dst, src);
     };
-    discretization.matrix_free.cell_loop(
-      on_runs(discretization.material_of_batch, run), force, temperature);
+    discretization.matrix_free.cell_loop(on_runs(discretization, run),
+                                         force,
+                                         temperature);
   }
 
 
@@ -261,8 +264,7 @@ namespace Voussoir
       if (!vector->has_ghost_elements())
         vector->update_ghost_values();
     double sum = 0.;
-    for_each_run(discretization.matrix_free,
-                 discretization.material_of_batch,
+    for_each_run(discretization,
                  0,
                  discretization.matrix_free.n_cell_batches(),
                  [&](const unsigned int material, const CellRange &cells) {
@@ -322,8 +324,11 @@ namespace Voussoir
                                      const AlignedVector<Lanes> &masses) const
   {
     const unsigned int material = discretization.material_of_batch[batch];
-    return kernels[material]->element_eigenvalues(discretization.matrix_free,
-                                                  batch,
+    return kernels[material]->element_eigenvalues({discretization.matrix_free,
+                                                   batch,
+                                                   batch + 1,
+                                                   discretization.has_one_point(
+                                                     material)},
                                                   factors[material],
                                                   masses);
   }

@@ -13,7 +13,7 @@ namespace Voussoir
       return;
     const auto &matrix_free = discretization.matrix_free;
     Points      found;
-    found.per_cell = matrix_free.get_quadrature().size();
+    found.per_cell = discretization.points(material).size();
     found.slot_of_batch.assign(matrix_free.n_cell_batches(),
                                numbers::invalid_unsigned_int);
     found.item_of_cell.assign(

@@ -13,9 +13,8 @@ namespace Voussoir
     history                   = model.material_memory.of(number);
     if (history == nullptr)
       return;
-    place = history->place_of(cell);
-    const auto &points =
-      model.discretization.matrix_free.get_quadrature().get_points();
+    place              = history->place_of(cell);
+    const auto &points = model.discretization.points(number).get_points();
     for (unsigned int i = 1; i < points.size(); ++i)
       // of equally near ones the first, whatever the round-off
       if (points[i].distance(unit) < points[q].distance(unit) - 1e-10)

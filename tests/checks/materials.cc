@@ -335,9 +335,9 @@ namespace Voussoir
         const Discretization &discretization = simulation.model.discretization;
         const auto           &fe             = discretization.fe;
         const Material       &material       = *simulation.model.materials[0];
-        const auto &points    = discretization.matrix_free.get_quadrature();
-        const bool  one_point = points.size() == 1;
-        FEValues<3> values(discretization.mapping,
+        const auto           &points         = discretization.points(0);
+        const bool            one_point      = points.size() == 1;
+        FEValues<3>           values(discretization.mapping,
                            fe,
                            one_point ? QGauss<3>(2) : points,
                            update_gradients | update_JxW_values);

@@ -11,6 +11,7 @@ namespace Voussoir
   {
     const Discretization::MatrixFree &matrix_free;
     unsigned int                      begin, end;
+    bool                              one_point; // of integration
   };
 
   /** A step of time as points with memory see it. */
@@ -118,13 +119,13 @@ namespace Voussoir
          const PointHistory     *history) const = 0;
 
     /**
-     * Largest eigenvalue of M^-1 K of each cell of a batch by itself [1/s2].
+     * Largest eigenvalue of M^-1 K of each cell by itself [1/s2].
+     * @param batch one batch of cells
      * @param masses lumped mass of the cell's nodes [kg], in the order of the
      *   dof values of one component
      */
     virtual Lanes
-    element_eigenvalues(const Discretization::MatrixFree   &matrix_free,
-                        const unsigned int                  batch,
+    element_eigenvalues(const CellRange                    &batch,
                         const StiffnessFactors             &factors,
                         const dealii::AlignedVector<Lanes> &masses) const = 0;
 

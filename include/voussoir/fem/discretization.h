@@ -5,6 +5,7 @@
 #include <voussoir/mesh/grid.h>
 
 #include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_q1.h>
@@ -27,6 +28,16 @@ namespace Voussoir
 
     void
     declare(dealii::ParameterHandler &prm);
+
+    /** Whether cells have one integration point, of a material with memory or
+     *  of one without. */
+    bool
+    one_point(const bool has_memory) const;
+
+    /** Cost of a cell of such a material relative to the others, to balance the
+     *  ranks. */
+    double
+    relative_cost(const bool has_memory) const;
   };
 
   /** A face set on which some displacement components are held at zero. */
@@ -54,12 +65,15 @@ namespace Voussoir
     /**
      * @param material_of_cell index of the material of each active cell; a SIMD
      *   batch holds cells of one material only
+     * @param has_memory whether the law of each material has a memory; those
+     *   beyond the list have none
      */
     Discretization(
       const Grid                                            &grid,
       const DiscretizationParameters                        &parameters,
       const std::vector<Support>                            &supports,
-      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell);
+      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
+      const std::vector<bool>                               &has_memory = {});
 
     const Grid        &grid;
     const unsigned int degree;
@@ -78,6 +92,14 @@ namespace Voussoir
 
     /** Material index of each cell batch of the matrix-free data. */
     std::vector<unsigned int> material_of_batch;
+
+    /** Whether the cells of a material have one integration point. */
+    bool
+    has_one_point(const unsigned int material) const;
+
+    /** Integration points of the cells of a material. */
+    const dealii::Quadrature<3> &
+    points(const unsigned int material) const;
 
     /**
      * Hanging nodes, these supports, and all nodes of the cells for which
@@ -147,6 +169,9 @@ namespace Voussoir
     number_by_nodes();
 
     std::vector<dealii::types::global_dof_index> first_dof_of_rank;
+
+    std::function<bool(const unsigned int)> one_point_of_material;
+    const dealii::QMidpoint<3>              centre;
   };
 
 

@@ -44,13 +44,6 @@ namespace Voussoir
   public:
     using MatrixFree = Discretization::MatrixFree;
 
-    /** Whether cells of this discretization have one integration point. */
-    static bool
-    serves(const MatrixFree &matrix_free)
-    {
-      return matrix_free.get_n_q_points() == 1;
-    }
-
     explicit OnePointCell(const MatrixFree &matrix_free)
       : nodes(matrix_free, 0, corner_quadrature)
       , dof_info(matrix_free.get_dof_info())

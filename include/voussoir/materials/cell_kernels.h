@@ -21,15 +21,15 @@ namespace Voussoir
     constexpr bool is_one_point =
       std::is_same_v<std::decay_t<Cell>, OnePointCell>;
 
-    /** Calls work(cell) with the kind of cells of the discretization. */
+    /** Calls work(cell) with the kind of these cells. */
     template <typename Work>
     void
-    with_cells(const Discretization::MatrixFree &matrix_free, const Work &work)
+    with_cells(const CellRange &cells, const Work &work)
     {
-      if (OnePointCell::serves(matrix_free))
-        work(OnePointCell(matrix_free));
+      if (cells.one_point)
+        work(OnePointCell(cells.matrix_free));
       else
-        work(Evaluation(matrix_free));
+        work(Evaluation(cells.matrix_free));
     }
 
     /** Full integration needs no more than the stress at its points. */
@@ -91,7 +91,7 @@ namespace Voussoir
               const Vector    *damping_memory,
               const double     damping_factor)
     {
-      with_cells(cells.matrix_free, [&](auto &&cell) {
+      with_cells(cells, [&](auto &&cell) {
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
           {
             cell.reinit(batch);
@@ -127,7 +127,7 @@ namespace Voussoir
       const auto               &matrix_free   = cells.matrix_free;
       const bool                damped =
         damping_memory != nullptr || &undamped != &displacement;
-      with_cells(matrix_free, [&](auto &&cell) {
+      with_cells(cells, [&](auto &&cell) {
         // damping does not reach into cracks
         std::decay_t<decltype(cell)> undamped_cell(matrix_free);
         auto                        &own = damped ? undamped_cell : cell;
@@ -189,7 +189,7 @@ namespace Voussoir
                      const Vector           &temperature)
     {
       const DampedResponse<Law> response(law, factors);
-      with_cells(cells.matrix_free, [&](auto &&cell) {
+      with_cells(cells, [&](auto &&cell) {
         std::decay_t<decltype(cell)> warmth(cells.matrix_free);
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
           {
@@ -226,7 +226,7 @@ namespace Voussoir
       const DampedResponse<Law> response(law, factors);
       const bool                from_static_state = u_static.size() > 0;
       double                    total             = 0.;
-      with_cells(cells.matrix_free, [&](auto &&cell) {
+      with_cells(cells, [&](auto &&cell) {
         std::decay_t<decltype(cell)> cell_static(cells.matrix_free);
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
           {
@@ -278,7 +278,7 @@ namespace Voussoir
                       Vector          &force,
                       const Vector    &temperature)
     {
-      with_cells(cells.matrix_free, [&](auto &&cell) {
+      with_cells(cells, [&](auto &&cell) {
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
           {
             cell.reinit(batch);
@@ -313,7 +313,7 @@ namespace Voussoir
     {
       const auto &matrix_free = cells.matrix_free;
       double      total       = 0.;
-      with_cells(matrix_free, [&](auto &&cell_u) {
+      with_cells(cells, [&](auto &&cell_u) {
         std::decay_t<decltype(cell_u)> cell_v(matrix_free);
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
           {
@@ -361,14 +361,13 @@ namespace Voussoir
     template <typename Law>
     Lanes
     element_eigenvalues(const Law                          &law,
-                        const Discretization::MatrixFree   &matrix_free,
-                        const unsigned int                  batch,
+                        const CellRange                    &batch,
                         const double                        stress_factor,
                         const dealii::AlignedVector<Lanes> &masses)
     {
       Lanes eigenvalue = 0.;
-      with_cells(matrix_free, [&](auto &&cell) {
-        cell.reinit(batch);
+      with_cells(batch, [&](auto &&cell) {
+        cell.reinit(batch.begin);
         const unsigned int           n = masses.size();
         dealii::AlignedVector<Lanes> mode(3 * n);
         for (unsigned int i = 0; i < 3 * n; ++i)

@@ -190,13 +190,14 @@ namespace Voussoir
 
     Lanes
     element_eigenvalues(
-      const Discretization::MatrixFree   &matrix_free,
-      const unsigned int                  batch,
+      const CellRange                    &batch,
       const StiffnessFactors             &factors,
       const dealii::AlignedVector<Lanes> &masses) const override
     {
-      return CellKernels::element_eigenvalues(
-        law, matrix_free, batch, factors.stress, masses);
+      return CellKernels::element_eigenvalues(law,
+                                              batch,
+                                              factors.stress,
+                                              masses);
     }
 
   private:

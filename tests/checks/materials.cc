@@ -1,5 +1,5 @@
 #include <voussoir/fem/nodal_values.h>
-#include <voussoir/materials/crack_normal.h>
+#include <voussoir/materials/crack_directions.h>
 #include <voussoir/materials/point_test.h>
 
 #include <deal.II/fe/fe_q.h>
@@ -376,10 +376,18 @@ namespace Voussoir
                                 [](const double number) {
                                   return number == 0.;
                                 }))
-                  band =
-                    width_across(cell,
-                                 discretization.crack_share,
-                                 crack_normal(material.stress(strains[q])));
+                  {
+                    const auto crack =
+                      crack_directions(material.stress(strains[q]));
+                    const double share = crack.share_of_tension;
+                    band =
+                      share * width_across(cell,
+                                           discretization.crack_share,
+                                           crack.tension) +
+                      (1. - share) * width_across(cell,
+                                                  discretization.crack_share,
+                                                  crack.compression);
+                  }
                 Tensor2 stress =
                   material.respond(strains[q], history.data(), {band, 1e300})
                     .stress;

@@ -2,7 +2,7 @@
 #define voussoir_materials_damped_response_h
 
 #include <voussoir/fem/cell_kernel.h>
-#include <voussoir/materials/crack_normal.h>
+#include <voussoir/materials/crack_directions.h>
 #include <voussoir/materials/law.h>
 
 namespace Voussoir
@@ -286,14 +286,16 @@ namespace Voussoir
         all_known = all_known && known[lane] > 0.;
       if (all_known)
         return;
-      const dealii::Tensor<1, 3, Lanes> normal =
-        crack_normal(law.stress(point.seen));
-      const Lanes zero = 0.;
+      const auto  crack = crack_directions(law.stress(point.seen));
+      const Lanes zero  = 0.;
       for (unsigned int d = 0; d < 3; ++d)
         point.normal[d] = compare_and_apply_mask<Comparison::equal>(
-          known, zero, normal[d], point.normal[d]);
-      point.band = compare_and_apply_mask<Comparison::equal>(
-        known, zero, bands.across(normal), known);
+          known, zero, crack.normal[d], point.normal[d]);
+      const Lanes share = crack.share_of_tension;
+      const Lanes band  = share * bands.across(crack.tension) +
+                         (1. - share) * bands.across(crack.compression);
+      point.band =
+        compare_and_apply_mask<Comparison::equal>(known, zero, band, known);
     }
 
     /** s of a crack that closes [Pa]; both stresses effective. */

@@ -29,7 +29,8 @@ namespace Voussoir
     void
     below(const std::string &name, const double value, const double limit);
 
-    /** value >= limit; prints both. */
+    /** value >= limit; prints the limit only: of a bound, today's digits are no
+     *  reference. */
     void
     above(const std::string &name, const double value, const double limit);
 

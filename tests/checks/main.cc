@@ -53,9 +53,11 @@ namespace Voussoir
                   const double       limit)
   {
     std::ostringstream text;
-    text << name << " = " << std::setprecision(3) << value << "  (at least "
-         << limit << ")";
-    say(text.str(), value >= limit);
+    text << name << " at least " << limit;
+    const bool good = value >= limit;
+    if (!good)
+      text << ": it is " << value;
+    say(text.str(), good);
   }
 
 

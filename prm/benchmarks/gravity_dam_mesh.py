@@ -1,19 +1,23 @@
 #!/usr/bin/env python3
-"""Meshes of a slice of Pine Flat Dam for pine_flat_*.prm, in the format of Gmsh.
+"""Meshes of a slice of Pine Flat or Koyna Dam, in the format of Gmsh.
 
-    python3 pine_flat_mesh.py FILE [--refine N] [--water LENGTH] [--rock EXTENT]
+    python3 gravity_dam_mesh.py FILE [--dam koyna] [--refine N] [--water LENGTH] [--rock EXTENT]
 
-The section is that of input/INPUT.TXT in the GitHub repository NiliAbtahi/
-Modern-Fortran-Finite-Element-Analysis-for-Dam-Reservoir-Foundation-system-.
+Pine Flat's section is that of input/INPUT.TXT in the GitHub repository NiliAbtahi/
+Modern-Fortran-Finite-Element-Analysis-for-Dam-Reservoir-Foundation-system-; Koyna's
+that of koyna.prm, with water up to the crest.
 Metres; y upstream from the heel, z up from the base.
 """
 import argparse
 
-# Elevation, distance of the upstream and the downstream face from the heel.
-SECTION = [(0, 0, 95.71), (91.44, 4.57, 24.38), (102.17, 5.11, 17.70), (106.68, 5.11, 15.64),
-           (112.41, 5.11, 14.86), (116.19, 5.11, 14.86), (121.92, 5.11, 14.86)]
-ROWS = [16, 2, 1, 1, 1, 1]  # of cells between these elevations
-WATER_ROWS = sum(ROWS[:-1])  # up to 116.19 m
+# Elevation, distance of the upstream and the downstream face from the heel; rows of
+# cells between these elevations; how many of these parts are under water.
+DAMS = {
+    "pine flat": ([(0, 0, 95.71), (91.44, 4.57, 24.38), (102.17, 5.11, 17.70),
+                   (106.68, 5.11, 15.64), (112.41, 5.11, 14.86), (116.19, 5.11, 14.86),
+                   (121.92, 5.11, 14.86)], [16, 2, 1, 1, 1, 1], 5),
+    "koyna": ([(0, 0, 70), (66.5, 0, 19.25), (103, 0, 14.8)], [12, 7], 2),
+}
 COLUMNS = 8  # of cells from face to face
 THICKNESS = 10  # of the slice
 SIDES = {"dam": "side", "rock": "rock side"}  # names of the faces across the slice
@@ -23,13 +27,13 @@ def between(a, b, part):
     return a + (b - a) * part
 
 
-def section(refine):
+def section(corners, numbers, refine):
     """Elevation and faces at each row of nodes."""
     rows = []
-    for low, high, cells in zip(SECTION, SECTION[1:], ROWS):
+    for low, high, cells in zip(corners, corners[1:], numbers):
         rows += [[between(a, b, k / (cells * refine)) for a, b in zip(low, high)]
                  for k in range(cells * refine)]
-    return rows + [list(SECTION[-1])]
+    return rows + [list(corners[-1])]
 
 
 def graded(length, first, growth):
@@ -90,25 +94,28 @@ class Mesh:
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("file", type=argparse.FileType("w"))
+    parser.add_argument("--dam", choices=DAMS, default="pine flat")
     parser.add_argument("--refine", type=int, default=1, help="cells per cell of the coarsest mesh")
     parser.add_argument("--water", type=float, default=0, help="length of the reservoir [m]")
     parser.add_argument("--rock", type=float, default=0, help="rock below, up- and downstream [m]")
     options = parser.parse_args()
 
     mesh = Mesh()
-    rows = section(options.refine)
+    corners, numbers, wet_parts = DAMS[options.dam]
+    rows = section(corners, numbers, options.refine)
     columns = [k / (COLUMNS * options.refine) for k in range(COLUMNS * options.refine + 1)]
     mesh.grid("dam", [[(-between(u, d, c), z) for c in columns] for z, u, d in rows],
               ["base", None, "upstream face", "downstream face"])
     away = graded(options.rock or options.water, 6 / options.refine, 1.06)
     if options.water:
         wet = [y for y in away if y < 1.01 * options.water][::-1]
+        wet_rows = rows[:sum(numbers[:wet_parts]) * options.refine + 1]
         mesh.grid("reservoir", [[(between(-u, wet[0], y / wet[0]), z) for y in wet]
-                                for z, u, _ in rows[:WATER_ROWS * options.refine + 1]],
+                                for z, u, _ in wet_rows],
                   ["reservoir bottom", "water surface", "reservoir end", None])
     if options.rock:
-        along = away[:0:-1] + [-SECTION[0][2] * c for c in columns] + \
-            [-SECTION[0][2] - y for y in away[1:]]
+        along = away[:0:-1] + [-corners[0][2] * c for c in columns] + \
+            [-corners[0][2] - y for y in away[1:]]
         mesh.grid("rock", [[(y, -z) for y in along] for z in away[::-1]],
                   ["bottom", None, "upstream end", "downstream end"])
     mesh.write(options.file)

@@ -8,7 +8,9 @@ namespace Voussoir
 
   namespace
   {
-    constexpr unsigned int max_steps = 300, max_updates = 300;
+    // Steps in which what is missing to the equilibrium has to halve: a crack
+    // that runs far takes several of them for each cell on its way.
+    constexpr unsigned int patience = 300, max_updates = 300;
 
     // of points that all hold together in the tangent: with nothing of it parts
     // that lie loose move away
@@ -80,7 +82,7 @@ namespace Voussoir
   {
     double accuracy = 0.01;
     for (unsigned int update = 0;
-         update < max_updates && effort.steps < max_steps && !effort.found;
+         update < max_updates && is_worth_it() && !effort.found;
          ++update)
       {
         find_residual();
@@ -94,8 +96,6 @@ namespace Voussoir
                        effort.contact.broken == 0;
         // less, or multipliers and displacements run after each other
         accuracy = std::clamp(0.2 * effort.contact.force, tolerance, accuracy);
-        if (since_report.wall_time() > report_interval)
-          say_progress();
       }
   }
 
@@ -108,10 +108,18 @@ namespace Voussoir
     constexpr unsigned int max_steps_of_update = 10;
     for (unsigned int steps = 0;
          effort.residual > (steps == 0 ? tolerance : accuracy) &&
-         (contact == nullptr || steps < max_steps_of_update) &&
-         effort.steps < max_steps;
+         (contact == nullptr || steps < max_steps_of_update) && is_worth_it();
          ++steps)
-      step();
+      {
+        step();
+        if (imbalance() < 0.5 * least_imbalance)
+          {
+            least_imbalance = imbalance();
+            last_gain       = effort.steps;
+          }
+        if (since_report.wall_time() > report_interval)
+          say_progress();
+      }
   }
 
 
@@ -184,10 +192,23 @@ namespace Voussoir
 
 
   double
+  EquilibriumSearch::imbalance() const
+  {
+    return std::max(effort.residual, 0.1 * effort.contact.force);
+  }
+
+
+  bool
+  EquilibriumSearch::is_worth_it() const
+  {
+    return effort.steps < last_gain + patience;
+  }
+
+
+  double
   EquilibriumSearch::share_done() const
   {
-    const double left =
-      std::max(effort.residual, 0.1 * effort.contact.force) / tolerance;
+    const double left = imbalance() / tolerance;
     return 1. - std::log(std::max(left, 1.)) / -std::log(tolerance);
   }
 

@@ -7,7 +7,7 @@ namespace Voussoir
   namespace
   {
     /**
-     * The static stages of a case with interfaces are found by multigrid, and
+     * The static stages of a case are found by multigrid, and
      * the supports bring what the loads are.
      */
     class FoundByMultigrid : public Check
@@ -41,6 +41,6 @@ namespace Voussoir
     };
 
     const Registry<Check>::Add<FoundByMultigrid>
-      registered("found by multigrid", "Static stages with interfaces.");
+      registered("found by multigrid", "Static stages.");
   } // namespace
 } // namespace Voussoir

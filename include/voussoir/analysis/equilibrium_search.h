@@ -74,6 +74,14 @@ namespace Voussoir
     void
     find_residual();
 
+    /** What is missing to the equilibrium, over the loads. */
+    double
+    imbalance() const;
+
+    /** Whether it has halved within the last steps. */
+    bool
+    is_worth_it() const;
+
     /** Of the way from forces that nothing bears, in powers of ten. */
     double
     share_done() const;
@@ -96,6 +104,8 @@ namespace Voussoir
     SecantSteps     secants;
     Vector          residual, change, taken;
     Effort          effort;
+    double          least_imbalance = std::numeric_limits<double>::max();
+    unsigned int    last_gain       = 0; // the step of it
     dealii::Timer   since_start, since_report;
   };
 } // namespace Voussoir

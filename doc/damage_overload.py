@@ -5,7 +5,8 @@ run of a study, in the section of the crown and on both faces.
 usage: doc/damage_overload.py STUDY NAME
 
 Writes NAME_crown.png and NAME_faces.png. STUDY is the output folder of
-prm/study_damage_overload.prm. Needs what voussoir-report needs.
+prm/study_damage_overload.prm, or one with a single run. Needs what voussoir-report
+needs.
 """
 
 import pathlib
@@ -71,7 +72,8 @@ def main():
     if not runs:
         sys.exit(f'"{study}" has no run that has ended.')
     states = [("at rest", dam_at(runs[0], 0))]
-    states += [(f"{factor_of(run):g}", dam_at(run, -1)) for run in runs]
+    states += [(f"{factor_of(run):g}" if len(runs) > 1 else f"{run.summary['end time [s]']:g} s",
+                dam_at(run, -1)) for run in runs]
     for kind, draw in (("crown", crown), ("faces", faces)):
         pathlib.Path(f"{name}_{kind}.png").write_bytes(draw(states).png)
 

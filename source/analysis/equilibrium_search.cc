@@ -127,12 +127,11 @@ namespace Voussoir
   EquilibriumSearch::step()
   {
     constexpr unsigned int max_looks = 12;
+    constexpr double       max_way = 16., accuracy = 0.1; // of the slope
 
-    // Of the linear equations and of the slope along the step: smaller ones
-    // cost more than they save, the more so if the elastic stiffness is not the
-    // tangent.
-    const double linear_tolerance = memory == nullptr ? 0.05 : 0.3,
-                 accuracy         = memory == nullptr ? 0.1 : 0.5;
+    // Smaller ones cost more than they save, the more so if the elastic
+    // stiffness is not the tangent.
+    const double linear_tolerance = memory == nullptr ? 0.05 : 0.3;
 
     if (contact != nullptr)
       contact->stiffen(effort.steps == 0 ? 1. : tied_share);
@@ -142,7 +141,8 @@ namespace Voussoir
       effort.iterations += solver.solve(step, part, linear_tolerance);
     });
 
-    // regula falsi, and now and then a half, as the slope has kinks
+    // To where the slope is gone: further than one step in what softens, then
+    // by regula falsi, and now and then by halves, as it has kinks.
     taken              = residual;
     const double slope = change * residual;
     double       below = 0., above = 0., slope_below = slope, slope_above = 0.;
@@ -158,11 +158,18 @@ namespace Voussoir
     };
     double now = look(1.);
     for (unsigned int looks = 1;
-         looks < max_looks && above > 0. && std::abs(now) > accuracy * slope;
+         looks < max_looks && (above > 0. || way < max_way) &&
+         std::abs(now) > accuracy * slope;
          ++looks)
-      now = look(looks % 3 == 0 ? 0.5 * (below + above) :
-                                  below + (above - below) * slope_below /
-                                            (slope_below - slope_above));
+      if (above == 0.)
+        now = look(
+          std::min(max_way,
+                   way * (now < 0.75 * slope ? slope / (slope - now) : 4.)));
+      else if (looks % 3 == 0)
+        now = look(0.5 * (below + above));
+      else
+        now = look(below +
+                   (above - below) * slope_below / (slope_below - slope_above));
     if (memory == nullptr)
       return; // the tangent of contact is known
     taken -= residual;

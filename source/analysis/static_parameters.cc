@@ -26,6 +26,14 @@ namespace Voussoir
       "angles to themselves (roller), or on the springs of the boundary. Their "
       "reactions stay when the faces begin to absorb.",
       Patterns::Selection("fixed|roller|springs"));
+    prm.add_parameter(
+      "Load increments",
+      increments,
+      "Least number of increments in which the loads of a stage grow where "
+      "materials crack or yield, and where there are interfaces; they are "
+      "halved where the materials ask for it. Cracks, plastic flow and slip "
+      "depend on the path; elastic materials without interfaces take one.",
+      Patterns::Integer(1, 1000));
     prm.add_parameter("Relative tolerance",
                       tolerance,
                       "Residual of the static equations over the load.",

@@ -70,12 +70,43 @@ namespace Voussoir
       void
       add_load(const std::string &name, Load &load, nlohmann::json &report);
 
+      /** What grows along a stage. */
+      struct LoadState
+      {
+        Vector loads, temperature;
+
+        /** On the straight way to another one; all of it without round-off. */
+        LoadState
+        grown_to(const LoadState &end, const double share) const;
+      };
+
+      /** Of the loads and the free thermal strain [N]. */
+      Vector
+      total_force(const LoadState &state) const;
+
       /** The linear equations, with the parts tied where they touch now. */
       void
       make_solver();
 
-      /** Equilibrium of materials that are elastic, or the state as it is once
-       *  they have cracked or yielded; returns the iterations or steps. */
+      /** Lets the loads grow along a stage; returns the iterations. */
+      unsigned int
+      follow_path(const LoadState &start, const LoadState &end);
+
+      /** Equilibrium with these loads; returns the iterations. */
+      unsigned int
+      find_equilibrium(const LoadState &load_state);
+
+      /** Difference of the forces of the materials at the end of an increment
+       *  between one step of the laws and two, over the loads.
+       *  @param before displacement, @p memory before the increment
+       *  @param middle, @p end of the increment */
+      double
+      error_of_return_mapping(const Vector    &before,
+                              MaterialMemory   memory,
+                              const LoadState &middle,
+                              const LoadState &end) const;
+
+      /** Equilibrium of elastic materials. */
       unsigned int
       find_elastic_equilibrium(const Vector &force);
 
@@ -87,13 +118,23 @@ namespace Voussoir
       search_equilibrium(const Vector &force, MaterialMemory *memory);
 
       /** Brings the memory of the materials to this state, and where they crack
-       *  or yield the state to equilibrium again; returns the iterations. */
+       *  or yield the state to equilibrium again; returns the iterations.
+       *  @param before contact at the beginning of the increment */
       unsigned int
-      crack_and_yield(const Vector &force);
+      crack_and_yield(const Vector                    &force,
+                      const std::vector<ContactPoint> &before);
 
-      /** By damped motion. */
+      /** The points of the interfaces as they are, or none. */
+      std::vector<ContactPoint>
+      contact_points() const;
+
+      /** By dynamic relaxation. */
       void
       come_to_rest(const Vector &force, MaterialMemory &memory);
+
+      /** Whether they have cracked or yielded since. */
+      bool
+      has_dissipated_more(const MaterialMemory &before) const;
 
       /** Whether materials have cracked or yielded on any rank. */
       bool
@@ -104,19 +145,22 @@ namespace Voussoir
                          const double       seconds,
                          nlohmann::json    &report) const;
 
-      const StaticModel              &model;
-      const StaticParameters         &parameters;
-      Log                            &log;
-      const InternalForce             internal_force; // with static moduli
-      const bool                      on_springs;
-      const AffineConstraints<double> constraints;
-      std::unique_ptr<ElasticSolver>  solver;
-      std::unique_ptr<Relaxation>     relaxation; // with contact or memory
-      Vector                          loads;      // so far [N]
-      std::vector<std::string>        stage;      // names of its loads
-      Vector                          before;     // displacement before it [m]
-      bool                            by_multigrid = true; // this stage
-      unsigned int                    damped_steps = 0;    // of this stage
+      const StaticModel                  &model;
+      const StaticParameters             &parameters;
+      Log                                &log;
+      const std::vector<const Material *> materials; // of the static state
+      const InternalForce                 internal_force;
+      const bool                          on_springs;
+      const AffineConstraints<double>     constraints;
+      std::unique_ptr<ElasticSolver>      solver;
+      std::unique_ptr<Relaxation>         relaxation; // with contact or memory
+      Vector                              loads;      // so far [N]
+      std::vector<std::string>            stage;      // names of its loads
+      Vector                              before; // displacement before it [m]
+      bool                                by_multigrid = true; // this stage
+      unsigned int                        damped_steps = 0;    // of this stage
+      unsigned int                        increments   = 0;    // of this stage
+      bool                                is_last      = true; // increment
     };
 
 
@@ -126,12 +170,16 @@ namespace Voussoir
       : model(model)
       , parameters(parameters)
       , log(log)
-      , internal_force(model.internal_force.with(
-          for_each_material(model.materials,
-                            [](const Material &material) {
-                              return StiffnessFactors{material.static_factor,
-                                                      material.static_factor};
-                            })))
+      , materials(for_each_material(model.materials,
+                                    [](const Material &material) {
+                                      return &material.at_rest();
+                                    }))
+      , internal_force(model.discretization,
+                       {materials.begin(), materials.end()},
+                       for_each_material(model.materials,
+                                         [](const Material &material) {
+                                           return material.static_factors();
+                                         }))
       , on_springs(parameters.supports == "springs")
       , constraints(model.discretization.make_constraints(
           on_springs ? model.boundaries.supports.list() :
@@ -162,7 +210,7 @@ namespace Voussoir
       solver =
         std::make_unique<ElasticSolver>(model.discretization,
                                         internal_force,
-                                        model.materials,
+                                        materials,
                                         model.material_of_cell,
                                         constraints,
                                         on_springs ? &model.terms : nullptr,
@@ -180,23 +228,20 @@ namespace Voussoir
       const Timer    clock;
       nlohmann::json report;
       by_multigrid = true;
-      damped_steps = 0;
+      damped_steps = increments = 0;
       if (!solver)
         make_solver();
+      const LoadState start{loads, state.temperature};
       for (const std::string &name : stage)
         add_load(name, *load_of.at(name), report);
-      Vector force = loads;
-      internal_force.add_thermal_force(force, state.temperature);
-
-      unsigned int iterations = find_elastic_equilibrium(force);
-      if (internal_force.has_memory())
-        iterations += crack_and_yield(force);
+      const LoadState    end{loads, state.temperature};
+      const unsigned int iterations = follow_path(start, end);
 
       // f(u) minus loads and contact is what the supports bring
       internal_force.respond(state.force,
                              state.displacement,
                              state.material_memory);
-      state.force -= force;
+      state.force -= total_force(end);
       if (model.contact != nullptr)
         model.contact->add_forces(-1., state.force);
       report_equilibrium(iterations, clock.wall_time(), report);
@@ -224,31 +269,166 @@ namespace Voussoir
     }
 
 
+    StaticStages::LoadState
+    StaticStages::LoadState::grown_to(const LoadState &end,
+                                      const double     share) const
+    {
+      LoadState result = end;
+      if (share < 1.)
+        {
+          result.loads.sadd(share, 1. - share, loads);
+          result.temperature.sadd(share, 1. - share, temperature);
+        }
+      return result;
+    }
+
+
+    Vector
+    StaticStages::total_force(const LoadState &load_state) const
+    {
+      Vector force = load_state.loads;
+      internal_force.add_thermal_force(force, load_state.temperature);
+      return force;
+    }
+
+
+    unsigned int
+    StaticStages::follow_path(const LoadState &start, const LoadState &end)
+    {
+      constexpr double tolerance = 1e-3, least_step = 1. / 64.;
+
+      // without interfaces the path does not matter while all is elastic
+      const double largest_step = 1. / parameters.increments;
+      double       step         = model.contact != nullptr ? largest_step : 1.;
+      unsigned int iterations   = 0;
+      for (double share = 0.; share < 1.;)
+        {
+          const double    next = share + step > 1. - 1e-9 ? 1. : share + step;
+          const LoadState goal = start.grown_to(end, next);
+          const Vector    displacement_before = state.displacement;
+          const auto      memory_before       = state.material_memory;
+          const auto      points_before       = contact_points();
+          is_last                             = next == 1.;
+          iterations += find_equilibrium(goal);
+
+          bool is_accepted = true;
+          if (has_dissipated_more(memory_before))
+            {
+              const double error =
+                step > largest_step ?
+                  1. :
+                  error_of_return_mapping(displacement_before,
+                                          memory_before,
+                                          start.grown_to(end,
+                                                         0.5 * (share + next)),
+                                          goal);
+              is_accepted = error <= tolerance || step <= least_step;
+              if (is_accepted && error > tolerance)
+                log.warn("in the stage \"",
+                         join(stage, ", "),
+                         "\" a load increment of ",
+                         100. * step,
+                         " % changes the forces of the materials by ",
+                         100. * error,
+                         " % of the loads against two of half its size; take "
+                         "more stages, or more \"Load increments\" in section "
+                         "\"Static state\"");
+            }
+          if (is_accepted)
+            {
+              share = next;
+              ++increments;
+              continue;
+            }
+          step               = step > largest_step ? largest_step : 0.5 * step;
+          state.displacement = displacement_before;
+          state.material_memory = memory_before;
+          if (model.contact != nullptr)
+            model.contact->set_points(points_before);
+        }
+      return iterations;
+    }
+
+
+    unsigned int
+    StaticStages::find_equilibrium(const LoadState &load_state)
+    {
+      const Vector force      = total_force(load_state);
+      const auto   points     = contact_points();
+      unsigned int iterations = 0;
+      if (!dissipated(state.material_memory))
+        iterations += find_elastic_equilibrium(force);
+      if (internal_force.has_memory())
+        {
+          internal_force.set_thermal_strain(load_state.temperature,
+                                            state.material_memory);
+          iterations += crack_and_yield(force, points);
+          internal_force.respond(state.force,
+                                 state.displacement,
+                                 state.material_memory);
+        }
+      return iterations;
+    }
+
+
+    double
+    StaticStages::error_of_return_mapping(const Vector    &before,
+                                          MaterialMemory   memory,
+                                          const LoadState &middle,
+                                          const LoadState &end) const
+    {
+      Vector displacement = before;
+      displacement.sadd(0.5, 0.5, state.displacement);
+      Vector in_two(displacement), at_once(displacement);
+      internal_force.set_thermal_strain(middle.temperature, memory);
+      internal_force.respond(in_two, displacement, memory);
+      internal_force.set_thermal_strain(end.temperature, memory);
+      internal_force.respond(in_two, state.displacement, memory);
+
+      memory = state.material_memory;
+      internal_force.respond(at_once, state.displacement, memory);
+      in_two -= at_once;
+      constraints.set_zero(in_two);
+      const double size = total_force(end).l2_norm();
+      return size > 0. ? in_two.l2_norm() / size : 0.;
+    }
+
+
+    std::vector<ContactPoint>
+    StaticStages::contact_points() const
+    {
+      return model.contact != nullptr ? model.contact->points() :
+                                        std::vector<ContactPoint>();
+    }
+
+
     unsigned int
     StaticStages::find_elastic_equilibrium(const Vector &force)
     {
       if (model.contact != nullptr)
         return search_equilibrium(force, nullptr);
-      if (dissipated(state.material_memory)) // goes on from where it is
-        return 0;
       return solver->solve(state.displacement, force, parameters.tolerance);
     }
 
 
     unsigned int
-    StaticStages::crack_and_yield(const Vector &force)
+    StaticStages::crack_and_yield(const Vector                    &force,
+                                  const std::vector<ContactPoint> &before)
     {
-      internal_force.set_static_state(state.displacement,
-                                      state.temperature,
-                                      state.material_memory);
-      MaterialMemory tried = state.material_memory;
-      internal_force.respond(state.force, state.displacement, tried);
-      if (!dissipated(tried))
+      if (!dissipated(state.material_memory))
         {
-          state.material_memory = std::move(tried);
-          return 0;
+          MaterialMemory tried = state.material_memory;
+          internal_force.respond(state.force, state.displacement, tried);
+          if (!dissipated(tried))
+            {
+              state.material_memory = std::move(tried);
+              return 0;
+            }
+          log.line("  cracks or yields");
+          // interfaces start anew, as the path does
+          if (model.contact != nullptr)
+            model.contact->set_points(before);
         }
-      log.line("  cracks or yields");
       return search_equilibrium(force, &state.material_memory);
     }
 
@@ -303,10 +483,19 @@ namespace Voussoir
         text << "; not found, so by damped motion";
       log.line(text.str());
       MaterialMemory none;
-      if (model.contact != nullptr || !effort.found)
+      if ((model.contact != nullptr && is_last) || !effort.found)
         come_to_rest(force, memory == nullptr ? none : *memory);
       by_multigrid = by_multigrid && effort.found;
       return effort.iterations;
+    }
+
+
+    bool
+    StaticStages::has_dissipated_more(const MaterialMemory &before) const
+    {
+      return Utilities::MPI::max(state.material_memory.losses().material -
+                                   before.losses().material,
+                                 model.discretization.grid.communicator()) > 0.;
     }
 
 
@@ -331,7 +520,11 @@ namespace Voussoir
            << "; reactions " << meganewtons(reactions)
            << ", largest displacement " << 1e3 * largest << " mm";
       log.line(text.str());
-      report["iterations"]               = iterations;
+      report["iterations"]      = iterations;
+      report["load increments"] = increments;
+      report["dissipated by materials [J]"] =
+        Utilities::MPI::sum(state.material_memory.losses().material,
+                            model.discretization.grid.communicator());
       report["found by multigrid"]       = by_multigrid;
       report["steps of damped motion"]   = damped_steps;
       report["sum of loads so far [N]"]  = to_json(resultant(loads));
@@ -370,6 +563,7 @@ namespace Voussoir
     InitialState state = apply_stages(model, parameters, loads, log, summary);
 
     // the same state in the dynamic model
+    model.internal_force.hand_over(state.material_memory);
     model.internal_force.set_static_state(state.displacement,
                                           state.temperature,
                                           state.material_memory);

@@ -353,6 +353,13 @@ namespace Voussoir
   }
 
 
+  void
+  Contact::set_points(const std::vector<ContactPoint> &points)
+  {
+    solver->points = points;
+  }
+
+
   const std::vector<Point<3>> &
   Contact::positions() const
   {

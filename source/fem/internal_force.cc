@@ -210,6 +210,56 @@ namespace Voussoir
   }
 
 
+  template <typename Work>
+  void
+  InternalForce::for_each_history(MaterialMemory &memory,
+                                  const Work     &work) const
+  {
+    for_each_run(discretization,
+                 0,
+                 discretization.matrix_free.n_cell_batches(),
+                 [&](const unsigned int material, const CellRange &cells) {
+                   if (PointHistory *history = memory.of(material))
+                     work(*kernels[material],
+                          cells,
+                          *history,
+                          factors[material]);
+                 });
+  }
+
+
+  void
+  InternalForce::set_thermal_strain(const Vector   &temperature,
+                                    MaterialMemory &memory) const
+  {
+    temperature.update_ghost_values();
+    for (unsigned int m = 0; m < kernels.size(); ++m)
+      if (PointHistory *history = memory.of(m))
+        history->make_static_strains();
+    for_each_history(memory,
+                     [&](const CellKernel &kernel,
+                         const CellRange  &cells,
+                         PointHistory     &history,
+                         const StiffnessFactors &) {
+                       kernel.set_thermal_strain(cells, history, temperature);
+                     });
+    temperature.zero_out_ghost_values();
+  }
+
+
+  void
+  InternalForce::hand_over(MaterialMemory &memory) const
+  {
+    for_each_history(memory,
+                     [](const CellKernel &kernel,
+                        const CellRange  &cells,
+                        PointHistory     &history,
+                        const StiffnessFactors &) {
+                       kernel.hand_over(cells, history);
+                     });
+  }
+
+
   void
   InternalForce::set_static_state(const Vector   &displacement,
                                   const Vector   &temperature,
@@ -222,17 +272,14 @@ namespace Voussoir
     for (unsigned int m = 0; m < kernels.size(); ++m)
       if (PointHistory *history = memory.of(m))
         history->make_static_strains();
-    for_each_run(discretization,
-                 0,
-                 discretization.matrix_free.n_cell_batches(),
-                 [&](const unsigned int material, const CellRange &cells) {
-                   if (PointHistory *history = memory.of(material))
-                     kernels[material]->set_static_state(cells,
-                                                         factors[material],
-                                                         *history,
-                                                         displacement,
-                                                         temperature);
-                 });
+    for_each_history(memory,
+                     [&](const CellKernel       &kernel,
+                         const CellRange        &cells,
+                         PointHistory           &history,
+                         const StiffnessFactors &factors) {
+                       kernel.set_static_state(
+                         cells, factors, history, displacement, temperature);
+                     });
     displacement.zero_out_ghost_values();
     temperature.zero_out_ghost_values();
   }

@@ -117,6 +117,12 @@ namespace Voussoir
                                      irreversible_crushing);
       }
 
+      void
+      set_static(const double factor)
+      {
+        SplitDamage::set_static(factor, strength_increase);
+      }
+
       std::vector<SofteningCurve::Node>
       increased(std::vector<SofteningCurve::Node> nodes) const
       {

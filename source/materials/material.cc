@@ -59,6 +59,14 @@ namespace Voussoir
   }
 
 
+  StiffnessFactors
+  Material::static_factors() const
+  {
+    const double factor = n_history() > 0 ? 1. : static_factor;
+    return {factor, factor};
+  }
+
+
   SymmetricTensor3<double>
   Material::strain_of_law(const SymmetricTensor3<double> &strain,
                           const SymmetricTensor3<double> &initial_strain,

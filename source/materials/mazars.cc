@@ -64,6 +64,29 @@ namespace Voussoir
                     "raise B or lower A.");
       }
 
+      void
+      set_static(const double factor)
+      {
+        IsotropicElasticity::set_static(factor);
+        tension = tension.of_static_state(young_modulus);
+      }
+
+      /** Stress and inelastic strain stay, as in SplitDamage. */
+      SymmetricTensor3<double>
+      hand_over(const SymmetricTensor3<double> &strain,
+                const PointResponse<double>    &response,
+                double                         *history,
+                const double,
+                const double static_factor) const
+      {
+        const double damage = history[1],
+                     growth = 1. - damage + damage / static_factor;
+        history[0] *= static_factor * growth;
+        history[1] = damage / static_factor / growth;
+        return strain +
+               (1. - 1. / static_factor) * this->strain(response.stress);
+      }
+
       template <typename Number>
       Number
       load_level(const SymmetricTensor3<Number> &stress,

@@ -43,6 +43,57 @@ namespace Voussoir
   }
 
 
+  SofteningCurve
+  SofteningCurve::of_static_state(const double static_modulus,
+                                  const double strength_increase) const
+  {
+    std::vector<Node> static_nodes = nodes;
+    for (Node &node : static_nodes)
+      node.stress /= strength_increase;
+    SofteningCurve result(static_nodes,
+                          static_modulus,
+                          irreversible_share,
+                          1. - 1. / stretch);
+    result.is_followed_exactly = true;
+    return result;
+  }
+
+
+  void
+  SofteningCurve::hand_over(const double damage,
+                            const double elastic_strain,
+                            const double band,
+                            CurveMemory &memory) const
+  {
+    const OfBand curve   = of_band(band);
+    const double modulus = (1. - damage) * young_modulus;
+    unsigned int node    = 1;
+    while (node < nodes.size() &&
+           curve.on_piece(node, curve.strain(node)).damage(young_modulus) <
+             damage)
+      ++node;
+    const double before = curve.strain(node - 1);
+    const Point  start  = curve.on_piece(node, before);
+    if (node < nodes.size())
+      {
+        // sigma = (1 - d) E e, both linear on the piece
+        const double after = curve.strain(node);
+        const Point  end   = curve.on_piece(node, after);
+        const double way   = (start.stress - modulus * start.elastic) /
+                           (modulus * (end.elastic - start.elastic) -
+                            (end.stress - start.stress));
+        memory.position = before + way * (after - before);
+      }
+    else
+      // where the stress stays, the elastic strain grows in proportion
+      memory.position = before + std::max(0., elastic_strain - start.elastic) /
+                                   (1. - irreversible_share);
+    memory.largest = memory.position;
+    memory.last    = elastic_strain;
+    memory.damage  = damage;
+  }
+
+
   double
   SofteningCurve::straightness(const double band) const
   {
@@ -151,8 +202,11 @@ namespace Voussoir
     double used = 0.;
     for (;; ++node)
       {
-        const double end =
+        double end =
           node < nodes.size() ? curve.strain(node) : position + 10. + strain;
+        const bool arrives = is_followed_exactly && end >= memory.largest;
+        if (arrives)
+          end = memory.largest;
         const Point  far     = curve.on_piece(node, end);
         const double ds      = far.stress - now.stress,
                      de      = far.elastic - now.elastic,
@@ -162,7 +216,7 @@ namespace Voussoir
                                0.5 * now.stress * (last - flowed);
         const double rate =
           0.5 * (now.stress * (de + dp) - ds * (now.elastic - last + flowed));
-        if (rate > missing || node == nodes.size())
+        if (!is_followed_exactly && (rate > missing || node == nodes.size()))
           {
             // no energy is left where there is no stress
             const double way =
@@ -175,6 +229,8 @@ namespace Voussoir
                 0.5 * (now.stress + far.stress) * dp;
         position = end;
         now      = far;
+        if (arrives)
+          break;
       }
     memory.position    = position;
     const double flow  = now.irreversible - old.irreversible;
@@ -182,10 +238,12 @@ namespace Voussoir
     memory.last        = after;
     progress.effective = after / strain;
     progress.intact    = now.stress / (young_modulus * after);
-    progress.dissipation =
-      0.5 * (last_stress * strain - now.stress * last + now.stress * flow) /
-      (0.5 * young_modulus * after * after);
-    memory.damage = 1. - progress.intact;
+    const double lost =
+      is_followed_exactly ?
+        used :
+        0.5 * (last_stress * strain - now.stress * last + now.stress * flow);
+    progress.dissipation = lost / (0.5 * young_modulus * after * after);
+    memory.damage        = 1. - progress.intact;
     return progress;
   }
 

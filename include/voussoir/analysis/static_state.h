@@ -18,11 +18,12 @@ namespace Voussoir
   /** The entries of the section "Static state". */
   struct StaticParameters
   {
-    std::string stages;
-    std::string supports  = "fixed";
-    double      tolerance = 1e-8;
-    double      rest      = 1e-6;
-    std::string kept      = "static_states"; // folder
+    std::string  stages;
+    std::string  supports   = "fixed";
+    unsigned int increments = 4; // of a stage that depends on its path
+    double       tolerance  = 1e-8;
+    double       rest       = 1e-6;
+    std::string  kept       = "static_states"; // folder
 
     /** Loads that are not active. */
     std::vector<std::string> left_out;
@@ -61,13 +62,17 @@ namespace Voussoir
    * here only included, so that without an earthquake nothing moves. Forces of
    * contact are no part of it, as the run finds them by itself.
    *
-   * Each stage is solved with elastic materials first, by multigrid, with
-   * interfaces in Newton steps. Where materials crack or yield under that
-   * state, equilibrium is searched again with them (see EquilibriumSearch).
-   * Where that fails, it is found by damped motion, which also looks whether a
-   * state with interfaces is at rest. From then on a model without interfaces
-   * goes on from the cracked state. An interface is grouted at the end of the
-   * stage that names its load.
+   * A stage of elastic materials without interfaces is linear and solved at
+   * once, by multigrid. Where materials crack or yield under its loads, and
+   * where there are interfaces, the loads and the temperature grow in
+   * increments, as cracks, plastic flow and slip depend on the path. In each of
+   * them equilibrium is found with elastic materials first, interfaces in
+   * Newton steps, and searched again with materials that crack or yield in it
+   * (see EquilibriumSearch). Where that fails, it is found by dynamic
+   * relaxation, which at the end of a stage also looks whether a state with
+   * interfaces is at rest. An increment is halved while the return mapping of
+   * the materials differs between one step and two. An interface is grouted at
+   * the end of the stage that names its load.
    *
    * Throws LostEquilibrium if no equilibrium is found.
    *

@@ -95,6 +95,10 @@ namespace Voussoir
     const std::vector<ContactPoint> &
     points() const;
 
+    /** Takes the points back to an earlier state. */
+    void
+    set_points(const std::vector<ContactPoint> &points);
+
     const std::vector<dealii::Point<3>> &
     positions() const;
 

@@ -65,11 +65,24 @@ namespace Voussoir
                  PointHistory           &history,
                  const PointStep        &step) const = 0;
 
+    /** Lets the history know the temperature T [K] of each node in the static
+     *  state: the strain offset e_0 = - alpha T I. */
+    virtual void
+    set_thermal_strain(const CellRange &cells,
+                       PointHistory    &history,
+                       const Vector    &temperature) const = 0;
+
+    /** Takes the points that have left the elastic range over from the material
+     *  of the static state; see LawDefaults::hand_over. */
+    virtual void
+    hand_over(const CellRange &cells, PointHistory &history) const = 0;
+
     /**
      * Lets the history know the static displacement u_s [m] and the temperature
-     * T [K] of each node: the strain offset e_0, with which the law sees a (B
-     * u_s - alpha T I) for the static factor a of the material, and the elastic
-     * strain e_s, see DampedResponse.
+     * T [K] of each node: the strain offset e_0, with which an elastic point
+     * has the strain a (B u_s - alpha T I) for the static factor a of the
+     * material and another one that of `hand_over`, and the elastic strain e_s;
+     * see DampedResponse.
      */
     virtual void
     set_static_state(const CellRange        &cells,

@@ -84,6 +84,16 @@ namespace Voussoir
             const Vector   &displacement,
             MaterialMemory &memory) const;
 
+    /** Lets the memory know the temperature of a load increment of the static
+     *  state; see CellKernel::set_thermal_strain. */
+    void
+    set_thermal_strain(const Vector &temperature, MaterialMemory &memory) const;
+
+    /** Takes the memory over from the materials of the static state; see
+     *  CellKernel::hand_over. */
+    void
+    hand_over(MaterialMemory &memory) const;
+
     /** Lets the memory know the static state; see CellKernel::set_static_state.
      *  Without a static stage the vectors are empty. */
     void
@@ -125,6 +135,12 @@ namespace Voussoir
                         const dealii::AlignedVector<Lanes> &masses) const;
 
   private:
+    /** Calls work(kernel, cells, history, factors) for the cells of all
+     *  materials with a memory. */
+    template <typename Work>
+    void
+    for_each_history(MaterialMemory &memory, const Work &work) const;
+
     /** Sum over all ranks of what @p evaluate gives for the runs of batches of
      *  one material. */
     double

@@ -176,6 +176,46 @@ namespace Voussoir
     }
 
 
+    /** CellKernel::set_thermal_strain. */
+    template <typename Law>
+    void
+    set_thermal_strain(const Law &,
+                       const CellRange &cells,
+                       const double     expansion,
+                       PointHistory    &history,
+                       const Vector    &temperature)
+    {
+      with_cells(cells, [&](auto &&cell) {
+        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+          {
+            cell.reinit(batch);
+            cell.gather_evaluate(temperature, dealii::EvaluationFlags::values);
+            for (const unsigned int q : cell.quadrature_point_indices())
+              for (unsigned int d = 0; d < 3; ++d)
+                history.strain_offset(batch, q)[d][d] =
+                  -expansion * cell.get_value(q)[d];
+          }
+      });
+    }
+
+
+    /** CellKernel::hand_over. */
+    template <typename Law>
+    void
+    hand_over(const Law       &law,
+              const Law       &static_law,
+              const CellRange &cells,
+              const double     static_factor,
+              PointHistory    &history)
+    {
+      const DampedResponse<Law> response(law, {});
+      for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+        for (unsigned int q = 0; q < history.n_points(); ++q)
+          if (history.is_active(batch, q))
+            response.hand_over(static_law, static_factor, batch, q, history);
+    }
+
+
     /** CellKernel::set_static_state. */
     template <typename Law>
     void

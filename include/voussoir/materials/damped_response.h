@@ -167,7 +167,44 @@ namespace Voussoir
     }
 
     /**
-     * Sets e_0 and e_s of a point, with the static factor a,
+     * Takes a point over from the law of the static state: its stress stays,
+     * and `seen` becomes the strain at which this law has it.
+     */
+    void
+    hand_over(const Law         &static_law,
+              const double       static_factor,
+              const unsigned int batch,
+              const unsigned int q,
+              PointHistory      &history) const
+    {
+      ActivePoint &point  = history.active_point(batch, q);
+      Lanes       *values = history.values(batch, q);
+      for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+        {
+          const double band = point.band[lane];
+          if (band == 0.)
+            continue;
+          SymmetricTensor3<double>           seen;
+          std::array<double, Law::n_history> numbers, copy;
+          for (unsigned int i = 0; i < 6; ++i)
+            seen.access_raw_entry(i) = point.seen.access_raw_entry(i)[lane];
+          for (unsigned int i = 0; i < Law::n_history; ++i)
+            numbers[i] = copy[i] = values[i][lane];
+          const auto response = static_law.respond(
+            seen,
+            copy.data(),
+            PointSituation<double>{band, std::numeric_limits<double>::max()});
+          seen =
+            law.hand_over(seen, response, numbers.data(), band, static_factor);
+          for (unsigned int i = 0; i < 6; ++i)
+            point.seen.access_raw_entry(i)[lane] = seen.access_raw_entry(i);
+          for (unsigned int i = 0; i < Law::n_history; ++i)
+            values[i][lane] = numbers[i];
+        }
+    }
+
+    /**
+     * Sets e_0 and e_s of a point, with the static factor a of an elastic one,
      *   e_0 = (a - m) B u_s - a alpha T I ,   e_s = B u_s - e_p .
      *
      * @param strain      B u_s
@@ -191,18 +228,29 @@ namespace Voussoir
       elastic       = strain;
       if (!history.is_active(batch, q))
         return;
-      ActivePoint                      &point = history.active_point(batch, q);
+      ActivePoint &point = history.active_point(batch, q);
+      for (unsigned int i = 0; i < 6; ++i)
+        {
+          auto       &of_point = offset.access_raw_entry(i);
+          auto       &seen     = point.seen.access_raw_entry(i);
+          const Lanes own      = m * strain.access_raw_entry(i);
+          using Comparison     = dealii::SIMDComparison;
+          of_point = dealii::compare_and_apply_mask<Comparison::equal>(
+            point.band, Lanes(0.), of_point, seen - own);
+          seen = own + of_point;
+        }
       std::array<Lanes, Law::n_history> copy;
       std::copy_n(history.values(batch, q), Law::n_history, copy.begin());
       point.strain = strain;
-      point.seen   = m * strain + offset;
       const auto response =
         law.respond(point.seen,
                     copy.data(),
                     PointSituation<Lanes>{band_of(point, history, batch), 0.});
-      point.stress  = response.stress;
-      point.plastic = point.seen - response.elastic_strain;
-      point.impact  = 0.;
+      point.stress      = response.stress;
+      point.plastic     = point.seen - response.elastic_strain;
+      const auto square = response.damping_share * response.damping_share;
+      point.share       = square * square;
+      point.impact      = 0.;
       elastic -= point.plastic;
     }
 

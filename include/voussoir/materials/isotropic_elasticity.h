@@ -15,6 +15,12 @@ namespace Voussoir
     void
     declare_parameters(dealii::ParameterHandler &prm);
 
+    void
+    set_static(const double factor)
+    {
+      young_modulus *= factor;
+    }
+
     double
     shear_modulus() const // G [Pa]
     {

@@ -10,6 +10,9 @@
 
 namespace Voussoir
 {
+  template <typename Number>
+  struct PointResponse;
+
   /**
    * The contract of a stress law: all that somebody who adds one must know. A
    * law is a struct without mesh, clock and ranks, in one file of its own with
@@ -45,6 +48,14 @@ namespace Voussoir
    *
    * which answers the strain e [1] that the point has come to and lets its
    * history go one step on. Where the answer is elastic, it must be `stress`.
+   * It also has, most of them from IsotropicElasticity,
+   *
+   *     void set_static(const double factor);
+   *
+   * which makes it, once checked, the law of the static state: with its modulus
+   * times the static factor, and strengths without the increase of an
+   * earthquake.
+   *
    * What LawDefaults has, a law need not have itself.
    */
   struct LawDefaults
@@ -76,6 +87,25 @@ namespace Voussoir
     {
       return 2.;
     }
+
+    /**
+     * Takes a point over from the law of the static state, under which it has
+     * left the elastic range: changes the numbers of its history where they
+     * depend on the modulus, and returns the strain e at which this law has the
+     * same stress with them. By default plastic strains stay, and the elastic
+     * one follows the modulus.
+     *
+     * @param strain         e of the law of the static state [1]
+     * @param response       of that law
+     * @param element_length as in PointSituation [m]
+     * @param static_factor  modulus of that law over that of this one
+     */
+    SymmetricTensor3<double>
+    hand_over(const SymmetricTensor3<double> &strain,
+              const PointResponse<double>    &response,
+              double * /*history*/,
+              const double /*element_length*/,
+              const double static_factor) const;
 
     /** What the history tells the user, with units; words that several laws
      *  share make one picture. */
@@ -137,6 +167,17 @@ namespace Voussoir
     /** Plastic strain of this step [1]. */
     SymmetricTensor3<Number> plastic_increment = SymmetricTensor3<Number>();
   };
+
+
+  inline SymmetricTensor3<double>
+  LawDefaults::hand_over(const SymmetricTensor3<double> &strain,
+                         const PointResponse<double>    &response,
+                         double *,
+                         const double,
+                         const double static_factor) const
+  {
+    return strain - (1. - static_factor) * response.elastic_strain;
+  }
 } // namespace Voussoir
 
 #endif

@@ -65,6 +65,16 @@ namespace Voussoir
     double
     inertial_density() const;
 
+    /** The material of the static state: with its modulus times the static
+     *  factor and its strengths without the increase of an earthquake, if the
+     *  law has a memory; else itself. */
+    virtual const Material &
+    at_rest() const = 0;
+
+    /** Factors of that material in the static state. */
+    StiffnessFactors
+    static_factors() const;
+
     /** Elastic stress at a point by itself [Pa]. */
     virtual SymmetricTensor3<double>
     stress(const SymmetricTensor3<double> &strain) const = 0;

@@ -23,6 +23,21 @@ namespace Voussoir
     {
       Material::check(place);
       law.check(place);
+      if constexpr (has_memory)
+        {
+          auto of_static_state           = std::make_shared<MaterialOf>(*this);
+          of_static_state->static_factor = 1.;
+          of_static_state->law.set_static(static_factor);
+          static_material = of_static_state;
+        }
+    }
+
+    const Material &
+    at_rest() const override
+    {
+      if constexpr (has_memory)
+        return *static_material;
+      return *this;
     }
 
     ElasticConstants
@@ -80,7 +95,17 @@ namespace Voussoir
     std::string
     remark(const double element_length) const override
     {
-      return law.remark(element_length);
+      std::string text = law.remark(element_length);
+      if constexpr (has_memory)
+        {
+          const std::string at_rest =
+            static_material->law.remark(element_length);
+          if (!at_rest.empty() && at_rest != text)
+            text += (text.empty() ? "in the static state " :
+                                    " In the static state ") +
+                    at_rest;
+        }
+      return text;
     }
 
     unsigned int
@@ -105,7 +130,7 @@ namespace Voussoir
                              damping);
     }
 
-    // only laws with memory are asked for the next three
+    // only laws with memory are asked for the next five
 
     void
     add_response(const CellRange        &cells,
@@ -128,6 +153,24 @@ namespace Voussoir
                                   undamped,
                                   history,
                                   step);
+    }
+
+    void
+    set_thermal_strain(const CellRange &cells,
+                       PointHistory    &history,
+                       const Vector    &temperature) const override
+    {
+      if constexpr (has_memory)
+        CellKernels::set_thermal_strain(
+          law, cells, expansion, history, temperature);
+    }
+
+    void
+    hand_over(const CellRange &cells, PointHistory &history) const override
+    {
+      if constexpr (has_memory)
+        CellKernels::hand_over(
+          law, static_material->law, cells, static_factor, history);
     }
 
     void
@@ -203,7 +246,8 @@ namespace Voussoir
   private:
     static constexpr bool has_memory = Law::n_history > 0;
 
-    Law law;
+    Law                               law;
+    std::shared_ptr<const MaterialOf> static_material; // of a law with memory
   };
 } // namespace Voussoir
 

@@ -87,6 +87,33 @@ namespace Voussoir
                    const double             irreversible_share,
                    const double             relief = 0.);
 
+    /**
+     * That of the static state, with the same traction over the opening except
+     * for the increase of strength in an earthquake. Its points follow the
+     * curve exactly instead of by the rule of `go_on`, since a load increment
+     * is no time step: one increment leads to where ten do.
+     *
+     * @param static_modulus [Pa]
+     * @param strength_increase factor that the stresses have in an earthquake
+     */
+    SofteningCurve
+    of_static_state(const double static_modulus,
+                    const double strength_increase = 1.) const;
+
+    /**
+     * Continues on this curve the memory of a point of another one: at the same
+     * damage, so that stress and opening stay as they are whatever the strength
+     * of this curve is.
+     *
+     * @param damage of the point, with the modulus of this curve
+     * @param elastic_strain effective, of now [1]
+     */
+    void
+    hand_over(const double damage,
+              const double elastic_strain,
+              const double band,
+              CurveMemory &memory) const;
+
     /** At an effective strain s/E [1] in a band of this width [m]; elastic
      * below the limit. */
     Point
@@ -98,7 +125,8 @@ namespace Voussoir
      * that the trapezoidal rule of the time step takes,
      *   (s_a e_b - s_b e_a)/2 + (s_a + s_b) (p_b - p_a)/2 ,
      * with the elastic strain e and the irreversible p: then a crack takes its
-     * energy whatever the steps are, and makes none.
+     * energy whatever the steps are, and makes none. In the static state it
+     * goes to the strain itself.
      *
      * @param equivalent_stress effective stress of a uniaxial test [Pa]
      * @param band width of the band [m]
@@ -213,6 +241,7 @@ namespace Voussoir
     double            straight = 0.; // displacement over loss of stress [m/Pa]
     double            widest_of_curve = 0., widest = 0.;
     double            inverse_limit = 0., half_inverse_widest = 0.;
+    bool              is_followed_exactly = false;
   };
 
   /** Entries of the laws that crack in tension. */

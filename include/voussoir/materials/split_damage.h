@@ -34,6 +34,48 @@ namespace Voussoir
       TensileCrack::declare_parameters(prm);
     }
 
+    void
+    set_static(const double factor, const double strength_increase = 1.)
+    {
+      IsotropicElasticity::set_static(factor);
+      tension = tension.of_static_state(young_modulus, strength_increase);
+      compression =
+        compression.of_static_state(young_modulus, strength_increase);
+    }
+
+    /**
+     * Stress and inelastic strain e - C^-1 : sigma stay, and so do the openings
+     * of cracks. With the static factor a, the effective stress of each part is
+     * then 1 - d + d/a times what it was, and its damage
+     *   d' = (d/a) / (1 - d + d/a) .
+     */
+    SymmetricTensor3<double>
+    hand_over(const SymmetricTensor3<double> &strain,
+              const PointResponse<double>    &response,
+              double                         *history,
+              const double                    element_length,
+              const double                    static_factor) const
+    {
+      for (const unsigned int sign : {0, 1})
+        {
+          double *numbers = history + n_of_curve * sign;
+          if (numbers[0] == 0.)
+            continue;
+          const double d      = damage_of(history, sign),
+                       growth = 1. - d + d / static_factor;
+          CurveMemory memory{};
+          curve(sign).hand_over(d / static_factor / growth,
+                                numbers[2] * static_factor * growth,
+                                element_length,
+                                memory);
+          numbers[0] = memory.largest;
+          numbers[1] = memory.position;
+          numbers[2] = memory.last;
+          numbers[3] = memory.damage;
+        }
+      return strain + (1. - 1. / static_factor) * this->strain(response.stress);
+    }
+
     std::string
     remark(const double element_length) const
     {

@@ -30,9 +30,9 @@ namespace Voussoir
       "Load increments",
       increments,
       "Least number of increments in which the loads of a stage grow where "
-      "materials crack or yield, and where there are interfaces; they are "
-      "halved where the materials ask for it. Cracks, plastic flow and slip "
-      "depend on the path; elastic materials without interfaces take one.",
+      "materials crack or yield in it, as cracks and plastic flow depend on "
+      "the path; they are halved where the materials ask for it. Stages "
+      "without cracks and yielding take one.",
       Patterns::Integer(1, 1000));
     prm.add_parameter("Relative tolerance",
                       tolerance,

@@ -297,9 +297,9 @@ namespace Voussoir
     {
       constexpr double tolerance = 1e-3, least_step = 1. / 64.;
 
-      // without interfaces the path does not matter while all is elastic
+      // at once, unless materials crack or yield
       const double largest_step = 1. / parameters.increments;
-      double       step         = model.contact != nullptr ? largest_step : 1.;
+      double       step         = 1.;
       unsigned int iterations   = 0;
       for (double share = 0.; share < 1.;)
         {

@@ -62,17 +62,15 @@ namespace Voussoir
    * here only included, so that without an earthquake nothing moves. Forces of
    * contact are no part of it, as the run finds them by itself.
    *
-   * A stage of elastic materials without interfaces is linear and solved at
-   * once, by multigrid. Where materials crack or yield under its loads, and
-   * where there are interfaces, the loads and the temperature grow in
-   * increments, as cracks, plastic flow and slip depend on the path. In each of
-   * them equilibrium is found with elastic materials first, interfaces in
-   * Newton steps, and searched again with materials that crack or yield in it
-   * (see EquilibriumSearch). Where that fails, it is found by dynamic
-   * relaxation, which at the end of a stage also looks whether a state with
-   * interfaces is at rest. An increment is halved while the return mapping of
-   * the materials differs between one step and two. An interface is grouted at
-   * the end of the stage that names its load.
+   * Each stage is solved at once with elastic materials first, by multigrid,
+   * with interfaces in Newton steps. Where materials crack or yield under its
+   * loads, these and the temperature grow in increments, as cracks and plastic
+   * flow depend on the path, and equilibrium is searched with the materials
+   * (see EquilibriumSearch). Where that fails, it is found by damped motion,
+   * which at the end of a stage also looks whether a state with interfaces is
+   * at rest. An increment is halved while the return mapping of the materials
+   * differs between one step and two. An interface is grouted at the end of the
+   * stage that names its load.
    *
    * Throws LostEquilibrium if no equilibrium is found.
    *

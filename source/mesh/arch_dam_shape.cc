@@ -403,7 +403,7 @@ namespace Voussoir
       }
 
     // Integrate the tangent over the turn.
-    static const QGauss<1> quadrature(16);
+    const QGauss<1> quadrature(16);
     line                = crest(end);
     const double start  = line.angle;
     const double beyond = s - end;

@@ -64,10 +64,9 @@ namespace Voussoir
         for (const std::string &quantity : {since_static_state, since_grouting})
           if (wants(quantity))
             {
-              Vector       &displacement = since[quantity] = state.displacement;
-              const Vector &origin = origin_of(quantity, model->initial);
-              if (origin.size() > 0)
-                displacement -= origin;
+              Vector &displacement = since[quantity] = state.displacement;
+              if (const Vector *origin = origin_of(quantity, model->initial))
+                displacement -= *origin;
               std::string name = quantity;
               std::replace(name.begin(), name.end(), ' ', '_');
               nodal.push_back({&displacement, {name}});

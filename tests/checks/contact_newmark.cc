@@ -155,6 +155,7 @@ namespace Voussoir
       unsigned int cycles = 3;
     };
 
+    // Reference: other program
     const Registry<Check>::Add<Newmark>
       registered("contact newmark", "A block that slides on a shaken plane.");
   } // namespace

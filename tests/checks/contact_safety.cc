@@ -81,6 +81,7 @@ namespace Voussoir
       double weight = 1., area = 1.;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Safety>
       registered("contact safety", "Sliding safety of a block at rest.");
   } // namespace

@@ -118,6 +118,7 @@ namespace Voussoir
       Tensor<1, 2> heads{{1., 0.}}, drains{{0.25, 0.5}};
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Uplift>
       registered("contact uplift", "Water pressure under a block.");
   } // namespace

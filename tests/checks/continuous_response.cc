@@ -78,6 +78,7 @@ namespace Voussoir
       double pressed = 0., stretched = 0.;
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<ContinuousResponse>
       registered("continuous response",
                  "Stress of concrete that is pressed and stretched.");

@@ -73,6 +73,7 @@ namespace Voussoir
       double       crack_energy = 0., tolerance = 0.01;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<CrackBar>
       registered("crack bar", "A bar with a weak layer of cells.");
   } // namespace

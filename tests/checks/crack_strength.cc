@@ -94,6 +94,7 @@ namespace Voussoir
       double strength = 2e6;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<CrackStrength>
       registered("crack strength", "One strength at all rates and dampings.");
   } // namespace

@@ -82,6 +82,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<EnergyAccounted>
       registered("energy accounted", "Energy balance of a driven model.");
   } // namespace

@@ -402,6 +402,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<Materials>
       registered("materials", "What must hold for all materials.");
   } // namespace

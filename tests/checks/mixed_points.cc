@@ -134,6 +134,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<MixedPoints>
       registered("mixed points",
                  "One integration point where elastic, eight elsewhere.");

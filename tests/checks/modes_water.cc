@@ -99,6 +99,7 @@ namespace Voussoir
       double tolerance = 0.005;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<ModalWaterMass>
       registered_mass("modal water mass", "On a rigid wall.");
 
@@ -228,6 +229,7 @@ namespace Voussoir
       double length = 0., depth = 0., area = 1., tolerance = 1e-3;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<RodAndWater>
       registered_rod("modes of rod and water", "In closed form.");
 
@@ -273,6 +275,7 @@ namespace Voussoir
       double depth = 0., length = 0., tolerance = 1e-3;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<ChannelModes>
       registered_channel("channel modes", "Of water between rigid walls.");
   } // namespace

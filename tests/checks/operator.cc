@@ -127,6 +127,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: other program
     const Registry<Check>::Add<Operator>
       registered("operator", "Vectorised operator against a plain one.");
   } // namespace

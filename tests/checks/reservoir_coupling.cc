@@ -101,6 +101,7 @@ namespace Voussoir
     };
 
 
+    // Reference: closed form
     const Registry<Check>::Add<ReservoirCoupling>
       registered("reservoir coupling", "Energy of an elastic dam and water.");
   } // namespace

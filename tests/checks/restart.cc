@@ -415,6 +415,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<Restart>
       registered("restart", "Interrupted and continued runs.");
   } // namespace

@@ -88,6 +88,7 @@ namespace Voussoir
       double ratio = 0.2;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<RigidModes>
       registered("rigid modes", "No other motion without energy.");
   } // namespace

@@ -47,6 +47,7 @@ namespace Voussoir
       double   along = 0., upwards = 0., tolerance = 0.01;
     };
 
+    // Reference: other program
     const Registry<Check>::Add<StaticDisplacement>
       registered("static displacement", "Under loads, against known values.");
   } // namespace

@@ -203,6 +203,7 @@ namespace Voussoir
       double      tolerance = 1e-6, stress_tolerance = 1e-6;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Thermal>
       registered("thermal", "Expansion, held expansion, bending.");
   } // namespace

@@ -251,12 +251,16 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<FailingRun> failing("study with a failing run",
                                                    "One run that slides away.");
+    // Reference: closed form
     const Registry<Check>::Add<StudyStatistics>
       statistics("study statistics", "Mean and spread over varied entries.");
+    // Reference: closed form
     const Registry<Check>::Add<StudyLimit>
       limit("study limit", "A limit that is known in closed form.");
+    // Reference: closed form
     const Registry<Check>::Add<StudyOfColumns>
       columns("study of columns", "Crossed values, and a study resumed.");
   } // namespace

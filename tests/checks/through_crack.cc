@@ -53,6 +53,7 @@ namespace Voussoir
       const std::string folder = "through_crack";
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<ThroughCrack>
       registered("through crack", "A crack from face to face, and none.");
   } // namespace

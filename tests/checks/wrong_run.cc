@@ -99,6 +99,7 @@ namespace Voussoir
       double            expected = 0.;
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<WrongRun>
       registered("wrong run", "Energy from nowhere is said, or stops the run.");
   } // namespace

@@ -444,6 +444,12 @@ namespace Voussoir
                  ", largest step ",
                  reservoir->stable_step(),
                  " s");
+        if (reservoir->end && !reservoir->end->modes.frequencies.empty())
+          log.line("Far reservoir: ",
+                   reservoir->end->modes.frequencies.size(),
+                   " modes across the channel, waves travel along it above ",
+                   reservoir->end->modes.frequencies[0] / (2. * numbers::PI),
+                   " Hz");
       }
     check_source_point(log);
   }

@@ -94,6 +94,7 @@ namespace Voussoir
       }
     content.documents = {{"observers", nullptr},
                          {"free field", nullptr},
+                         {"radiating end", nullptr},
                          {"sums of ranks", nullptr}};
     return content;
   }
@@ -111,6 +112,8 @@ namespace Voussoir
       content.documents["observers"][name] = observer->save();
     if (earthquake.wave)
       content.documents["free field"] = earthquake.wave->save();
+    if (water && water->end)
+      content.documents["radiating end"] = water->end->save();
     std::vector<double> sums;
     for (const double *sum : sums_of_rank())
       sums.push_back(*sum);
@@ -185,6 +188,8 @@ namespace Voussoir
       observer->load(seen.at(name));
     if (earthquake.wave)
       earthquake.wave->load(content.documents["free field"]);
+    if (water && water->end)
+      water->end->load(content.documents["radiating end"]);
 
     // on as many ranks each takes its own, so that nothing rounds differently;
     // else the first one takes all

@@ -208,6 +208,7 @@ namespace Voussoir
     if (!generator && !reader.file.empty())
       reader.file = file.resolve(reader.file);
     warnings = unusual_values(prm);
+    find_water_of_uplift();
     check();
     // modes alone need no steps
     if (modes.number > 0 && !moves())
@@ -317,6 +318,20 @@ namespace Voussoir
       throw UserError("The earthquake of section \"Ground motion\" enters "
                       "through a rigid base, but \"Fixed\" in section "
                       "\"Boundaries\" names no face sets; name the base.");
+  }
+
+
+  void
+  Case::find_water_of_uplift()
+  {
+    std::string first;
+    for (const auto &stage : static_state.stage_names())
+      for (const std::string &name : stage)
+        if (first.empty() && file.given("Loads/" + name + "/Class") == "water")
+          first = name;
+    for (InterfaceParameters &interface : interfaces.list)
+      if (interface.uplift.given() && interface.uplift.comes_with.empty())
+        interface.uplift.comes_with = first;
   }
 
 

@@ -157,6 +157,11 @@ namespace Voussoir
     void
     declare();
 
+    /** Lets the uplift of interfaces come with the first load of water, where
+     *  the file does not say with which. */
+    void
+    find_water_of_uplift();
+
     void
     check() const;
   };

@@ -185,6 +185,8 @@ namespace Voussoir
         make_solver();
       for (const std::string &name : stage)
         add_load(name, *load_of.at(name), report);
+      if (model.contact != nullptr)
+        model.contact->let_water_in(stage);
       Vector force = loads;
       internal_force.add_thermal_force(force, state.temperature);
 

@@ -290,10 +290,10 @@ namespace Voussoir
 
 
     std::unique_ptr<const Contact>
-    make_contact(const Discretization       &discretization,
-                 const InterfacesParameters &interfaces,
-                 Log                        &log)
+    make_contact(const Model &model, Log &log)
     {
+      const Discretization       &discretization = model.discretization;
+      const InterfacesParameters &interfaces     = model.parameters.interfaces;
       if (interfaces.list.empty())
         return nullptr;
       for (const InterfaceParameters &interface : interfaces.list)
@@ -308,7 +308,13 @@ namespace Voussoir
                         "\"Upstream level\"" + section,
                         log);
           }
-      return std::make_unique<const Contact>(discretization, interfaces);
+      auto contact = std::make_unique<Contact>(discretization, interfaces);
+      contact->set_delay(discretization, [&](const Grid::Cell &cell) {
+        return model.materials[model.material_of(cell)]
+          ->elastic_constants()
+          .s_wave_speed();
+      });
+      return contact;
     }
   } // namespace
 
@@ -374,7 +380,7 @@ namespace Voussoir
                                                  reservoir,
                                                  log))
     , constraints(prepared_constraints(*this))
-    , contact(make_contact(discretization, parameters.interfaces, log))
+    , contact(make_contact(*this, log))
   {
     for (const std::string &warning : parameters.warnings)
       log.warn(warning);

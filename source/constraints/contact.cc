@@ -106,8 +106,7 @@ namespace Voussoir
     const Discretization                            &discretization,
     const std::function<double(const Grid::Cell &)> &wave_speed)
   {
-    // 2 leave some chatter under a friction of 0.8; nothing changes beyond 4
-    // (tests/contact/dragged_bar.prm)
+    // 2 leave some chatter where friction is above 0.7 (see doc/theory.md)
     constexpr double cells = 4.;
 
     // sums and numbers of them at the nodes of the surfaces

@@ -118,7 +118,7 @@ namespace Voussoir
         discretization.grid.for_each_face(
           side, [&](const auto &cell, const unsigned int) {
             const double length =
-              cell->diameter() / std::sqrt(3.) / discretization.degree;
+              cell->minimum_vertex_distance() / discretization.degree;
             for (const types::global_dof_index node :
                  discretization.cell_nodes(discretization.dof_cell(cell)))
               {

@@ -292,6 +292,8 @@ namespace Voussoir
     last_good.displacement = state.displacement;
     last_good.velocity     = state.velocity;
     last_good.time         = state.time;
+    if (!model.internal_force.has_memory())
+      last_good.memory = state.memory; // for the stress
   }
 
 
@@ -366,7 +368,8 @@ namespace Voussoir
           write_fields(observed,
                        {{&last_good.displacement, {"displacement"}},
                         {&last_good.velocity, {"velocity"}}},
-                       &last_good.displacement,
+                       // cracks have gone on since
+                       model.internal_force.has_memory() ? nullptr : &last_good,
                        "last_good",
                        last_good.time);
         if (!picture.empty())
@@ -379,6 +382,6 @@ namespace Voussoir
          << written
          << ". The time step may be too large for the model: take a smaller "
             "\"Safety factor\" in section \"Time\".";
-    throw UserError(text.str());
+    throw RunStopped(text.str());
   }
 } // namespace Voussoir

@@ -151,6 +151,8 @@ namespace Voussoir
     return {model.discretization,
             model.materials,
             model.material_of_cell(),
+            model.internal_force,
+            damping,
             memory,
             initial,
             water.get(),

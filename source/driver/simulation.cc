@@ -120,19 +120,19 @@ namespace Voussoir
         write_fields(observed,
                      {{&lost.before, {"displacement"}},
                       {&lost.moved, {"displacement when it was given up"}}},
-                     &lost.before,
+                     nullptr,
                      "last_good",
                      0.);
       write_summary(folder.path(),
                     setup.summary(log.communicator()),
                     std::string("stopped: ") + lost.what(),
                     log);
-      throw UserError(std::string(lost.what()) +
-                      (picture.empty() ?
-                         "" :
-                         " The state before this stage and the "
-                         "motion from there are in " +
-                           folder.path() + "/" + picture + "."));
+      throw RunStopped(std::string(lost.what()) +
+                       (picture.empty() ?
+                          "" :
+                          " The state before this stage and the "
+                          "motion from there are in " +
+                            folder.path() + "/" + picture + "."));
     }
 
 

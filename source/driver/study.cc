@@ -212,11 +212,20 @@ namespace Voussoir
     gather();
     write_tables();
     if (std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome &run) {
-          return ended_early(run.summary);
+          return was_stopped(run.summary) || has_failed(run.summary);
         }))
       throw UserError("None of the runs of the study in \"" + folder +
                       "\" came to its end; the first one " +
                       verdict_of(outcomes.at(0).summary) + ".");
+    const auto failed =
+      std::count_if(outcomes.begin(), outcomes.end(), [](const Outcome &run) {
+        return has_failed(run.summary);
+      });
+    if (failed > 0)
+      throw UserError(counted(failed, "run", "runs") + " of the study in \"" +
+                      folder +
+                      "\" failed, see study.csv; mend what its verdict names "
+                      "and start the study again, which does only these.");
   }
 
 
@@ -255,7 +264,8 @@ namespace Voussoir
                       "\"--overwrite\".");
     nlohmann::json summary;
     const Timer    clock_of_run;
-    if (!options.overwrite && known.is_object() && known.contains("summary"))
+    if (!options.overwrite && known.is_object() && known.contains("summary") &&
+        !has_failed(known.at("summary")))
       {
         summary = known.at("summary");
         say(description(values) + ": taken, " + verdict_of(summary));
@@ -308,16 +318,24 @@ namespace Voussoir
         Simulation simulation(run, how, group);
         simulation.run.march();
       }
-    catch (const UserError &error)
+    catch (const RunStopped &stopped)
       {
         const nlohmann::json summary =
           read_json(run_folder + "/summary.json", group);
-        return summary.is_object() && ended_early(summary) ?
+        return summary.is_object() && was_stopped(summary) ?
                  summary :
                  nlohmann::json{
-                   {"verdict", std::string("stopped: ") + error.what()}};
+                   {"verdict", std::string("stopped: ") + stopped.what()}};
       }
-    return read_json(run_folder + "/summary.json", group);
+    catch (const UserError &error)
+      {
+        return {{"verdict", std::string("failed: ") + error.what()}};
+      }
+    const nlohmann::json summary =
+      read_json(run_folder + "/summary.json", group);
+    return summary.is_object() ?
+             summary :
+             nlohmann::json{{"verdict", "failed: it has left no summary.json"}};
   }
 
 
@@ -325,7 +343,15 @@ namespace Voussoir
   Study::is_met(StudyValues values, const double value)
   {
     values.emplace_back(parameters.varied_to_limit, number_text(value));
-    const nlohmann::json summary = outcome_of(values).summary;
+    const Outcome        outcome = outcome_of(values);
+    const nlohmann::json summary = outcome.summary;
+    const std::string    where =
+      "At " + parameters.varied_to_limit + " = " + number_text(value) + " ";
+    if (has_failed(summary))
+      throw UserError(where + "the run in \"" + outcome.folder + "\" " +
+                      verdict_of(summary) +
+                      ", which says nothing about the criterion of section "
+                      "\"Study/Limit\"; mend that and start the study again.");
     for (const Criterion &criterion : parameters.criteria())
       {
         const auto [number, met] = criterion.look(summary);
@@ -336,6 +362,13 @@ namespace Voussoir
             return true;
           }
       }
+    if (was_stopped(summary))
+      throw UserError(
+        where + "the run in \"" + outcome.folder + "\" was " +
+        verdict_of(summary) +
+        ", before the criterion of section \"Study/Limit\" was met; whether it "
+        "would have been nobody knows: add \"; stopped\" to it if that "
+        "counts as failure.");
     return false;
   }
 
@@ -428,7 +461,10 @@ namespace Voussoir
     std::map<std::string, std::string> files{{"/study.csv", table()},
                                              {"/study.json",
                                               all_results().dump(2) + '\n'}};
-    if (!parameters.spread.empty())
+    if (!parameters.spread.empty() &&
+        !std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome &run) {
+          return has_failed(run.summary);
+        }))
       files["/study_statistics.csv"] = statistics();
     for (const auto &[name, text] : files)
       if (const std::string reason = write_file(folder + name, text);
@@ -459,6 +495,9 @@ namespace Voussoir
           names.push_back(number.path);
         for (const Outcome &outcome : outcomes)
           {
+            // what failed is not beyond the others
+            if (has_failed(outcome.summary))
+              continue;
             samples.push_back({outcome.values, {}});
             for (const SummaryNumber &number : numbers)
               samples.back().quantities.push_back(number.in(outcome.summary));

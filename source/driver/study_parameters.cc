@@ -101,8 +101,10 @@ namespace Voussoir
       "Criterion",
       criterion,
       "What happens at the limit: \"PATH > VALUE\" or \"PATH < VALUE\" of a "
-      "number of summary.json, or \"stopped\", for a run or a static stage that "
-      "comes to no end; one of several, separated by semicolons, is enough.");
+      "number of summary.json, or \"stopped\", for a static stage that comes to "
+      "no equilibrium, or a run that is stopped for its energy; one of several, "
+      "separated by semicolons, is enough. A run that fails otherwise meets "
+      "nothing: it ends the search.");
     prm.add_parameter("Extend",
                       extend,
                       "Goes beyond From and To where the limit is not between "
@@ -202,7 +204,7 @@ namespace Voussoir
       "interfaces/blocks/*/smallest safety;"
       "over-stress/*/above 1/share at any time [%];"
       "over-stress/*/above 1/accumulated time [s];"
-      "through cracks/widest opening from face to face [mm];"
+      "through cracks/largest opening from face to face at one moment [mm];"
       "energy balance/lost to cracks and plastic flow [J]";
     std::vector<SummaryNumber> result;
     for (const std::string &path :

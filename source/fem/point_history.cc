@@ -87,6 +87,42 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    SymmetricTensor<2, 3>
+    lane_of(const SymmetricTensor3<Lanes> &tensor, const unsigned int lane)
+    {
+      SymmetricTensor<2, 3> one;
+      for (unsigned int c = 0; c < 6; ++c)
+        one.access_raw_entry(c) = tensor.access_raw_entry(c)[lane];
+      return one;
+    }
+  } // namespace
+
+
+  SymmetricTensor<2, 3>
+  PointHistory::stress(const Place &place, const unsigned int q) const
+  {
+    const ActivePoint &point = active_point(place.batch, q);
+    return lane_of(point.total_stress(), place.lane);
+  }
+
+
+  SymmetricTensor<2, 3>
+  PointHistory::inelastic_strain(const Place       &place,
+                                 const unsigned int q,
+                                 const double       young_modulus,
+                                 const double       poisson_ratio) const
+  {
+    const ActivePoint          &point  = active_point(place.batch, q);
+    const SymmetricTensor<2, 3> stress = lane_of(point.stress, place.lane);
+    return lane_of(point.seen, place.lane) -
+           1. / young_modulus *
+             ((1. + poisson_ratio) * stress -
+              poisson_ratio * trace(stress) * unit_symmetric_tensor<3>());
+  }
+
+
   std::vector<double>
   PointHistory::read(const Place &place, const unsigned int q) const
   {

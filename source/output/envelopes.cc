@@ -1,6 +1,8 @@
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/materials/cell_kernels.h>
 #include <voussoir/materials/principal_stress.h>
 #include <voussoir/output/field_writer.h>
+#include <voussoir/output/filtered_displacement.h>
 #include <voussoir/output/law_stress.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -32,6 +34,7 @@ namespace Voussoir
         : model(model)
         , matrix_free(model.discretization.matrix_free)
         , points(QTrapezoid<1>(), model.discretization.degree)
+        , filtered(model)
       {
         const auto &scalar = model.discretization.fe.base_element(0);
         const auto  order  = FETools::lexicographic_to_hierarchic_numbering<3>(
@@ -71,14 +74,17 @@ namespace Voussoir
       }
 
       void
-      update(const Vector &displacement, const double time)
+      update(const State &state)
       {
-        displacement.update_ghost_values();
+        filtered.update(state);
         Evaluation cells(matrix_free);
         for (Batch &batch : batches)
           {
             cells.reinit(batch.number);
-            cells.read_dof_values(displacement);
+            CellKernels::read_filtered(cells,
+                                       filtered.displacement(),
+                                       filtered.memory(),
+                                       batch.damping_factor);
             Lanes high = -std::numeric_limits<double>::max(), low = -high;
             for (unsigned int p = 0; p < points.size(); ++p)
               {
@@ -94,16 +100,15 @@ namespace Voussoir
                 if (!(high[lane] <= extremes[0]))
                   {
                     extremes[0] = high[lane];
-                    extremes[2] = time;
+                    extremes[2] = state.time;
                   }
                 if (!(low[lane] >= extremes[1]))
                   {
                     extremes[1] = low[lane];
-                    extremes[3] = time;
+                    extremes[3] = state.time;
                   }
               }
           }
-        displacement.zero_out_ghost_values();
       }
 
       /** Visits each cell that is looked at. */
@@ -132,7 +137,8 @@ namespace Voussoir
                           0.}});
         }
 
-        unsigned int                       number = 0;
+        unsigned int                       number         = 0;
+        double                             damping_factor = 1.;
         LaneSet                            watched;
         std::array<Tensor<1, 3, Lanes>, 8> vertices;
 
@@ -167,6 +173,9 @@ namespace Voussoir
         Batch batch;
         batch.number  = number;
         batch.watched = watched;
+        batch.damping_factor =
+          model.materials[model.discretization.material_of_batch[number]]
+            ->damping_factor();
         batch.laws.resize(points.size());
         for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
           {
@@ -229,6 +238,8 @@ namespace Voussoir
       std::vector<std::vector<double>>         shape_values;
       std::vector<std::vector<Tensor<1, 3>>>   shape_gradients;
       std::vector<std::array<Tensor<1, 3>, 8>> vertex_gradients;
+
+      FilteredDisplacement filtered;
 
       AlignedVector<Batch> batches;
     };
@@ -404,7 +415,7 @@ namespace Voussoir
         if (schedule.due(state.step + 1))
           previous = state.velocity;
         if (stress && stress_schedule.due(state.step))
-          stress->update(state.displacement, state.time);
+          stress->update(state);
       }
 
       void

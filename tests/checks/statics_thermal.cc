@@ -182,8 +182,8 @@ namespace Voussoir
               for (const unsigned int q : values.quadrature_point_indices())
                 {
                   const auto &material = *simulation.model.materials[0];
-                  const auto  stress   = material.stress(material.strain_of_law(
-                    strains[q], strains[q], temperatures[q][0]));
+                  const auto  stress = material.stress(material.elastic_strain(
+                    strains[q], strains[q], temperatures[q][0], 1.));
                   for (unsigned int i = 0; i < (body == "clamped bar" ? 1 : 6);
                        ++i)
                     {

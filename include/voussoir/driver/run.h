@@ -148,7 +148,7 @@ namespace Voussoir
     abort(const std::string &reason);
 
     Checkpoint          checkpoint;
-    State               last_good; // displacement, velocity and time alone
+    State               last_good; // without the memory of materials
     dealii::TimerOutput timer;
     dealii::Timer       clock, since_checkpoint, since_look, since_stop_file;
     unsigned long long  first_step = 0;

@@ -9,7 +9,7 @@ namespace Voussoir
    * What the loads before the earthquake have done. Displacements in a run are
    * totals, which begin with these; stresses begin with
    *   k D : (epsilon(u) - alpha T I)
-   * for the static factor k of the material (see Material::strain_of_law).
+   * for the static factor k of the material (see Material::elastic_strain).
    */
   struct InitialState
   {

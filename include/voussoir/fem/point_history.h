@@ -25,6 +25,14 @@ namespace Voussoir
     SymmetricTensor3<Lanes> stress;      // of the law [Pa]
     Lanes                   share  = 1.; // b [1]
     Lanes                   impact = 0.; // across a crack that closes [Pa]
+
+    /** The stress of the equation of motion [Pa]. */
+    SymmetricTensor3<Lanes>
+    total_stress() const
+    {
+      return stress +
+             impact * dealii::symmetrize(dealii::outer_product(normal, normal));
+    }
   };
 
 
@@ -174,6 +182,19 @@ namespace Voussoir
      *  elastic. */
     double
     band(const Place &place, const unsigned int q) const;
+
+    /** Total stress of one point of one cell at its last step [Pa], if it has
+     *  left the elastic range. */
+    dealii::SymmetricTensor<2, 3>
+    stress(const Place &place, const unsigned int q) const;
+
+    /** Strain e that the law of such a point has seen [1], less the elastic one
+     * of its stress, C^-1 : sigma. */
+    dealii::SymmetricTensor<2, 3>
+    inelastic_strain(const Place       &place,
+                     const unsigned int q,
+                     const double       young_modulus,
+                     const double       poisson_ratio) const;
 
     /** The numbers of one point of one cell. */
     std::vector<double>

@@ -163,7 +163,7 @@ namespace Voussoir
         history.active_point(batch, q) = now;
       else if (any_above(begins, 0.))
         history.activate(batch, q, now);
-      return total(now) - law.stress(of_law_alone);
+      return now.total_stress() - law.stress(of_law_alone);
     }
 
     /**
@@ -249,21 +249,12 @@ namespace Voussoir
         stress_then * (0.5 * elastic_then + point.seen - seen_then);
       const Lanes energy =
         of_law / (m + difference * point.share) +
-        0.5 * ((total(point) - stress_then) * (strain - point.strain));
+        0.5 * ((point.total_stress() - stress_then) * (strain - point.strain));
       return dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
         point.band, Lanes(0.), Lanes(0.), energy);
     }
 
   private:
-    static SymmetricTensor3<Lanes>
-    total(const ActivePoint &point)
-    {
-      return point.stress +
-             point.impact *
-               dealii::symmetrize(
-                 dealii::outer_product(point.normal, point.normal));
-    }
-
     /** Bands, of any normal where the point is elastic. */
     static Lanes
     band_of(const ActivePoint  &point,

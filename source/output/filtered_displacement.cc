@@ -1,7 +1,5 @@
 #include <voussoir/output/filtered_displacement.h>
 
-#include <numeric>
-
 namespace Voussoir
 {
   using namespace dealii;
@@ -23,8 +21,7 @@ namespace Voussoir
   FilteredDisplacement::FilteredDisplacement(const ObservedModel &model)
     : FilteredDisplacement(model, model.discretization.create_vector())
   {
-    nodes.resize(u.locally_owned_size() / 3);
-    std::iota(nodes.begin(), nodes.end(), 0);
+    add_range(0, u.locally_owned_size());
   }
 
 
@@ -34,16 +31,29 @@ namespace Voussoir
   {
     const auto &partitioner = *u.get_partitioner();
     // for this rank and for those whose ghosts they are
-    std::vector<bool> wanted(u.locally_owned_size() / 3, false);
+    std::vector<bool> wanted(u.locally_owned_size(), false);
     for (const auto index : needed)
       if (partitioner.in_local_range(index))
-        wanted[partitioner.global_to_local(index) / 3] = true;
+        wanted[partitioner.global_to_local(index)] = true;
     for (const auto &[begin, end] : partitioner.import_indices())
-      for (unsigned int i = begin; i < end; ++i)
-        wanted[i / 3] = true;
-    for (unsigned int node = 0; node < wanted.size(); ++node)
-      if (wanted[node])
-        nodes.push_back(node);
+      std::fill(wanted.begin() + begin, wanted.begin() + end, true);
+    for (auto begin = wanted.begin(); begin != wanted.end();)
+      {
+        begin          = std::find(begin, wanted.end(), true);
+        const auto end = std::find(begin, wanted.end(), false);
+        add_range(begin - wanted.begin(), end - wanted.begin());
+        begin = end;
+      }
+  }
+
+
+  void
+  FilteredDisplacement::add_range(const unsigned int begin,
+                                  const unsigned int end)
+  {
+    constexpr unsigned int length = 1024;
+    for (unsigned int first = begin; first < end; first += length)
+      ranges.emplace_back(first, std::min(first + length, end));
   }
 
 
@@ -65,26 +75,32 @@ namespace Voussoir
   {
     u.zero_out_ghost_values();
     w.zero_out_ghost_values();
-    const auto &[decay, gain] = maxwell;
-    std::vector<const double *> branches;
-    for (const Vector &branch : state.memory)
-      branches.push_back(branch.begin());
     const double *displacement = state.displacement.begin(),
-                 *velocity     = state.velocity.begin();
-    for (const unsigned int node : nodes)
-      for (unsigned int i = 3 * node; i < 3 * node + 3; ++i)
-        {
-          const double v      = velocity[i];
-          double       memory = damping.stiffness_coefficient * v;
-          for (unsigned int k = 0; k < branches.size(); ++k)
-            memory += decay[k] * branches[k][i] + gain[k] * v;
-          double &filtered = u.local_element(i);
-          filtered         = displacement[i] + damping.mesh_viscosity * v;
-          if (uniform)
-            filtered += factor * memory;
-          else
-            w.local_element(i) = memory;
-        }
+                 *v            = state.velocity.begin();
+    double      *filtered = u.begin(), *memory = uniform ? filtered : w.begin();
+    const double share     = uniform ? factor : 1.,
+                 viscosity = damping.mesh_viscosity,
+                 beta      = share * damping.stiffness_coefficient;
+    for (const auto &[begin, end] : ranges)
+      {
+        if (!uniform)
+          std::fill(memory + begin, memory + end, 0.);
+#pragma GCC ivdep
+        for (unsigned int i = begin; i < end; ++i)
+          filtered[i] = displacement[i] + viscosity * v[i];
+#pragma GCC ivdep
+        for (unsigned int i = begin; i < end; ++i)
+          memory[i] += beta * v[i];
+        for (unsigned int k = 0; k < state.memory.size(); ++k)
+          {
+            const double *branch = state.memory[k].begin();
+            const double  decay  = share * maxwell.decay[k],
+                         gain    = share * maxwell.gain[k];
+#pragma GCC ivdep
+            for (unsigned int i = begin; i < end; ++i)
+              memory[i] += decay * branch[i] + gain * v[i];
+          }
+      }
     u.update_ghost_values();
     if (!uniform)
       w.update_ghost_values();

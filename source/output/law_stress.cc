@@ -32,10 +32,7 @@ namespace Voussoir
     if (is_elastic(elastic))
       return elastic;
     std::vector<double> memory = history->read(place, q);
-    return material
-      ->respond(elastic_strain,
-                memory.data(),
-                {history->bands(place.batch).widest[place.lane], 0.})
+    return material->respond(elastic_strain, memory.data(), {widest_band(), 0.})
       .stress;
   }
 
@@ -54,9 +51,7 @@ namespace Voussoir
   {
     return history == nullptr ||
            (!is_active() &&
-            material->load_level(
-              elastic_stress, history->bands(place.batch).widest[place.lane]) <=
-              1.);
+            material->load_level(elastic_stress, widest_band()) <= 1.);
   }
 
 
@@ -64,6 +59,14 @@ namespace Voussoir
   LawStress::is_active() const
   {
     return history != nullptr && history->band(place, q) > 0.;
+  }
+
+
+  double
+  LawStress::widest_band() const
+  {
+    return history == nullptr ? 0. :
+                                history->bands(place.batch).widest[place.lane];
   }
 
 
@@ -115,11 +118,19 @@ namespace Voussoir
   LawStressLanes::set(const unsigned int lane, const LawStress &law)
   {
     const ElasticConstants elastic = law.law().elastic_constants();
-    laws[lane]                     = law;
-    lame_lambda[lane]              = elastic.lame_lambda();
-    shear_modulus[lane]            = elastic.shear_modulus();
-    stress_factor[lane]            = law.stress_factor();
-    damping_factor[lane]           = law.law().damping_factor();
+    const bool             is_first =
+      std::none_of(laws.begin(), laws.end(), [](const auto &one) {
+        return one.has_value();
+      });
+    common      = law.law().isotropic() && (is_first || common == &law.law()) ?
+                    &law.law() :
+                    nullptr;
+    laws[lane]  = law;
+    bands[lane] = law.widest_band();
+    lame_lambda[lane]    = elastic.lame_lambda();
+    shear_modulus[lane]  = elastic.shear_modulus();
+    stress_factor[lane]  = law.stress_factor();
+    damping_factor[lane] = law.law().damping_factor();
     all_are_elastic =
       all_are_elastic && law.law().isotropic() && law.is_always_elastic();
   }
@@ -149,9 +160,16 @@ namespace Voussoir
       result[d][d] += mean;
     if (all_are_elastic)
       return result;
+    const bool none_begins =
+      common != nullptr && !any_above(common->load_level(result, bands), 1.);
     for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-      if (laws[lane] && (!laws[lane]->law().isotropic() ||
-                         !laws[lane]->is_elastic(lane_of(result, lane))))
+      if (none_begins)
+        {
+          if (laws[lane] && laws[lane]->is_active())
+            set_lane(result, lane, (*laws[lane])(lane_of(of_law, lane)));
+        }
+      else if (laws[lane] && (!laws[lane]->law().isotropic() ||
+                              !laws[lane]->is_elastic(lane_of(result, lane))))
         set_lane(result, lane, (*laws[lane])(lane_of(of_law, lane)));
     return result;
   }

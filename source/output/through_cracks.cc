@@ -54,6 +54,13 @@ namespace Voussoir
     double
     widest_way(std::vector<CrackedEighth> eighths)
     {
+      const auto none = [&](const bool CrackedEighth::*at_face) {
+        return std::none_of(eighths.begin(),
+                            eighths.end(),
+                            [&](const auto &one) { return one.*at_face; });
+      };
+      if (none(&CrackedEighth::begins) || none(&CrackedEighth::ends))
+        return 0.;
       std::sort(eighths.begin(),
                 eighths.end(),
                 [](const auto &a, const auto &b) {

@@ -1,10 +1,9 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/file.h>
 
-#include <sys/resource.h>
-
 #include <filesystem>
 
+#include "limit_files.h"
 #include "same.h"
 #include "with_files.h"
 
@@ -15,17 +14,6 @@ namespace Voussoir
 
   namespace
   {
-    /** No file may grow beyond this, as if the disk were full. */
-    void
-    limit_files(const rlim_t bytes)
-    {
-      rlimit limit;
-      getrlimit(RLIMIT_FSIZE, &limit);
-      limit.rlim_cur = bytes;
-      setrlimit(RLIMIT_FSIZE, &limit);
-    }
-
-
     /** Lets files grow no further in a part of a run. */
     class FullDisk : public Observer
     {

@@ -81,6 +81,11 @@ namespace Voussoir
     load_level(const SymmetricTensor3<double> &elastic_stress,
                const double                    element_length) const = 0;
 
+    /** Of as many points as there are lanes. */
+    virtual Lanes
+    load_level(const SymmetricTensor3<Lanes> &elastic_stress,
+               const Lanes                   &element_length) const = 0;
+
     /**
      * Strain whose elastic stress D : e is that of the equation of motion,
      *   e = k (B (u + s w) - e_i) + a (e_i - alpha T I) .

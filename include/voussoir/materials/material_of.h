@@ -71,6 +71,16 @@ namespace Voussoir
         return 0.;
     }
 
+    Lanes
+    load_level(const SymmetricTensor3<Lanes> &elastic_stress,
+               const Lanes                   &element_length) const override
+    {
+      if constexpr (Law::n_history > 0)
+        return law.load_level(elastic_stress, element_length);
+      else
+        return 0.;
+    }
+
     std::vector<double>
     outputs(const double *history, const double element_length) const override
     {

@@ -48,12 +48,18 @@ namespace Voussoir
   private:
     FilteredDisplacement(const ObservedModel &model, Vector &&layout);
 
-    std::vector<unsigned int> nodes; // owned ones that are needed
-    const Damping            &damping;
-    const MaxwellStep         maxwell;
-    const bool                uniform; // damping factors
-    const double              factor;  // s if they are
-    Vector                    u, w;
+    /** Takes in the owned entries of these. */
+    void
+    add_range(const unsigned int begin, const unsigned int end);
+
+    // owned entries that are needed, in parts that stay in the cache
+    std::vector<std::pair<unsigned int, unsigned int>> ranges;
+
+    const Damping    &damping;
+    const MaxwellStep maxwell;
+    const bool        uniform; // damping factors
+    const double      factor;  // s if they are
+    Vector            u, w;
   };
 } // namespace Voussoir
 

@@ -46,11 +46,15 @@ namespace Voussoir
     double
     stress_factor() const;
 
-  private:
     /** Whether the nearest integration point has left the elastic range. */
     bool
     is_active() const;
 
+    /** Width of the widest crack band of the cell [m]; 0 for an elastic law. */
+    double
+    widest_band() const;
+
+  private:
     const Material     *material;
     const PointHistory *history; // or null
     double              k;
@@ -95,6 +99,10 @@ namespace Voussoir
     SymmetricTensor3<Lanes> offset;
 
     bool all_are_elastic = true; // under any strain
+
+    // of all lanes if it is the same isotropic one; and their widest bands [m]
+    const Material *common = nullptr;
+    Lanes           bands  = 1.;
   };
 } // namespace Voussoir
 

@@ -19,10 +19,14 @@ namespace Voussoir
     }
 
 
-    /** Opening of the crack of an active point at its last step, and the
-     * largest one, which has been found already [m]: of e_in = e - C^-1 : sigma
-     * the largest principal value, times the band. That of crushed concrete is
-     * no crack: it was not open before. */
+    /**
+     * Opening of the crack of an active point at its last step [m], and not
+     * more than the largest one, which has been found already: the largest
+     * principal value of e_in = e - C^-1 : sigma times the band, but not more
+     * than the strain across the crack, n . e . n. Where that is pressed it is
+     * closed, also if shear opens it along an inclined strut; and crushed
+     * concrete that swells is no crack.
+     */
     double
     opening_of(const Material            &material,
                const PointHistory        &history,
@@ -30,13 +34,23 @@ namespace Voussoir
                const unsigned int         q,
                const double               largest)
     {
-      const ElasticConstants elastic = material.elastic_constants();
-      const auto             strain  = history.inelastic_strain(place,
+      const ActivePoint &point  = history.active_point(place.batch, q);
+      const Lanes        across = point.normal * (point.seen * point.normal),
+                  traction      = point.normal * (point.stress * point.normal);
+      const ElasticConstants elastic       = material.elastic_constants();
+      const double           strain_across = across[place.lane];
+      if (!(strain_across > 0.) ||
+          traction[place.lane] < -1e-6 * elastic.young_modulus * strain_across)
+        return 0.;
+      const auto strain = history.inelastic_strain(place,
                                                    q,
                                                    elastic.young_modulus,
                                                    elastic.poisson_ratio);
-      return std::max(
-        0., std::min(largest, history.band(place, q) * eigenvalues(strain)[0]));
+      return std::max(0.,
+                      std::min(largest,
+                               history.band(place, q) *
+                                 std::min(strain_across,
+                                          eigenvalues(strain)[0])));
     }
 
 

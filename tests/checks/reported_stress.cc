@@ -254,34 +254,21 @@ namespace Voussoir
                                "Time/End time=" + end.str()}));
         const auto simulation = make_simulation(*parameters, communicator);
         Run       &run        = simulation->run;
-        Watch      faces("face stresses",
-                    {{"Face sets", "front, back"},
-                          {"Envelope interval", "1e-5"}},
-                    run);
         Watch      envelopes("envelopes", {{"Stress interval", "1e-5"}}, run);
-        faces.observe(run.state);
         envelopes.observe(run.state);
         while (run.state.step < run.n_steps())
           {
             run.scheme.step(run.state);
-            faces.observe(run.state);
             envelopes.observe(run.state);
           }
         std::ostringstream text;
         text << frequency << " Hz, static factor " << static_factor << ": ";
         const std::string name = text.str();
-        verdicts.near(name + "largest stress on the faces [MPa]",
-                      faces.finish(run.state).at(
-                        "largest cantilever stress [MPa]"),
+        verdicts.near(name + "largest stress of the cells that crack [MPa]",
+                      envelopes.finish(run.state).at("weak").at(
+                        "largest principal stress [MPa]"),
                       1.,
                       5e-3);
-        const auto of_cells = envelopes.finish(run.state);
-        for (const std::string material : {"weak", "sound"})
-          verdicts.near(name + "largest of the cells that are " + material,
-                        of_cells.at(material).at(
-                          "largest principal stress [MPa]"),
-                        1.,
-                        5e-3);
 
         std::vector<StressPoints::Place> places;
         for (const auto &cell : simulation->model.discretization.dof_handler
@@ -292,9 +279,9 @@ namespace Voussoir
         StressPoints points(run.observed, places);
         double       left = 0.;
         for (const auto &stress : points.evaluate(run.state))
-          keep_largest(left, 1e-6 * stress.norm());
+          keep_largest(left, 1e-6 * std::abs(stress[2][2]));
         left = Utilities::MPI::max(left, communicator);
-        verdicts.below(name + "stress of the open crack [MPa]", left, 0.01);
+        verdicts.below(name + "stress across the open crack [MPa]", left, 0.01);
       }
     };
 

@@ -104,18 +104,18 @@ namespace Voussoir
              table.numbers("largest openings ever from face to face [mm]"))
           keep_largest(ever, way);
         const auto found = read_summary(folder).at("through cracks");
-        verdicts.near("open from face to face at one moment, of all lines [mm]",
-                      now,
-                      0.,
-                      0.);
-        verdicts.near("  of the run [mm]",
-                      found.at(
-                        "largest opening from face to face at one moment [mm]"),
-                      0.,
-                      0.);
+        // struts beside the pressed end open by less
+        verdicts.below(
+          "open from face to face at one moment, of all lines [mm]",
+          now,
+          0.005);
+        verdicts.below(
+          "  of the run [mm]",
+          found.at("largest opening from face to face at one moment [mm]"),
+          0.005);
         verdicts.above("largest openings ever, of whatever moments [mm]",
                        ever,
-                       0.01);
+                       0.1);
         verdicts.above("  of the run [mm]",
                        found.at("largest openings ever from face to face [mm]"),
                        0.01);

@@ -134,14 +134,15 @@ namespace Voussoir
     prm.add_parameter(
       "Energy interval",
       energy_interval,
-      "Time between two lines of the energy balance, at which the run is also "
-      "checked for growth and NaN [s].",
-      Patterns::Double(1e-9));
+      "Time between two lines of the energy balance [s]; 0 for every 50 steps, "
+      "at which the run is always checked for growth and NaN, and the losses of "
+      "damping are summed up.",
+      Patterns::Double(0.));
     prm.add_parameter(
       "Energy limit",
       energy_limit,
-      "Energy that may come from nowhere before the run stops, over what came "
-      "in; from a hundredth on the run warns.",
+      "Energy-balance error at which the run stops, over what came in; from a "
+      "hundredth on the run warns.",
       Patterns::Double(0., 1.));
     prm.add_parameter(
       "Checkpoint interval",

@@ -39,12 +39,13 @@ namespace Voussoir
                                &a.loss_in_dashpots,
                                &a.work_of_base,
                                &a.work_of_projections,
-                               &a.loss_by_mass,
-                               &a.work_on_cells};
+                               &a.loss_by_mass};
     for (unsigned int m = 0; m < model.materials.size(); ++m)
       if (PointHistory *history = state.material_memory.of(m))
         sums.insert(sums.end(),
-                    {&history->losses.material, &history->losses.closing});
+                    {&history->losses.material,
+                     &history->losses.closing,
+                     &history->losses.damping});
     if (water)
       sums.push_back(&water->loss);
     if (contact)

@@ -180,6 +180,13 @@ namespace Voussoir
   }
 
 
+  double
+  Damping::branch_stiffness() const
+  {
+    return std::accumulate(coefficients.begin(), coefficients.end(), 0.);
+  }
+
+
   unsigned int
   Damping::n_branches() const
   {
@@ -190,8 +197,7 @@ namespace Voussoir
   double
   Damping::stiffening(const double dt) const
   {
-    return 2. * stiffness_coefficient / dt +
-           std::accumulate(coefficients.begin(), coefficients.end(), 0.);
+    return 2. * stiffness_coefficient / dt + branch_stiffness();
   }
 
 

@@ -39,6 +39,7 @@ namespace Voussoir
       }
     const std::size_t n_points = std::size_t(n_slots) * found.per_cell;
     numbers.resize(n_points * width);
+    imbalances.resize(n_points);
     active.resize(n_points, 0);
     points = std::make_shared<const Points>(std::move(found));
   }
@@ -111,12 +112,16 @@ namespace Voussoir
         trade(number);
         ++n;
       };
-      for (Lanes *number : {&point.band, &point.share, &point.impact})
+      for (Lanes *number :
+           {&point.band, &point.share, &point.impact, &point.filter_imbalance})
         trade_one(*number);
       for (unsigned int d = 0; d < 3; ++d)
         trade_one(point.normal[d]);
-      for (SymmetricTensor3<Lanes> *tensor :
-           {&point.strain, &point.seen, &point.plastic, &point.stress})
+      for (SymmetricTensor3<Lanes> *tensor : {&point.strain,
+                                              &point.seen,
+                                              &point.plastic,
+                                              &point.stress,
+                                              &point.filter})
         for (unsigned int i = 0; i < 6; ++i)
           trade_one(tensor->access_raw_entry(i));
       return n;
@@ -135,7 +140,8 @@ namespace Voussoir
   KeyedValues
   PointHistory::checkpoint_values()
   {
-    const unsigned int of_cell = n_points() * (n_numbers + n_of_active_point());
+    const unsigned int of_cell =
+      n_points() * (n_numbers + 1 + n_of_active_point());
     packed.assign(points->cells.size() * of_cell, 0.);
     exchange(false);
     KeyedValues values{of_cell, {}};
@@ -172,6 +178,7 @@ namespace Voussoir
           lane                     = place.second.lane;
           for (unsigned int i = 0; i < n_numbers; ++i)
             trade(values(batch, q)[i]);
+          trade(imbalance(batch, q));
           // points of batches that are elastic leave zeros
           const bool is_known = is_active(batch, q);
           const bool has_numbers =

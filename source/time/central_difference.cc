@@ -1,6 +1,7 @@
 #include <voussoir/fem/nodal_values.h>
 #include <voussoir/time/central_difference.h>
 
+#include <algorithm>
 #include <set>
 
 namespace Voussoir
@@ -19,6 +20,14 @@ namespace Voussoir
                    leap_frog)
     , mass_coefficient(equation.damping.mass_coefficient)
     , stiffness_coefficient(equation.damping.stiffness_coefficient)
+    , point_step{time_step,
+                 equation.closing_viscosity,
+                 equation.damping.branch_stiffness(),
+                 maxwell.decay.empty() ?
+                   1. :
+                   std::pow(*std::max_element(maxwell.decay.begin(),
+                                              maxwell.decay.end()),
+                            2)}
     , uniform(
         equation.internal_force.uniform_damping() ||
         (equation.damping.n_branches() == 0 && stiffness_coefficient == 0.))
@@ -103,7 +112,7 @@ namespace Voussoir
       uniform ? nullptr : &memory,
       state.displacement,
       state.material_memory,
-      {time_step, equation.closing_viscosity},
+      point_step,
       [&](const unsigned int begin, const unsigned int end) {
         update_memory(state, begin, end);
       },
@@ -117,35 +126,9 @@ namespace Voussoir
 
     // contact: u_(n+1) += dt^2 M^-1 R^T p
     project(state, base);
-    state.accounts.work_on_cells +=
-      half_work(state, 0, force.locally_owned_size());
 
     for (NodalLoad *load : equation.loads)
       load->end_step(state);
-  }
-
-
-  double
-  CentralDifference::half_work(const State       &state,
-                               const unsigned int begin,
-                               const unsigned int end) const
-  {
-    const double *v = state.velocity.begin(), *f = force.begin();
-    Lanes         sums = 0.;
-    unsigned int  i    = begin;
-    for (; i + Lanes::size() <= end; i += Lanes::size())
-      {
-        Lanes a, b;
-        a.load(f + i);
-        b.load(v + i);
-        sums += a * b;
-      }
-    double sum = 0.;
-    for (; i < end; ++i)
-      sum += f[i] * v[i];
-    for (const double part : sums)
-      sum += part;
-    return 0.5 * time_step * sum;
   }
 
 
@@ -282,7 +265,6 @@ namespace Voussoir
     double       *u       = state.displacement.begin();
     const double *f       = force.begin();
     const double *inverse = equation.mass.inverse.begin();
-    state.accounts.work_on_cells += half_work(state, begin, end);
 
     if (equation.base == nullptr && mass_coefficient == 0.)
       {

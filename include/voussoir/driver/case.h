@@ -67,7 +67,7 @@ namespace Voussoir
   {
     std::string folder;
     std::string observers           = "histories, envelopes, fields";
-    double      energy_interval     = 0.02;
+    double      energy_interval     = 0.;
     double      energy_limit        = 0.1;
     double      checkpoint_interval = 10.;
     double      checkpoint_time     = 0.;

@@ -82,10 +82,6 @@ namespace Voussoir
     void
     write_ground_motion() const;
 
-    /** Steps with a line of the energy balance. */
-    Schedule
-    energy_schedule() const;
-
     void
     observe();
 

@@ -67,6 +67,10 @@ namespace Voussoir
     void
     add_mesh_viscosity(const double undamped_limit);
 
+    /** Sum of the D_i. */
+    double
+    branch_stiffness() const;
+
     /** Vectors of damping memory that a state has. */
     unsigned int
     n_branches() const;

@@ -148,9 +148,20 @@ namespace Voussoir
                                       temperature);
     }
 
-    double
+    ElasticEnergy
+    elastic_energy(const CellRange        &cells,
+                   const StiffnessFactors &factors,
+                   const DampedMotion     &motion,
+                   PointHistory           *history) const override
+    {
+      return CellKernels::elastic_energy(
+        law, cells, factors.stress, damping, motion, history);
+    }
+
+    InelasticEnergy
     inelastic_energy(const CellRange        &cells,
                      const StiffnessFactors &factors,
+                     const double            branches,
                      const PointHistory     &history,
                      const Vector           &displacement,
                      const PointHistory     *history_at_start,
@@ -160,12 +171,13 @@ namespace Voussoir
         return CellKernels::inelastic_energy(law,
                                              cells,
                                              factors,
+                                             damping * branches,
                                              history,
                                              displacement,
                                              history_at_start,
                                              u_static);
       else
-        return 0.;
+        return {};
     }
 
     void

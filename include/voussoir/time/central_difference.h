@@ -66,13 +66,6 @@ namespace Voussoir
                   const unsigned int          begin,
                   const unsigned int          end);
 
-    /** Half of the work that the force on the cells does on a range of entries
-     *  with this velocity [J]. */
-    double
-    half_work(const State       &state,
-              const unsigned int begin,
-              const unsigned int end) const;
-
     /** Lets the projections correct the motion, and the accounts know it. */
     void
     project(State &state, const dealii::Tensor<1, 3> &base);
@@ -89,6 +82,7 @@ namespace Voussoir
     const MaxwellStep      maxwell;
     NodalUpdate            nodal_update;
     const double           mass_coefficient, stiffness_coefficient;
+    const PointStep        point_step;
     const bool             uniform; // damping factors
 
     // nodes of the projections, slots of those with nodal terms, and their

@@ -68,7 +68,9 @@ namespace Voussoir
       reduced,
       "Entries that the " + strength_reduction +
         " divides, separated by semicolons, as in \"Interfaces/planes/Friction "
-        "coefficient; Interfaces/planes/Cohesion\".");
+        "coefficient; Interfaces/planes/Cohesion\"; of an angle of friction, "
+        "its tangent. Those of the case that are not named stay as they are, "
+        "which the log and study.json say.");
     prm.add_parameter(
       "Quantities",
       quantities,
@@ -125,6 +127,14 @@ namespace Voussoir
   }
 
 
+  bool
+  StudyParameters::reduces_strengths() const
+  {
+    return (vary + ";" + varied_to_limit).find(strength_reduction) !=
+           std::string::npos;
+  }
+
+
   void
   StudyParameters::check() const
   {
@@ -138,8 +148,7 @@ namespace Voussoir
       throw UserError(
         "\"From\" in section \"Study/Limit\" is not below \"To\"; "
         "give the smaller value first.");
-    const std::string whole = vary + ";" + varied_to_limit;
-    if (whole.find(strength_reduction) != std::string::npos && reduced.empty())
+    if (reduces_strengths() && reduced.empty())
       throw UserError("Section \"Study\" has a " + strength_reduction +
                       ", but \"Reduced strengths\" names no entries.");
   }

@@ -251,6 +251,60 @@ namespace Voussoir
       }
     };
 
+    /**
+     * A strength reduction by F: cohesion c / F, of an angle of friction
+     * atan(tan(phi) / F); what it leaves is said.
+     */
+    class StudyOfStrengths : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        remove("strengths", communicator);
+        const auto found =
+          results_of(study_file(file, "study_strengths", "strengths"),
+                     communicator);
+        for (const nlohmann::json &run : found.at("runs"))
+          {
+            const std::string divisor =
+              run.at("values").at("strength reduction").get<std::string>();
+            const double        F = std::stod(divisor);
+            const ParameterFile as_run(run.at("folder").get<std::string>() +
+                                       "/parameters.prm");
+            const auto          value = [&](const std::string &entry) {
+              return std::stod(as_run.given("Materials/rock/" + entry));
+            };
+            verdicts.near("F = " + divisor + ": cohesion [Pa]",
+                          value("Cohesion"),
+                          1.2e6 / F,
+                          1e-5);
+            verdicts.near("  tangent of the friction angle",
+                          std::tan(value("Friction angle") * numbers::PI /
+                                   180.),
+                          std::tan(40. * numbers::PI / 180.) / F,
+                          1e-5);
+            verdicts.near("  tension cut-off [Pa], left as it is",
+                          value("Tension cut-off"),
+                          6e5,
+                          1e-12);
+          }
+        const nlohmann::json &said = found.at("strength reduction");
+        verdicts.is_true("two are said to be divided",
+                         said.at("divides") ==
+                           nlohmann::json({"Materials/rock/Cohesion",
+                                           "Materials/rock/Friction angle"}));
+        verdicts.is_true("the rest is said to be left",
+                         said.at("leaves as they are") ==
+                           nlohmann::json(
+                             {"Materials/rock/Tension cut-off = 600000"}));
+      }
+    };
+
+    const Registry<Check>::Add<StudyOfStrengths>
+      strengths("study of strengths", "What a reduction divides and leaves.");
     const Registry<Check>::Add<FailingRun> failing("study with a failing run",
                                                    "One run that slides away.");
     const Registry<Check>::Add<StudyStatistics>

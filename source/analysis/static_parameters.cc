@@ -89,6 +89,12 @@ namespace Voussoir
                         "\" is there before the earthquake, but \"Stages\" in "
                         "section \"Static state\" does not name it; add it "
                         "there.");
+    for (const auto &[name, load] : loads)
+      if (load->over_time() && staged.count(name) > 0)
+        throw UserError("The load \"" + name +
+                        "\" has a \"Time function\", but \"Stages\" in "
+                        "section \"Static state\" names it, where nothing "
+                        "changes with time; leave one of them out.");
     for (const InterfaceParameters &interface : interfaces.list)
       {
         const std::string &after = interface.grouted_after;

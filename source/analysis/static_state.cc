@@ -368,22 +368,33 @@ namespace Voussoir
                     nlohmann::json         &summary)
   {
     InitialState state = apply_stages(model, parameters, loads, log, summary);
-
-    // the same state in the dynamic model
-    model.internal_force.set_static_state(state.displacement,
-                                          state.temperature,
-                                          state.material_memory);
-    model.internal_force.respond(state.force,
-                                 state.displacement,
-                                 state.material_memory);
-    state.material_memory.set_losses({});
-    model.terms.add_to(state.force, state.displacement, 0.);
+    std::swap(state.reaction, state.force);
     if (model.contact != nullptr)
       {
         state.contact_force = model.discretization.create_vector();
         model.contact->add_forces(1., state.contact_force);
-        state.force -= state.contact_force;
       }
     return state;
+  }
+
+
+  void
+  hand_over(InitialState        &state,
+            const InternalForce &internal_force,
+            const NodalTerms    &terms)
+  {
+    if (state.displacement.size() == 0)
+      return;
+    internal_force.set_static_state(state.displacement,
+                                    state.temperature,
+                                    state.material_memory);
+    state.force.reinit(state.displacement);
+    internal_force.respond(state.force,
+                           state.displacement,
+                           state.material_memory);
+    state.material_memory.set_losses({});
+    terms.add_to(state.force, state.displacement, 0.);
+    if (state.contact_force.size() > 0)
+      state.force -= state.contact_force;
   }
 } // namespace Voussoir

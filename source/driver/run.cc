@@ -57,7 +57,7 @@ namespace Voussoir
     , water(setup->water)
     , contact(rest.contact)
     , equation{model.discretization,
-               model.internal_force,
+               setup->internal_force,
                model.mass,
                model.terms,
                damping,
@@ -72,7 +72,8 @@ namespace Voussoir
                                rest.initial,
                                state.material_memory,
                                contact ? &*contact : nullptr,
-                               log))
+                               log,
+                               &scheme))
     , energy(equation, time_step.length)
     , checkpoint(folder.checkpoints(), log.communicator())
     , timer(std::cout, TimerOutput::never, TimerOutput::wall_times)

@@ -50,7 +50,8 @@ namespace Voussoir
       Change
       largest_change(const Simulation &simulation, const unsigned int n) const
       {
-        const InternalForce  &internal_force = simulation.model.internal_force;
+        const InternalForce &internal_force =
+          simulation.run.equation.internal_force;
         const Discretization &discretization = simulation.model.discretization;
         Vector u = discretization.create_vector(), force(u), before(u);
         Change change{0., 0.};

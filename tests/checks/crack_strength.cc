@@ -51,8 +51,9 @@ namespace Voussoir
       {
         const auto simulation = make_simulation(parameters, communicator);
         Run       &run        = simulation->run;
-        const InternalForce &internal_force = simulation->model.internal_force;
-        const MaxwellStep    maxwell(run.damping, run.time_step.length);
+        const InternalForce &internal_force =
+          simulation->run.equation.internal_force;
+        const MaxwellStep maxwell(run.damping, run.time_step.length);
         Vector force    = simulation->model.discretization.create_vector();
         Vector filtered = force;
         double largest  = 0.;

@@ -25,8 +25,9 @@ namespace Voussoir
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        const bool cracks     = simulation->model.internal_force.has_memory();
-        double     in_dampers = 0.; // what they lose, step by step
+        const bool cracks =
+          simulation->run.equation.internal_force.has_memory();
+        double in_dampers = 0.; // what they lose, step by step
         march_with_energy(*parameters, simulation->run, [&](const bool) {
           if (!cracks)
             in_dampers +=
@@ -64,7 +65,7 @@ namespace Voussoir
         const Run     &run     = simulation.run;
         const Damping &damping = run.damping;
         const auto     work    = [&](const Vector &u) {
-          return simulation.model.internal_force.elastic_work(
+          return simulation.run.equation.internal_force.elastic_work(
             u, u, run.state.material_memory, true);
         };
         double rate =

@@ -149,7 +149,7 @@ namespace Voussoir
             simulation.run.scheme.step(simulation.run.state);
             if (simulation.run.state.step % 10 != 0)
               continue;
-            simulation.model.internal_force.respond(
+            simulation.run.equation.internal_force.respond(
               force,
               simulation.run.state.displacement,
               simulation.run.state.material_memory);

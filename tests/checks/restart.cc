@@ -369,6 +369,7 @@ namespace Voussoir
       {
         for (const std::string table : {"/histories.csv",
                                         "/energy.csv",
+                                        "/support_forces.csv",
                                         "/section_forces.csv",
                                         "/over_stress.csv",
                                         "/response_spectra.csv"})

@@ -14,7 +14,9 @@
 
 namespace Voussoir
 {
+  class CentralDifference;
   class Contact;
+  class Projection;
   class WaterMotion;
 
   /** What observers may see of a case besides its state. */
@@ -39,6 +41,12 @@ namespace Voussoir
 
     /** Takes note of results that cannot be written. */
     Log &log;
+
+    /** Constraints of the case, interfaces not among them. */
+    const std::vector<Projection *> &constraints;
+
+    /** What marches the state; null before there is a run. */
+    const CentralDifference *scheme = nullptr;
   };
 
   /**

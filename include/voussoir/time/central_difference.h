@@ -49,9 +49,21 @@ namespace Voussoir
     void
     step(State &state);
 
+    /** What supports and prescribed motions brought at an owned node at the
+     *  beginning of the last step, beyond the static state: besides what
+     *  accelerates the mass of a held node itself, which is not known here
+     *  [N]. */
+    dealii::Tensor<1, 3>
+    support_force(const State &state, const unsigned int node) const;
+
     const double time_step; // [s]
 
   private:
+    /** What a change of velocity of an owned node takes, divided by that [kg];
+     *  zero where held. */
+    dealii::Tensor<2, 3>
+    mass_at(const unsigned int node) const;
+
     void
     tell_projections();
 

@@ -136,7 +136,7 @@ namespace Voussoir
                      "Constraints/pull/Time function=if(t<0.5, sin(pi*t)^2, 1)",
                      "Damping/Model=mass proportional",
                      "Damping/Ratio=0.3",
-                     "Damping/Lowest frequency=20",
+                     "Damping/Lowest frequency=19",
                      "Output/support forces/Interval=0.01",
                      "Time/End time=0.8"}));
         const auto simulation =

@@ -65,7 +65,7 @@ namespace Voussoir
                                "if(t < 1, sin(pi*t/2)^2, 1)",
                                "Damping/Model=mass proportional",
                                "Damping/Ratio=0.3",
-                               "Damping/Lowest frequency=20",
+                               "Damping/Lowest frequency=19",
                                "Time/End time=1.6"}));
         const auto slow_run = make_simulation(*slow, communicator);
         verdicts.near(

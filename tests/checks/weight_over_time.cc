@@ -43,13 +43,17 @@ namespace Voussoir
           return (1. - share) * history.displacement[0][i - 1][2] +
                  share * history.displacement[0][i][2];
         };
+        // what comes on at once acts from half a step before
+        const auto fallen = [&](const double t) {
+          return t * (t + simulation->run.time_step.length);
+        };
         for (const double share : {0.5, 0.9})
           {
             std::ostringstream name;
             name << "free fall of the top at " << share << " L/c";
             verdicts.near(name.str(),
                           1e3 * u(share * L / c),
-                          -1e3 * 0.5 * 9.81 * std::pow(share * L / c, 2),
+                          -1e3 * 0.5 * 9.81 * fallen(share * L / c),
                           tolerance,
                           "mm");
           }
@@ -82,7 +86,7 @@ namespace Voussoir
         weighing.push_back("Loads/weight/Acceleration=1.962,0,-3.924");
         weighing.push_back("Loads/weight/Time function=sin(2*pi*4*t)");
         for (const std::string change :
-             {"Loads/Names=",
+             {"Loads/weight/Active=false",
               "Ground motion/Type=sine",
               "Ground motion/Peak acceleration x=0.2",
               "Ground motion/Peak acceleration z=0.4",

@@ -73,12 +73,17 @@ namespace Voussoir
       /** What grows along a stage. */
       struct LoadState
       {
-        Vector loads, temperature;
+        Vector              loads, temperature;
+        std::vector<double> uplift; // at the points of the interfaces [Pa]
 
         /** On the straight way to another one; all of it without round-off. */
         LoadState
         grown_to(const LoadState &end, const double share) const;
       };
+
+      /** As it is now. */
+      LoadState
+      load_state() const;
 
       /** Of the loads and the free thermal strain [N]. */
       Vector
@@ -231,10 +236,12 @@ namespace Voussoir
       damped_steps = increments = 0;
       if (!solver)
         make_solver();
-      const LoadState start{loads, state.temperature};
+      const LoadState start = load_state();
       for (const std::string &name : stage)
         add_load(name, *load_of.at(name), report);
-      const LoadState    end{loads, state.temperature};
+      if (model.contact != nullptr)
+        model.contact->let_water_in(stage);
+      const LoadState    end        = load_state();
       const unsigned int iterations = follow_path(start, end);
 
       // f(u) minus loads and contact is what the supports bring
@@ -278,7 +285,19 @@ namespace Voussoir
         {
           result.loads.sadd(share, 1. - share, loads);
           result.temperature.sadd(share, 1. - share, temperature);
+          for (unsigned int k = 0; k < uplift.size(); ++k)
+            result.uplift[k] += (1. - share) * (uplift[k] - end.uplift[k]);
         }
+      return result;
+    }
+
+
+    StaticStages::LoadState
+    StaticStages::load_state() const
+    {
+      LoadState result{loads, state.temperature, {}};
+      for (const ContactPoint &point : contact_points())
+        result.uplift.push_back(point.uplift);
       return result;
     }
 
@@ -353,8 +372,12 @@ namespace Voussoir
     unsigned int
     StaticStages::find_equilibrium(const LoadState &load_state)
     {
-      const Vector force      = total_force(load_state);
-      const auto   points     = contact_points();
+      const Vector force  = total_force(load_state);
+      auto         points = contact_points();
+      for (unsigned int k = 0; k < points.size(); ++k)
+        points[k].uplift = load_state.uplift[k];
+      if (model.contact != nullptr)
+        model.contact->set_points(points);
       unsigned int iterations = 0;
       if (!dissipated(state.material_memory))
         iterations += find_elastic_equilibrium(force);
@@ -561,23 +584,34 @@ namespace Voussoir
                     nlohmann::json         &summary)
   {
     InitialState state = apply_stages(model, parameters, loads, log, summary);
-
-    // the same state in the dynamic model
-    model.internal_force.hand_over(state.material_memory);
-    model.internal_force.set_static_state(state.displacement,
-                                          state.temperature,
-                                          state.material_memory);
-    model.internal_force.respond(state.force,
-                                 state.displacement,
-                                 state.material_memory);
-    state.material_memory.set_losses({});
-    model.terms.add_to(state.force, state.displacement, 0.);
+    std::swap(state.reaction, state.force);
     if (model.contact != nullptr)
       {
         state.contact_force = model.discretization.create_vector();
         model.contact->add_forces(1., state.contact_force);
-        state.force -= state.contact_force;
       }
     return state;
+  }
+
+
+  void
+  hand_over(InitialState        &state,
+            const InternalForce &internal_force,
+            const NodalTerms    &terms)
+  {
+    if (state.displacement.size() == 0)
+      return;
+    internal_force.hand_over(state.material_memory);
+    internal_force.set_static_state(state.displacement,
+                                    state.temperature,
+                                    state.material_memory);
+    state.force.reinit(state.displacement);
+    internal_force.respond(state.force,
+                           state.displacement,
+                           state.material_memory);
+    state.material_memory.set_losses({});
+    terms.add_to(state.force, state.displacement, 0.);
+    if (state.contact_force.size() > 0)
+      state.force -= state.contact_force;
   }
 } // namespace Voussoir

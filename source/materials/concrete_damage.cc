@@ -332,7 +332,7 @@ namespace Voussoir
       {
         return {OutputName::tension_damage,
                 OutputName::compression_damage,
-                OutputName::crack_opening};
+                OutputName::largest_opening};
       }
 
       std::vector<double>

@@ -392,7 +392,7 @@ namespace Voussoir
       {
         return {OutputName::tension_damage,
                 OutputName::compression_damage,
-                OutputName::crack_opening};
+                OutputName::largest_opening};
       }
 
       std::vector<double>

@@ -4,7 +4,6 @@
 #include <voussoir/mesh/arch_dam_shape.h>
 
 #include <deal.II/base/numbers.h>
-#include <deal.II/base/quadrature_lib.h>
 
 #include <boost/math/tools/toms748_solve.hpp>
 
@@ -403,7 +402,6 @@ namespace Voussoir
       }
 
     // Integrate the tangent over the turn.
-    static const QGauss<1> quadrature(16);
     line                = crest(end);
     const double start  = line.angle;
     const double beyond = s - end;

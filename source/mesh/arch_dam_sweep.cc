@@ -3,7 +3,6 @@
 #include <voussoir/mesh/grading.h>
 
 #include <deal.II/base/numbers.h>
-#include <deal.II/base/quadrature_lib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -232,9 +231,8 @@ namespace Voussoir
   Tensor<1, 2>
   ArchDamSweep::path(const double angle, const double length) const
   {
-    static const QGauss<1> quadrature(8);
-    const double           turned = std::min(length, turning_length);
-    Tensor<1, 2>           result({0., length - turned});
+    const double turned = std::min(length, turning_length);
+    Tensor<1, 2> result({0., length - turned});
     for (unsigned int q = 0; q < quadrature.size(); ++q)
       {
         const double phi = angle * 0.5 *

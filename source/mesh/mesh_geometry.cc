@@ -79,7 +79,7 @@ namespace Voussoir
   double
   cell_volume(const CoarseMesh &mesh, const unsigned int cell)
   {
-    static const QGauss<3> quadrature(2);
+    const QGauss<3> quadrature(2);
 
     double volume = 0;
     for (unsigned int q = 0; q < quadrature.size(); ++q)
@@ -99,7 +99,7 @@ namespace Voussoir
   double
   face_area(const CoarseMesh &mesh, const CoarseMesh::Face &face)
   {
-    static const QGauss<2> quadrature(4);
+    const QGauss<2> quadrature(4);
 
     const auto v = face_vertices(mesh, face);
     // The bilinear face is x0 + a s + b t + c s t.

@@ -7,13 +7,14 @@ namespace Voussoir
 {
   using namespace dealii;
 
-  const Vector &
+  const Vector *
   origin_of(const std::string &quantity, const InitialState &initial)
   {
-    static const Vector none;
-    return quantity == since_static_state ? initial.displacement :
-           quantity == since_grouting     ? initial.grouted_displacement :
-                                            none;
+    const Vector *origin =
+      quantity == since_static_state ? &initial.displacement :
+      quantity == since_grouting     ? &initial.grouted_displacement :
+                                       nullptr;
+    return origin != nullptr && origin->size() > 0 ? origin : nullptr;
   }
 
 

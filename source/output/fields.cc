@@ -64,10 +64,9 @@ namespace Voussoir
         for (const std::string &quantity : {since_static_state, since_grouting})
           if (wants(quantity))
             {
-              Vector       &displacement = since[quantity] = state.displacement;
-              const Vector &origin = origin_of(quantity, model->initial);
-              if (origin.size() > 0)
-                displacement -= origin;
+              Vector &displacement = since[quantity] = state.displacement;
+              if (const Vector *origin = origin_of(quantity, model->initial))
+                displacement -= *origin;
               std::string name = quantity;
               std::replace(name.begin(), name.end(), ' ', '_');
               nodal.push_back({&displacement, {name}});
@@ -85,9 +84,7 @@ namespace Voussoir
         pictures.add(state.time,
                      write_fields(*model,
                                   nodal,
-                                  wants("principal stress") ?
-                                    &state.displacement :
-                                    nullptr,
+                                  wants("principal stress") ? &state : nullptr,
                                   pictures.next_name(state),
                                   state.time,
                                   of_cells));

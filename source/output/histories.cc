@@ -86,8 +86,12 @@ namespace Voussoir
         recorder.prepare(model, interval, 0.443 / filtered_at);
         largest.assign(recorder.points().size(), {});
         for (unsigned int k = n_recorded; k < n_quantities; ++k)
-          origins[k] = recorder.displacement(
-            origin_of(all_quantities[k].name, model.initial));
+          {
+            origins[k].assign(recorder.points().size(), {});
+            if (const Vector *origin =
+                  origin_of(all_quantities[k].name, model.initial))
+              origins[k] = recorder.displacement(*origin);
+          }
         std::vector<std::string> columns;
         for (unsigned int p = 0; p < recorder.points().size(); ++p)
           for (unsigned int d = 0; d < 3; ++d)

@@ -89,10 +89,8 @@ namespace Voussoir
   {
     const std::size_t         n = record.points.size();
     std::vector<Tensor<1, 3>> result(n);
-    if (displacement.size() == 0)
-      return result;
-    const auto          shares = record.weights->share(displacement);
-    std::vector<double> values;
+    const auto                shares = record.weights->share(displacement);
+    std::vector<double>       values;
     for (const Tensor<1, 3> &share : shares)
       values.insert(values.end(), share.begin_raw(), share.end_raw());
     values =

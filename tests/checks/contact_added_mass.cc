@@ -223,6 +223,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: other program
     const Registry<Check>::Add<AddedMassContact>
       registered("contact added mass",
                  "A step of contact with water on a leaning face.");

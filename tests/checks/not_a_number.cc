@@ -197,6 +197,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<NotANumberCheck>
       registered("not a number", "What the verdicts say of NaN.");
   } // namespace

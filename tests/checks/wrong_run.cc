@@ -33,13 +33,13 @@ namespace Voussoir
         verdicts.is_true("a small blow: one warning, in the verdict",
                          summary["warnings"].size() == 1 &&
                            summary["verdict"] == "with warnings, see there");
-        verdicts.near("a small blow: energy from nowhere over input",
-                      summary["energy balance"]["largest share from nowhere"],
+        verdicts.near("a small blow: energy-balance error over input",
+                      summary["energy balance"]["largest energy-balance error"],
                       expected,
                       0.01);
 
         march(file, "a large blow", 1.3, 0.9, communicator, verdicts);
-        stopped("a large blow", "from nowhere", verdicts);
+        stopped("a large blow", "energy-balance error", verdicts);
         march(file, "a step too large", 1., 1.05, communicator, verdicts);
         stopped("a step too large", "a hundred times", verdicts);
       }
@@ -99,7 +99,9 @@ namespace Voussoir
       double            expected = 0.;
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<WrongRun>
-      registered("wrong run", "Energy from nowhere is said, or stops the run.");
+      registered("wrong run",
+                 "An energy-balance error is said, or stops the run.");
   } // namespace
 } // namespace Voussoir

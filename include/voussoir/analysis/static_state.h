@@ -57,10 +57,8 @@ namespace Voussoir
 
   /**
    * The state under the loads that are there before the earthquake: stages one
-   * after the other, each with the loads it names. The force that it returns
-   * holds the state in the dynamic model, reactions of supports that are held
-   * here only included, so that without an earthquake nothing moves. Forces of
-   * contact are no part of it, as the run finds them by itself.
+   * after the other, each with the loads it names. The run takes it by
+   * hand_over.
    *
    * A stage of elastic materials without interfaces is linear and solved at
    * once, by multigrid. Where materials crack or yield under its loads, and
@@ -84,6 +82,20 @@ namespace Voussoir
                     const NamedLoads       &loads,
                     Log                    &log,
                     nlohmann::json         &summary);
+
+  /**
+   * Gives a static state the force that holds it in the dynamic model, and the
+   * materials' memory the moduli of that: reactions of supports that are held
+   * in the static stages only are part of the force, so that without an
+   * earthquake nothing moves. Forces of contact are not, as the run finds them
+   * by itself. Without static stages nothing is done.
+   *
+   * @param internal_force that of the run
+   */
+  void
+  hand_over(InitialState        &state,
+            const InternalForce &internal_force,
+            const NodalTerms    &terms);
 } // namespace Voussoir
 
 #endif

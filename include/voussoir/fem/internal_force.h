@@ -101,15 +101,18 @@ namespace Voussoir
                      const Vector   &temperature,
                      MaterialMemory &memory) const;
 
-    /** Energy stored in the materials by the motion since the static state @p
-     *  initial [J]; @p moved and @p moved_before are that motion at the last
-     *  two steps. */
-    double
-    stored_energy(const Vector         &displacement,
-                  const MaterialMemory &memory,
-                  const InitialState   &initial,
-                  const Vector         &moved,
-                  const Vector         &moved_before) const;
+    /** Energy of the elastic points in the part of this rank [J], whose
+     *  imbalance the memory comes to know. */
+    ElasticEnergy
+    elastic_energy(const DampedMotion &motion, MaterialMemory &memory) const;
+
+    /** Energy since the static state @p initial of the points that have left
+     *  the elastic range, in the part of this rank [J]. */
+    InelasticEnergy
+    inelastic_energy(const Vector         &displacement,
+                     const MaterialMemory &memory,
+                     const InitialState   &initial,
+                     const Damping        &damping) const;
 
     /** force += what holds back the free expansion at this temperature (in all
      *  three components of each node) [N]. */
@@ -141,11 +144,12 @@ namespace Voussoir
     void
     for_each_history(MaterialMemory &memory, const Work &work) const;
 
-    /** Sum over all ranks of what @p evaluate gives for the runs of batches of
-     *  one material. */
-    double
+    /** Sum of what @p evaluate gives for the runs of batches of one material,
+     *  in the part of this rank. */
+    template <typename Sum>
+    Sum
     sum(const std::vector<const Vector *> &read,
-        const std::function<double(const unsigned int, const CellRange &)>
+        const std::function<Sum(const unsigned int, const CellRange &)>
           &evaluate) const;
 
     const Discretization           &discretization;

@@ -86,6 +86,16 @@ namespace Voussoir
         return 0.;
     }
 
+    Lanes
+    load_level(const SymmetricTensor3<Lanes> &elastic_stress,
+               const Lanes                   &element_length) const override
+    {
+      if constexpr (Law::n_history > 0)
+        return law.load_level(elastic_stress, element_length);
+      else
+        return 0.;
+    }
+
     std::vector<double>
     outputs(const double *history, const double element_length) const override
     {
@@ -191,9 +201,20 @@ namespace Voussoir
                                       temperature);
     }
 
-    double
+    ElasticEnergy
+    elastic_energy(const CellRange        &cells,
+                   const StiffnessFactors &factors,
+                   const DampedMotion     &motion,
+                   PointHistory           *history) const override
+    {
+      return CellKernels::elastic_energy(
+        law, cells, factors.stress, damping, motion, history);
+    }
+
+    InelasticEnergy
     inelastic_energy(const CellRange        &cells,
                      const StiffnessFactors &factors,
+                     const double            branches,
                      const PointHistory     &history,
                      const Vector           &displacement,
                      const PointHistory     *history_at_start,
@@ -203,12 +224,13 @@ namespace Voussoir
         return CellKernels::inelastic_energy(law,
                                              cells,
                                              factors,
+                                             damping * branches,
                                              history,
                                              displacement,
                                              history_at_start,
                                              u_static);
       else
-        return 0.;
+        return {};
     }
 
     void

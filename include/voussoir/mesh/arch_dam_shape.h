@@ -3,6 +3,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/point.h>
+#include <deal.II/base/quadrature_lib.h>
 
 #include <array>
 #include <string>
@@ -147,8 +148,9 @@ namespace Voussoir
     double
     cut(const Line &crest, const double z) const;
 
-    const ArchDamShape shape;
-    const double       turning_length;
+    const ArchDamShape      shape;
+    const double            turning_length;
+    const dealii::QGauss<1> quadrature{16}; // over the turn
   };
 } // namespace Voussoir
 

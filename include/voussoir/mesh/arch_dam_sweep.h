@@ -69,6 +69,8 @@ namespace Voussoir
     const double           turning_length, full_length;
     std::vector<double>    points; // beside the dam, up to 1
 
+    const dealii::QGauss<1> quadrature{8}; // over the turn
+
     Vertices                           vertices; // at the middle of the dam
     std::vector<ArchDamSections::Line> lines;    // of them
 

@@ -11,9 +11,9 @@ namespace Voussoir
                              "displacement since static state",
                            since_grouting = "displacement since grouting";
 
-  /** Displacement of the state that such a quantity counts from [m]; empty:
+  /** Displacement of the state that such a quantity counts from [m]; null:
    *  none, so that it is the total. */
-  const Vector &
+  const Vector *
   origin_of(const std::string &quantity, const InitialState &initial);
 
   /** Refuses to count from the grouting where no interface is grouted.

@@ -66,7 +66,7 @@ namespace Voussoir
     reference() const;
 
     /** Displacements of the points, on all ranks, which must call this
-     * together; zero if the vector is empty. */
+     *  together. */
     std::vector<dealii::Tensor<1, 3>>
     displacement(const Vector &displacement) const;
 

@@ -232,7 +232,7 @@ def faces_of(arrays):
         out = flat - flat.mean(axis=0)
         faces.append(flat[np.argsort(np.arctan2(out[:, 1], out[:, 0]))])
     first = cells[:, 0]
-    return np.array(faces), arrays["tension_damage"][first], arrays["crack_opening_mm"][first]
+    return np.array(faces), arrays["tension_damage"][first], arrays["largest_crack_opening_mm"][first]
 
 
 def result(output):

@@ -6,7 +6,9 @@ usage: doc/verification.py [--check]    (--check: fails if the page is not as
                                          this would write it)
 
 The figures are those of the reference outputs, tests/*/*.output, which a test
-must reproduce to four digits.
+must reproduce to four digits, or come nearer to the reference. What the
+reference is, a line "// Reference: KIND" says above where tests/checks/*.cc
+registers the check, or "# Reference: KIND" at the head of a parameter file.
 """
 import pathlib
 import re
@@ -19,6 +21,17 @@ COMPARED = re.compile(
     rf"^(?P<what>.*) = {NUMBER}(?: (?P<unit>.*?))?  "
     rf"\(reference {NUMBER}, allowed {NUMBER} %\)  ok$"
 )
+REGISTERED = re.compile(
+    r"// Reference: (.*)\n\s*const Registry<Check>::Add<\w+>\s*\w+\(\s*\"([^\"]+)\""
+)
+KINDS = {
+    "closed form": "a closed form, a conservation law, or geometry by hand",
+    "published": "a published figure",
+    "other program": "another program's result, or another way of computing the "
+    "same that is written for the test alone and shares nothing with Voussoir",
+    "ourselves": "Voussoir itself: two ways to the same result, a balance by its "
+    "own account, or a bound that it sets itself",
+}
 BOUNDED = re.compile(rf"^(?P<what>.*) below {NUMBER}  ok$")
 
 
@@ -28,8 +41,39 @@ def subject(case):
     for line in case.read_text().splitlines():
         if not line.startswith("#"):
             break
-        words.append(line.lstrip("# ").rstrip())
+        if not line.startswith("# Reference: "):
+            words.append(line.lstrip("# ").rstrip())
     return " ".join(words)
+
+
+def text_of(case):
+    """A parameter file with what it includes."""
+    return re.sub(
+        r"^include (\S+)$",
+        lambda line: text_of(case.parent / line[1]),
+        case.read_text(),
+        flags=re.M,
+    )
+
+
+def kind_of_reference(case, kinds_of_checks):
+    said = re.search(r"^# Reference: (.*)$", case.read_text(), re.M)
+    if said:
+        kind = said[1]
+    else:
+        name = re.search(r"^subsection Check\s+set Name *= *(.*?)\s*$", text_of(case), re.M)
+        kind = kinds_of_checks.get(name[1]) if name else None
+    if kind not in KINDS:
+        sys.exit(
+            f"{case.relative_to(ROOT)}: with what does it compare? Say it by a line "
+            f'"// Reference: KIND" in tests/checks, one of: {", ".join(KINDS)}.'
+        )
+    return kind
+
+
+def counts(rows):
+    """Of a list of kinds."""
+    return ", ".join(f"{kind} {rows.count(kind)}" for kind in KINDS)
 
 
 def worst_comparison(lines):
@@ -61,7 +105,11 @@ def smallest_bound(lines):
 
 
 def page():
-    compared, bounded = [], []
+    compared, bounded, kinds_compared, kinds_bounded = [], [], [], []
+    kinds_of_checks = {}
+    for source in ROOT.glob("tests/checks/*.cc"):
+        for kind, name in REGISTERED.findall(source.read_text()):
+            kinds_of_checks[name] = kind
     for output in sorted(ROOT.glob("tests/*/*.output")):
         if ".mpirun=" in output.name:
             continue
@@ -72,16 +120,18 @@ def page():
         lines = output.read_text(errors="replace").splitlines()
         count, worst = worst_comparison(lines)
         if worst:
+            kinds_compared.append(kind_of_reference(case, kinds_of_checks))
             compared.append(
-                f"| `{name}` | {subject(case)} | {count} | {worst[1]} "
-                f"| {worst[2]} | {worst[3]} | {worst[4]} |"
+                f"| `{name}` | {subject(case)} | {kinds_compared[-1]} | {count} "
+                f"| {worst[1]} | {worst[2]} | {worst[3]} | {worst[4]} |"
             )
         else:
             count, bound = smallest_bound(lines)
             if bound:
+                kinds_bounded.append(kind_of_reference(case, kinds_of_checks))
                 bounded.append(
-                    f"| `{name}` | {subject(case)} | {count} | {bound[1]} "
-                    f"| {bound[0]:g} |"
+                    f"| `{name}` | {subject(case)} | {kinds_bounded[-1]} | {count} "
+                    f"| {bound[1]} | {bound[0]:g} |"
                 )
     return "\n".join(
         [
@@ -89,24 +139,32 @@ def page():
             "",
             "Written by `doc/verification.py` from the reference outputs of the tests; "
             "`./bootstrap test -R NAME` runs one of them again. The tests' sources, "
-            "`tests/checks`, say where each reference comes from.",
+            "`tests/checks`, say where each reference comes from. It is one of:",
+            "",
+            *(f"- {kind}: {meaning};" for kind, meaning in list(KINDS.items())[:-1]),
+            *(f"- {kind}: {meaning}." for kind, meaning in list(KINDS.items())[-1:]),
+            "",
+            f"{len(compared) + len(bounded)} tests: {counts(kinds_compared + kinds_bounded)}. "
+            "Tests of files, messages and refusals compare texts and are not listed.",
             "",
             "## Numbers against references",
             "",
             "Of each test the comparison that uses most of what is allowed. A "
-            "difference of 0 means: none in four digits.",
+            "difference of 0 means: none in four digits. By reference: "
+            f"{counts(kinds_compared)}.",
             "",
-            "| test | subject | comparisons | measured | reference | off by | allowed |",
-            "|---|---|---|---|---|---|---|",
+            "| test | subject | reference is | comparisons | measured | reference | off by | allowed |",
+            "|---|---|---|---|---|---|---|---|",
             *compared,
             "",
             "## Errors against bounds",
             "",
             "Tests that look at differences only: to an exact solution, to another way "
-            "of computing the same, of a balance. Of each the narrowest bound.",
+            "of computing the same, of a balance. Of each the narrowest bound. By "
+            f"reference: {counts(kinds_bounded)}.",
             "",
-            "| test | subject | bounds | what | below |",
-            "|---|---|---|---|---|",
+            "| test | subject | reference is | bounds | what | below |",
+            "|---|---|---|---|---|---|",
             *bounded,
             "",
         ]

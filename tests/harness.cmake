@@ -1,8 +1,11 @@
 # deal_ii_pickup_tests() with four cures: tests called long_* run only with
 # VOUSSOIR_ALL_TESTS; labels that ctest knows (deal.II 9.4 sets LABEL, which
-# ctest ignores); and an edited parameter file, or page of doc/, runs its test
-# again, as does a new voussoir the tests of what it refuses.
+# ctest ignores); an edited parameter file, or page of doc/, runs its test
+# again; and a check that finds something wrong, or a case that is refused, is
+# run by a script, since the harness shows no difference where a program fails.
 macro(voussoir_pickup_tests)
+  set(_program ${TEST_TARGET})
+  set(TEST_TARGET ${_program}_script)
   deal_ii_pickup_tests()
   get_filename_component(_subject ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   get_directory_property(_tests TESTS)
@@ -26,8 +29,9 @@ macro(voussoir_pickup_tests)
         add_custom_command(OUTPUT ${_folder}/output APPEND DEPENDS ${_input})
       endif()
     endforeach()
-    if(TEST_TARGET STREQUAL "voussoir_refusal")
-      add_custom_command(OUTPUT ${_folder}/output APPEND DEPENDS voussoir)
+    if(_program STREQUAL "voussoir_refusal")
+      set(_program voussoir)
     endif()
+    add_custom_command(OUTPUT ${_folder}/output APPEND DEPENDS ${_program})
   endforeach()
 endmacro()

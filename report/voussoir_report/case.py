@@ -200,8 +200,8 @@ def first_frequency(run):
     return number(modes[0]["frequency [Hz]"]) if modes else None
 
 
-def energy_from_nowhere(run):
-    share = run.summary.get("energy balance", {}).get("largest share from nowhere")
+def energy_balance_error(run):
+    share = run.summary.get("energy balance", {}).get("largest energy-balance error")
     return None if share is None else number(100. * share) if share > 1e-8 else "below 10⁻⁶"
 
 
@@ -229,7 +229,7 @@ def headline_section(runs):
         ("share of the concrete that left the elastic range [%]",
          of_materials("share of the volume that left the elastic range", 100.)),
         ("largest opening of cracks in a cell [mm]", of_materials("largest crack opening [mm]")),
-        ("energy from nowhere, of what came in [%]", energy_from_nowhere),
+        ("energy-balance error, of what came in [%]", energy_balance_error),
     ])
     return Section("Headline figures", [table]) if table else None
 

@@ -9,7 +9,8 @@ from .interfaces import joint_corners, joints_of
 from .page import Pictures, Section
 
 SCALES = {"tension_damage": "damage in tension [-]", "compression_damage": "damage in compression [-]",
-          "damage": "damage [-]", "crack_opening_mm": "opening of cracks in a cell [mm]"}
+          "damage": "damage [-]", "largest_crack_opening_mm": "largest opening of cracks in a cell [mm]",
+          "crack_opening_now_mm": "opening of cracks in a cell at that time [mm]"}
 
 
 def damaged(run):

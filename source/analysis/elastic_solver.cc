@@ -150,7 +150,7 @@ namespace Voussoir
     std::vector<Elasticity> elasticities;
     for (unsigned int m = 0; m < materials.size(); ++m)
       elasticities.push_back(
-        elasticity_of(*materials[m], internal_force.factors_of(m).stress));
+        elasticity_of(*materials[m], internal_force.factor_of(m)));
     const TrilinearCell trilinear;
     FullMatrix<double>  cell_matrix(24);
     for_each_trilinear_cell(

@@ -100,7 +100,7 @@ namespace Voussoir
   LostEquilibrium::LostEquilibrium(const std::string &what,
                                    const Vector      &before,
                                    const Vector      &moved)
-    : UserError(what)
+    : RunStopped(what)
     , before(before)
     , moved(moved)
   {}

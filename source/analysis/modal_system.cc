@@ -4,6 +4,7 @@
 #include <voussoir/fem/lumped_mass.h>
 
 #include <algorithm>
+#include <numeric>
 #include <random>
 
 namespace Voussoir
@@ -110,7 +111,7 @@ namespace Voussoir
     : model(model)
     , parameters(parameters)
     , moduli_as_given(model.internal_force.with(
-        std::vector<StiffnessFactors>(model.materials.size())))
+        std::vector<double>(model.materials.size(), 1.)))
     , constraints(modal_constraints(model, parameters))
     , from(model.discretization.create_vector())
     , to(from)
@@ -320,15 +321,71 @@ namespace Voussoir
 
 
   ModalSystem::Motion
-  ModalSystem::rigid_motion(const unsigned int direction) const
+  ModalSystem::rigid_momentum(const unsigned int direction) const
   {
-    from = 0.;
-    for (unsigned int i = direction; i < from.locally_owned_size(); i += 3)
-      from.local_element(i) = 1.;
-    solver->clear_held(from);
-    Motion motion(from.begin(), from.end());
-    motion.resize(size());
+    Motion motion(size()), momentum(size());
+    for (unsigned int i = direction; i < structure.locally_owned_size(); i += 3)
+      motion[i] = 1.;
+    mass(momentum.data(), motion.data());
+    if (!water)
+      return momentum;
+    to = 0.;
+    water->add_momentum_of_floor(
+      to, momentum.data() + structure.locally_owned_size(), direction);
+    if (ties)
+      ties->collect(to);
+    solver->clear_held(to);
+    for (unsigned int i = 0; i < structure.locally_owned_size(); ++i)
+      momentum[i] += to.local_element(i);
+    return momentum;
+  }
+
+
+  ModalSystem::Motion
+  ModalSystem::divided_by_mass(const Motion &momentum) const
+  {
+    constexpr unsigned int most      = 1000;
+    constexpr double       tolerance = 1e-8;
+
+    // without water this is the mass, and the first step the last
+    Motion weight(size(), structure.linfty_norm());
+    for (unsigned int i = 0; i < structure.locally_owned_size(); ++i)
+      if (structure.local_element(i) > 0.)
+        weight[i] = structure.local_element(i);
+
+    Motion motion(size()), residual = momentum, direction(size()),
+                           scaled(size()), product_with(size());
+    const double square = product(momentum, momentum);
+    double       last   = 0.;
+    for (unsigned int i = 0; i < most && product(residual, residual) >
+                                           tolerance * tolerance * square;
+         ++i)
+      {
+        for (std::size_t j = 0; j < size(); ++j)
+          scaled[j] = residual[j] / weight[j];
+        const double now  = product(residual, scaled);
+        const double keep = i == 0 ? 0. : now / last;
+        last              = now;
+        for (std::size_t j = 0; j < size(); ++j)
+          direction[j] = scaled[j] + keep * direction[j];
+        mass(product_with.data(), direction.data());
+        const double step = now / product(direction, product_with);
+        for (std::size_t j = 0; j < size(); ++j)
+          {
+            motion[j] += step * direction[j];
+            residual[j] -= step * product_with[j];
+          }
+      }
     return motion;
+  }
+
+
+  double
+  ModalSystem::product(const Motion &a, const Motion &b) const
+  {
+    return Utilities::MPI::sum(
+      std::inner_product(a.begin(), a.end(), b.begin(), 0.),
+      structure.get_mpi_communicator());
   }
 
 

@@ -67,8 +67,27 @@ namespace Voussoir
     flux.copy_locally_owned_data_from(at_wall);
     for (unsigned int i = 0; i < weight.size(); ++i)
       flux.local_element(i) += weight[i] * water_motion[i];
-    clear_surface(flux.begin());
+    add_momentum_of_flux(momentum, water_momentum);
+  }
 
+
+  void
+  ModalWater::add_momentum_of_floor(Vector            &momentum,
+                                    double            *water_momentum,
+                                    const unsigned int direction) const
+  {
+    flux = 0.;
+    for (const Reservoir::WallNode &node : reservoir.floor_nodes)
+      flux.local_element(node.water) += node.area[direction];
+    add_momentum_of_flux(momentum, water_momentum);
+  }
+
+
+  void
+  ModalWater::add_momentum_of_flux(Vector &momentum,
+                                   double *water_momentum) const
+  {
+    clear_surface(flux.begin());
     solver.solve(pressure, flux, tolerance);
     pressure *= reservoir.density;
     for (unsigned int i = 0; i < weight.size(); ++i)

@@ -110,16 +110,9 @@ namespace Voussoir
     }
 
 
-    /** r^T (M + M_a) r of a rigid motion r in one direction of all that is not
-     *  held, which the effective masses of all modes add up to [kg]. */
-    double
-    moving_mass(const unsigned int direction, const ModalSystem &system)
-    {
-      const ModalSystem::Motion motion = system.rigid_motion(direction);
-      ModalSystem::Motion       momentum(motion.size());
-      system.mass(momentum.data(), motion.data());
-      return resultant(system.solid_part(momentum))[direction];
-    }
+    /** b = (M + M_a) r of unit motions r of all, of what is held as well, in
+     *  x, y and z. */
+    using Momenta = std::array<ModalSystem::Motion, 3>;
 
 
     /** A mode from an eigenvector with phi^T (M + M_a) phi = 1. */
@@ -128,14 +121,17 @@ namespace Voussoir
               const double               residual,
               const ModalSystem::Motion &motion,
               const ModalSystem         &system,
+              const Momenta             &momenta,
               const Vector              &orientation)
     {
       ModalSystem::Motion momentum(motion.size());
       system.mass(momentum.data(), motion.data());
-      Vector             shape   = system.displacement(motion);
-      const Vector       inertia = system.solid_part(momentum);
-      const Tensor<1, 3> factors = resultant(inertia); // phi^T (M + M_a) r
-      const double       largest =
+      Vector       shape   = system.displacement(motion);
+      const Vector inertia = system.solid_part(momentum);
+      Tensor<1, 3> factors; // phi^T b
+      for (unsigned int d = 0; d < 3; ++d)
+        factors[d] = system.product(motion, momenta[d]);
+      const double largest =
         std::copysign(largest_amount(shape), inertia * orientation);
       shape /= largest;
 
@@ -332,14 +328,21 @@ namespace Voussoir
                   parameters.number,
                   parameters.tolerance);
 
-    Modes modes;
+    Modes   modes;
+    Momenta momenta;
     for (unsigned int d = 0; d < 3; ++d)
-      modes.moving_mass[d] = moving_mass(d, system);
+      {
+        // sum of (phi^T b)^2 over all modes
+        momenta[d] = system.rigid_momentum(d);
+        modes.moving_mass[d] =
+          system.product(momenta[d], system.divided_by_mass(momenta[d]));
+      }
     for (unsigned int j = 0; j < parameters.number; ++j)
       modes.list.push_back(make_mode(pairs.values[j],
                                      pairs.residuals[j],
                                      pairs.vectors[j],
                                      system,
+                                     momenta,
                                      orientation));
 
     std::ostringstream text;

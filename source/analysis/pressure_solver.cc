@@ -16,8 +16,7 @@ namespace Voussoir
     : space(space)
     , held(held)
   {
-    TrilinosWrappers::SparseMatrix matrix;
-    assemble(matrix);
+    assemble();
     Vector diagonal = space.create_vector();
     for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
       diagonal.local_element(i) =
@@ -52,7 +51,7 @@ namespace Voussoir
 
 
   void
-  PressureSolver::assemble(TrilinosWrappers::SparseMatrix &matrix) const
+  PressureSolver::assemble()
   {
     const auto                           constraints = make_constraints();
     std::vector<types::global_dof_index> dofs(8);

@@ -144,7 +144,10 @@ namespace Voussoir
     State  state          = scheme->state_at_rest();
     state.material_memory = std::move(memory);
     if (contact != nullptr)
-      contact->start(state);
+      {
+        contact->start(state);
+        contact->begin_approach();
+      }
     std::array<Vector, 3> velocity;
     Result                result;
     while (!result.at_rest && result.steps < max_steps)

@@ -97,17 +97,30 @@ namespace Voussoir
                         "\" is there before the earthquake, but \"Stages\" in "
                         "section \"Static state\" does not name it; add it "
                         "there.");
+    for (const auto &[name, load] : loads)
+      if (load->over_time() && staged.count(name) > 0)
+        throw UserError("The load \"" + name +
+                        "\" has a \"Time function\", but \"Stages\" in "
+                        "section \"Static state\" names it, where nothing "
+                        "changes with time; leave one of them out.");
+    const auto check_staged = [&](const std::string &name,
+                                  const std::string &entry) {
+      if (staged.count(name) == 0)
+        throw UserError(
+          entry + " names \"" + name +
+          "\", which is not in the \"Stages\" of section \"Static state\"" +
+          known_names(name, {staged.begin(), staged.end()}) + ".");
+    };
     for (const InterfaceParameters &interface : interfaces.list)
       {
         const std::string &after = interface.grouted_after;
         const std::string  place = "section \"Interfaces/" + interface.name;
+        if (!interface.uplift.comes_with.empty())
+          check_staged(interface.uplift.comes_with,
+                       "\"Comes with\" in " + place + "/Uplift\"");
         if (after.empty())
           continue;
-        if (staged.count(after) == 0)
-          throw UserError(
-            "\"Grouted after\" in " + place + "\" names \"" + after +
-            "\", which is not in the \"Stages\" of section \"Static state\"" +
-            known_names(after, {staged.begin(), staged.end()}) + ".");
+        check_staged(after, "\"Grouted after\" in " + place + "\"");
         const auto last = stage_names().back();
         if (interface.uplift.given() &&
             std::find(last.begin(), last.end(), after) != last.end())

@@ -2,6 +2,7 @@
 #include <voussoir/analysis/lost_equilibrium.h>
 #include <voussoir/analysis/relaxation.h>
 #include <voussoir/analysis/static_state.h>
+#include <voussoir/base/mpi.h>
 #include <voussoir/fem/nodal_values.h>
 
 #include <deal.II/base/timer.h>
@@ -73,12 +74,17 @@ namespace Voussoir
       /** What grows along a stage. */
       struct LoadState
       {
-        Vector loads, temperature;
+        Vector              loads, temperature;
+        std::vector<double> uplift; // at the points of the interfaces [Pa]
 
         /** On the straight way to another one; all of it without round-off. */
         LoadState
         grown_to(const LoadState &end, const double share) const;
       };
+
+      /** As it is now. */
+      LoadState
+      load_state() const;
 
       /** Of the loads and the free thermal strain [N]. */
       Vector
@@ -92,12 +98,15 @@ namespace Voussoir
       unsigned int
       follow_path(const LoadState &start, const LoadState &end);
 
-      /** Equilibrium with these loads; returns the iterations. */
+      /** Equilibrium with these loads; returns the iterations.
+       *  @param is_trial whether it is enough to know that materials crack or
+       *    yield, where they do */
       unsigned int
-      find_equilibrium(const LoadState &load_state);
+      find_equilibrium(const LoadState &load_state, const bool is_trial);
 
       /** Difference of the forces of the materials at the end of an increment
-       *  between one step of the laws and two, over the loads.
+       *  between one step of the laws and two, over the loads; or a twentieth
+       *  of that of their losses, over these.
        *  @param before displacement, @p memory before the increment
        *  @param middle, @p end of the increment */
       double
@@ -119,10 +128,12 @@ namespace Voussoir
 
       /** Brings the memory of the materials to this state, and where they crack
        *  or yield the state to equilibrium again; returns the iterations.
-       *  @param before contact at the beginning of the increment */
+       *  @param before contact at the beginning of the increment
+       *  @param is_trial see find_equilibrium */
       unsigned int
       crack_and_yield(const Vector                    &force,
-                      const std::vector<ContactPoint> &before);
+                      const std::vector<ContactPoint> &before,
+                      const bool                       is_trial);
 
       /** The points of the interfaces as they are, or none. */
       std::vector<ContactPoint>
@@ -132,13 +143,10 @@ namespace Voussoir
       void
       come_to_rest(const Vector &force, MaterialMemory &memory);
 
-      /** Whether they have cracked or yielded since. */
+      /** Whether materials have lost more than this [J] on any rank: whether
+       *  they have cracked or yielded since. */
       bool
-      has_dissipated_more(const MaterialMemory &before) const;
-
-      /** Whether materials have cracked or yielded on any rank. */
-      bool
-      dissipated(const MaterialMemory &memory) const;
+      dissipated(const MaterialMemory &memory, const double before = 0.) const;
 
       void
       report_equilibrium(const unsigned int iterations,
@@ -178,7 +186,7 @@ namespace Voussoir
                        {materials.begin(), materials.end()},
                        for_each_material(model.materials,
                                          [](const Material &material) {
-                                           return material.static_factors();
+                                           return material.factor_at_rest();
                                          }))
       , on_springs(parameters.supports == "springs")
       , constraints(model.discretization.make_constraints(
@@ -231,10 +239,12 @@ namespace Voussoir
       damped_steps = increments = 0;
       if (!solver)
         make_solver();
-      const LoadState start{loads, state.temperature};
+      const LoadState start = load_state();
       for (const std::string &name : stage)
         add_load(name, *load_of.at(name), report);
-      const LoadState    end{loads, state.temperature};
+      if (model.contact != nullptr)
+        model.contact->let_water_in(stage);
+      const LoadState    end        = load_state();
       const unsigned int iterations = follow_path(start, end);
 
       // f(u) minus loads and contact is what the supports bring
@@ -278,7 +288,19 @@ namespace Voussoir
         {
           result.loads.sadd(share, 1. - share, loads);
           result.temperature.sadd(share, 1. - share, temperature);
+          for (unsigned int k = 0; k < uplift.size(); ++k)
+            result.uplift[k] += (1. - share) * (uplift[k] - end.uplift[k]);
         }
+      return result;
+    }
+
+
+    StaticStages::LoadState
+    StaticStages::load_state() const
+    {
+      LoadState result{loads, state.temperature, {}};
+      for (const ContactPoint &point : contact_points())
+        result.uplift.push_back(point.uplift);
       return result;
     }
 
@@ -309,13 +331,15 @@ namespace Voussoir
           const auto      memory_before       = state.material_memory;
           const auto      points_before       = contact_points();
           is_last                             = next == 1.;
-          iterations += find_equilibrium(goal);
+          const bool is_trial                 = step > largest_step;
+          iterations += find_equilibrium(goal, is_trial);
 
           bool is_accepted = true;
-          if (has_dissipated_more(memory_before))
+          if (dissipated(state.material_memory,
+                         memory_before.losses().material))
             {
               const double error =
-                step > largest_step ?
+                is_trial ?
                   1. :
                   error_of_return_mapping(displacement_before,
                                           memory_before,
@@ -328,9 +352,11 @@ namespace Voussoir
                          join(stage, ", "),
                          "\" a load increment of ",
                          100. * step,
-                         " % changes the forces of the materials by ",
+                         " % changes the forces of the materials by up to ",
                          100. * error,
-                         " % of the loads against two of half its size; take "
+                         " % of the loads, or their losses by up to ",
+                         2000. * error,
+                         " %, against two of half its size; take "
                          "more stages, or more \"Load increments\" in section "
                          "\"Static state\"");
             }
@@ -340,8 +366,8 @@ namespace Voussoir
               ++increments;
               continue;
             }
-          step               = step > largest_step ? largest_step : 0.5 * step;
-          state.displacement = displacement_before;
+          step                  = is_trial ? largest_step : 0.5 * step;
+          state.displacement    = displacement_before;
           state.material_memory = memory_before;
           if (model.contact != nullptr)
             model.contact->set_points(points_before);
@@ -351,10 +377,15 @@ namespace Voussoir
 
 
     unsigned int
-    StaticStages::find_equilibrium(const LoadState &load_state)
+    StaticStages::find_equilibrium(const LoadState &load_state,
+                                   const bool       is_trial)
     {
-      const Vector force      = total_force(load_state);
-      const auto   points     = contact_points();
+      const Vector force  = total_force(load_state);
+      auto         points = contact_points();
+      for (unsigned int k = 0; k < points.size(); ++k)
+        points[k].uplift = load_state.uplift[k];
+      if (model.contact != nullptr)
+        model.contact->set_points(points);
       unsigned int iterations = 0;
       if (!dissipated(state.material_memory))
         iterations += find_elastic_equilibrium(force);
@@ -362,11 +393,20 @@ namespace Voussoir
         {
           internal_force.set_thermal_strain(load_state.temperature,
                                             state.material_memory);
-          iterations += crack_and_yield(force, points);
+          iterations += crack_and_yield(force, points, is_trial);
           internal_force.respond(state.force,
                                  state.displacement,
                                  state.material_memory);
         }
+      if (!std::isfinite(state.displacement.l2_norm() + state.force.l2_norm()))
+        throw LostEquilibrium(
+          "The static stage \"" + join(stage, ", ") +
+            "\" comes to no equilibrium: displacements or "
+            "forces are no longer finite (NaN or infinite). "
+            "Look at the strength of the materials and at "
+            "the loads of the stage.",
+          before,
+          before);
       return iterations;
     }
 
@@ -377,20 +417,29 @@ namespace Voussoir
                                           const LoadState &middle,
                                           const LoadState &end) const
     {
-      Vector displacement = before;
+      const double lost_before  = memory.losses().material;
+      Vector       displacement = before;
       displacement.sadd(0.5, 0.5, state.displacement);
       Vector in_two(displacement), at_once(displacement);
       internal_force.set_thermal_strain(middle.temperature, memory);
       internal_force.respond(in_two, displacement, memory);
       internal_force.set_thermal_strain(end.temperature, memory);
       internal_force.respond(in_two, state.displacement, memory);
+      const std::vector<double> losses = sum_over_ranks(
+        std::vector<double>{memory.losses().material - lost_before,
+                            state.material_memory.losses().material -
+                              lost_before},
+        model.discretization.grid.communicator());
+      const double of_losses =
+        std::abs(losses[1] - losses[0]) / std::max(losses[0], losses[1]);
 
       memory = state.material_memory;
       internal_force.respond(at_once, state.displacement, memory);
       in_two -= at_once;
       constraints.set_zero(in_two);
       const double size = total_force(end).l2_norm();
-      return size > 0. ? in_two.l2_norm() / size : 0.;
+      return std::max(size > 0. ? in_two.l2_norm() / size : 0.,
+                      0.05 * of_losses);
     }
 
 
@@ -413,13 +462,19 @@ namespace Voussoir
 
     unsigned int
     StaticStages::crack_and_yield(const Vector                    &force,
-                                  const std::vector<ContactPoint> &before)
+                                  const std::vector<ContactPoint> &before,
+                                  const bool                       is_trial)
     {
       if (!dissipated(state.material_memory))
         {
           MaterialMemory tried = state.material_memory;
           internal_force.respond(state.force, state.displacement, tried);
           if (!dissipated(tried))
+            {
+              state.material_memory = std::move(tried);
+              return 0;
+            }
+          if (is_trial)
             {
               state.material_memory = std::move(tried);
               return 0;
@@ -491,18 +546,10 @@ namespace Voussoir
 
 
     bool
-    StaticStages::has_dissipated_more(const MaterialMemory &before) const
+    StaticStages::dissipated(const MaterialMemory &memory,
+                             const double          before) const
     {
-      return Utilities::MPI::max(state.material_memory.losses().material -
-                                   before.losses().material,
-                                 model.discretization.grid.communicator()) > 0.;
-    }
-
-
-    bool
-    StaticStages::dissipated(const MaterialMemory &memory) const
-    {
-      return Utilities::MPI::max(memory.losses().material,
+      return Utilities::MPI::max(memory.losses().material - before,
                                  model.discretization.grid.communicator()) > 0.;
     }
 
@@ -561,23 +608,34 @@ namespace Voussoir
                     nlohmann::json         &summary)
   {
     InitialState state = apply_stages(model, parameters, loads, log, summary);
-
-    // the same state in the dynamic model
-    model.internal_force.hand_over(state.material_memory);
-    model.internal_force.set_static_state(state.displacement,
-                                          state.temperature,
-                                          state.material_memory);
-    model.internal_force.respond(state.force,
-                                 state.displacement,
-                                 state.material_memory);
-    state.material_memory.set_losses({});
-    model.terms.add_to(state.force, state.displacement, 0.);
+    std::swap(state.reaction, state.force);
     if (model.contact != nullptr)
       {
         state.contact_force = model.discretization.create_vector();
         model.contact->add_forces(1., state.contact_force);
-        state.force -= state.contact_force;
       }
     return state;
+  }
+
+
+  void
+  hand_over(InitialState        &state,
+            const InternalForce &internal_force,
+            const NodalTerms    &terms)
+  {
+    if (state.displacement.size() == 0)
+      return;
+    internal_force.hand_over(state.material_memory);
+    internal_force.set_static_state(state.displacement,
+                                    state.temperature,
+                                    state.material_memory);
+    state.force.reinit(state.displacement);
+    internal_force.respond(state.force,
+                           state.displacement,
+                           state.material_memory);
+    state.material_memory.set_losses({});
+    terms.add_to(state.force, state.displacement, 0.);
+    if (state.contact_force.size() > 0)
+      state.force -= state.contact_force;
   }
 } // namespace Voussoir

@@ -1,6 +1,7 @@
 #include <voussoir/base/mpi.h>
 #include <voussoir/constraints/contact.h>
 #include <voussoir/mesh/face_distance.h>
+#include <voussoir/mesh/interfaces.h>
 
 #include <algorithm>
 
@@ -70,6 +71,8 @@ namespace Voussoir
             point.initial_gap[0] = not_grouted;
             points.push_back(point);
             point_positions.push_back(cluster.position);
+            forces_unique.push_back(cluster.pairs.size() <
+                                    cluster.nodes.size());
             first_node.push_back(cluster.nodes[pair.first]);
           }
         solver->add_cluster(cluster.nodes.size(), points);
@@ -78,6 +81,8 @@ namespace Voussoir
                             cluster.nodes.end());
       }
     find_uplift(discretization);
+    for (const InterfaceParameters &interface : interfaces.list)
+      has_water.push_back(interface.uplift.comes_with.empty());
 
     exchange.emplace(discretization, global_nodes);
     displacement.resize(global_nodes.size());
@@ -95,6 +100,50 @@ namespace Voussoir
           cell_size = std::min(cell_size, cell->minimum_vertex_distance());
         });
     cell_size = Utilities::MPI::min(cell_size, communicator);
+  }
+
+
+  double
+  Contact::set_delay(
+    const Discretization                            &discretization,
+    const std::function<double(const Grid::Cell &)> &wave_speed)
+  {
+    // 2 leave some chatter where friction is above 0.7 (see doc/theory.md)
+    constexpr double cells = 4.;
+
+    // sums and numbers of them at the nodes of the surfaces
+    Vector times(discretization.owned_dofs,
+                 discretization.relevant_dofs,
+                 communicator);
+    for (const std::string &name : names)
+      for (const std::string &side : {name, name + other_side})
+        discretization.grid.for_each_face(
+          side, [&](const auto &cell, const unsigned int) {
+            const double length =
+              cell->minimum_vertex_distance() / discretization.degree;
+            for (const types::global_dof_index node :
+                 discretization.cell_nodes(discretization.dof_cell(cell)))
+              {
+                times(3 * node) += length / wave_speed(cell);
+                times(3 * node + 1) += 1.;
+              }
+          });
+    times.compress(VectorOperation::add);
+    exchange->to_clusters(times, displacement);
+    const auto mean_at = [&](const unsigned int node) {
+      return displacement[node][0] / displacement[node][1];
+    };
+    double largest = 0.;
+    for (unsigned int k = 0; k < solver->points.size(); ++k)
+      if (forces_unique[k])
+        {
+          ContactPoint &point = solver->points[k];
+          point.delay =
+            cells * std::max(mean_at(point.first), mean_at(point.second));
+          largest = std::max(largest, point.delay);
+        }
+    std::fill(displacement.begin(), displacement.end(), Tensor<1, 3>());
+    return Utilities::MPI::max(largest, communicator);
   }
 
 
@@ -149,11 +198,44 @@ namespace Voussoir
         point.history             = {joined.initial_gap, 0.};
         point.stick_point         = Tensor<1, 2>();
         point.largest_slip        = 0.;
+        point.mean_pressure       = 0.;
         point.bar_extension       = motion[0];
-        point.uplift              = uplift[k];
         point.status              = ContactStatus::sticking;
         solver->update_limits(point);
       }
+    set_uplift(interface);
+  }
+
+
+  void
+  Contact::set_uplift(const unsigned int interface)
+  {
+    if (!has_water[interface])
+      return;
+    for (unsigned int k = 0; k < solver->points.size(); ++k)
+      {
+        ContactPoint &point = solver->points[k];
+        if (interface_of_surface[point.surface] == interface &&
+            is_joined(point))
+          {
+            point.uplift = uplift[k];
+            solver->update_limits(point);
+          }
+      }
+  }
+
+
+  void
+  Contact::let_water_in(const std::vector<std::string> &loads)
+  {
+    for (unsigned int i = 0; i < interfaces.list.size(); ++i)
+      if (std::find(loads.begin(),
+                    loads.end(),
+                    interfaces.list[i].uplift.comes_with) != loads.end())
+        {
+          has_water[i] = true;
+          set_uplift(i);
+        }
   }
 
 
@@ -277,14 +359,30 @@ namespace Voussoir
 
 
   void
+  Contact::begin_approach()
+  {
+    before_approach.clear();
+    for (const ContactPoint &point : solver->points)
+      before_approach.push_back(
+        {point.history, point.stick_point, point.largest_slip});
+  }
+
+
+  void
   Contact::forget_approach()
   {
-    for (ContactPoint &point : solver->points)
+    for (unsigned int k = 0; k < solver->points.size(); ++k)
       {
-        point.history.opening =
-          point.status == ContactStatus::open ? point.gap[0] : 0.;
-        point.history.slip = point.largest_slip =
-          std::hypot(point.gap[1], point.gap[2]);
+        ContactPoint &point  = solver->points[k];
+        const Slid   &before = before_approach[k];
+        const bool    open   = point.status == ContactStatus::open;
+        point.history        = before.history;
+        if (open)
+          point.history.opening = std::max(point.history.opening, point.gap[0]);
+        if (!open || point.limits.bond > 0.)
+          point.history.slip += (point.stick_point - before.stick_point).norm();
+        point.largest_slip =
+          std::max(before.largest_slip, std::hypot(point.gap[1], point.gap[2]));
         solver->update_limits(point);
       }
     for (ContactSurface &surface : solver->surfaces)

@@ -370,7 +370,7 @@ namespace Voussoir
                   system(row, j) += P * r * W[e * n + j];
               }
             if (slides && !open && F[0] > 0.)
-              system(row, 3 * k) -= limits.friction * trial[d] / size;
+              system(row, 3 * k) -= limits.with_pressure() * trial[d] / size;
           }
       }
     };

@@ -154,8 +154,8 @@ namespace Voussoir
     make_segments(const ContactLimits &limits, const double stiffness)
     {
       const double lowest   = limits.opening_force(),
-                   friction = limits.locked ? 0. : limits.friction,
-                   cohesion = limits.locked ? 0. : limits.cohesion;
+                   friction = limits.locked ? 0. : limits.with_pressure(),
+                   cohesion = limits.locked ? 0. : limits.without_pressure();
       std::vector<Segment> segments;
       if (friction > 0.)
         segments.push_back({0., 0., 0., 1., 0., 0., cohesion, friction, false});

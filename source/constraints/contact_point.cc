@@ -160,7 +160,9 @@ namespace Voussoir
   {
     if (locked)
       return std::numeric_limits<double>::max();
-    return open ? bond : bond + cohesion + friction * std::max(force, 0.);
+    return open ?
+             bond :
+             bond + without_pressure() + with_pressure() * std::max(force, 0.);
   }
 
 
@@ -303,7 +305,7 @@ namespace Voussoir
         const auto partial = [&](const double limit) {
           return gap(lowest, limit);
         };
-        const double all = limits.bond + limits.cohesion;
+        const double all = limits.bond + limits.without_pressure();
         close_gap(
           partial, limits.bond, partial(limits.bond), all, partial(all));
       }

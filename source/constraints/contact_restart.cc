@@ -27,6 +27,7 @@ namespace Voussoir
                                       point.initial_gap[0],
                                       point.initial_gap[1],
                                       point.initial_gap[2],
+                                      point.mean_pressure,
                                       static_cast<double>(point.status)}};
         values.items.emplace_back(point_keys[k], point_memory[k].data());
       }
@@ -66,6 +67,7 @@ namespace Voussoir
                        communicator));
     const ContactSolver::Effort made = effort();
     return {{"energies", energies},
+            {"water", has_water},
             {"penetration", made.penetration},
             {"residual", made.residual},
             {"sweeps", made.sweeps},
@@ -81,7 +83,10 @@ namespace Voussoir
   {
     // where the static state has been grouted bars and uplift act
     for (unsigned int i = 0; i < interfaces.list.size(); ++i)
-      join(i);
+      {
+        has_water[i] = saved.at("water").at(i).get<bool>();
+        join(i);
+      }
     for (unsigned int k = 0; k < solver->points.size(); ++k)
       {
         ContactPoint      &point  = solver->points[k];
@@ -97,7 +102,8 @@ namespace Voussoir
         point.history.slip    = memory[6];
         point.bar_extension   = memory[7];
         point.largest_slip    = memory[8];
-        point.status          = static_cast<ContactStatus>(memory[12]);
+        point.status          = static_cast<ContactStatus>(memory[13]);
+        point.mean_pressure   = memory[12];
         solver->update_limits(point);
       }
 

@@ -18,6 +18,13 @@ namespace Voussoir
             return false;
       return true;
     }
+
+
+    double
+    lasting_friction(const ContactPoint &point, const double coefficient)
+    {
+      return coefficient * (1. - point.at_once) * point.mean_pressure;
+    }
   } // namespace
 
 
@@ -87,7 +94,10 @@ namespace Voussoir
     point_matrix.clear();
     for (unsigned int k = 0; k < points.size(); ++k)
       {
-        const auto  &point  = points[k];
+        ContactPoint &point = points[k];
+        point.at_once =
+          point.delay > 0. ? -std::expm1(-time_step / point.delay) : 1.;
+        update_limits(point);
         const double first  = node_flexibility[point.first],
                      second = node_flexibility[point.second];
         if (first >= 0. && second >= 0.)
@@ -140,12 +150,22 @@ namespace Voussoir
                                         strength.cohesion * point.area,
                                         strength.friction,
                                         point.history.opening,
-                                        surface.key_depth > 0. && point.gap[0] < surface.key_depth};
+                                        surface.key_depth > 0. && point.gap[0] < surface.key_depth,
+                                        lasting_friction(point, strength.friction),
+                                        point.at_once};
     double bars                      = 0.;
     if (surface.bar_stiffness > 0.)
       bars = surface.bar_stiffness *
              (point.gap[0] - point.initial_gap[0] - point.bar_extension);
     point.given_force = (point.uplift - bars) * point.area;
+  }
+
+
+  void
+  ContactSolver::catch_up_with_pressure(ContactPoint &point) const
+  {
+    point.mean_pressure = std::max(point.force[0], 0.);
+    update_limits(point);
   }
 
 
@@ -317,6 +337,9 @@ namespace Voussoir
           std::max(point.largest_slip, tangential_norm(point.gap));
       }
     yield_bars(point);
+    point.mean_pressure +=
+      point.at_once * (std::max(F[0], 0.) - point.mean_pressure);
+    point.limits.lasting = lasting_friction(point, point.limits.friction);
     // keys may have closed
     if (point.status != ContactStatus::sticking || surface.bar_stiffness > 0. ||
         (surface.key_depth > 0. && !point.limits.locked))

@@ -19,15 +19,22 @@ namespace Voussoir
                           Patterns::Double(0.));
         prm.add_parameter("Cohesion",
                           constant.cohesion,
-                          "Shear strength without pressure, while closed; it "
-                          "is never lost [Pa].",
+                          "Shear strength without pressure, while closed; slip "
+                          "does not lose it, but where the interface has been "
+                          "open by more than 0.01 mm it is gone [Pa].",
                           Patterns::Double(0.));
       }
 
       InterfaceStrength
-      strength(const InterfaceHistory &) const override
+      strength(const InterfaceHistory &history) const override
       {
-        return constant;
+        // asperities still interlock across a hundredth of a millimetre
+        constexpr double parted = 1e-5;
+
+        InterfaceStrength now = constant;
+        if (history.opening > parted)
+          now.cohesion = 0.;
+        return now;
       }
 
     private:

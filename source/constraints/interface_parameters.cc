@@ -70,6 +70,12 @@ namespace Voussoir
                       density,
                       "Density of the water [kg/m3].",
                       Patterns::Double(0.));
+    prm.add_parameter("Comes with",
+                      comes_with,
+                      "A load: the pressure inside begins with the static "
+                      "stage that names it. Empty: with that of the first load "
+                      "of class \"water\"; where no stage has one, from the "
+                      "start.");
     prm.leave_subsection();
   }
 

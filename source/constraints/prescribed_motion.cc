@@ -8,7 +8,8 @@ namespace Voussoir
 
   namespace
   {
-    /** u = d g(t) on the nodes of face sets. */
+    /** u = u(0) + d (g(t) - g(0)) in chosen components on the nodes of face
+     *  sets. */
     class PrescribedMotion : public Projection
     {
     public:
@@ -16,10 +17,20 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Face sets", face_sets, "Face sets that move so.");
+        prm.add_parameter("Components",
+                          components,
+                          "Components that are prescribed, of x, y and z; the "
+                          "others are free.",
+                          Patterns::MultipleSelection("x|y|z"));
         prm.add_parameter("Displacement",
                           displacement,
-                          "Displacement at factor 1, x, y, z [m].");
-        factor.declare(prm, "Time function", "Factor on the displacement.");
+                          "Displacement at factor 1, x, y, z [m], from where "
+                          "the nodes are at rest.");
+        factor.declare(
+          prm,
+          "Time function",
+          "Factor on the displacement; what it has at t = 0 counts "
+          "as zero.");
       }
 
       void
@@ -29,7 +40,8 @@ namespace Voussoir
               const std::string &place) override
       {
         factor.prepare("\"Time function\" in section \"" + place + "\"");
-        mass               = &lumped_mass;
+        mass = &lumped_mass;
+        take_components(place);
         const auto &scalar = discretization.fe.base_element(0);
         std::set<types::global_dof_index> face_nodes;
         for_each_face(discretization,
@@ -43,6 +55,7 @@ namespace Voussoir
                             face_nodes.insert(cell_nodes[j]);
                       });
         moved_nodes = owned_carriers(discretization, face_nodes);
+        refuse_held(discretization.grid.communicator(), place);
       }
 
       const std::vector<unsigned int> &
@@ -51,52 +64,134 @@ namespace Voussoir
         return moved_nodes;
       }
 
-      bool
-      prescribes() const override
+      std::array<bool, 3>
+      prescribed_components() const override
       {
-        return true;
+        return prescribed;
+      }
+
+      void
+      prepare_step(const InverseMass &inverse_mass, const double) override
+      {
+        // the impulse in these components, p = A_P dv_P, moves the others where
+        // added mass or dashpots couple them: dv = H p
+        unit_impulses.clear();
+        responses.clear();
+        for (const unsigned int node : moved_nodes)
+          {
+            const Tensor<2, 3> H = inverse_mass(node);
+            Tensor<2, 3>       of_prescribed;
+            for (unsigned int d = 0; d < 3; ++d)
+              for (unsigned int e = 0; e < 3; ++e)
+                if (acts(H, d) && acts(H, e))
+                  of_prescribed[d][e] = H[d][e];
+                else
+                  of_prescribed[d][e] = d == e;
+            Tensor<2, 3> impulse = invert(of_prescribed);
+            for (unsigned int d = 0; d < 3; ++d)
+              if (!acts(H, d))
+                impulse[d] = Tensor<1, 3>();
+            unit_impulses.push_back(impulse);
+            responses.push_back(H);
+          }
       }
 
       Result
       project(State &state, const double time_step) override
       {
-        Result             result;
-        const Tensor<1, 3> target = factor(state.time) * displacement;
+        Result       result;
+        const double now = state.time, before = now - time_step;
+        const auto   rate = [&](const double end) {
+          return (factor(end) - factor(end - time_step)) / time_step;
+        };
+        const Tensor<1, 3> velocity = rate(now) * displacement;
         // of the half step before, by the same rule, or at rest
-        const double       before = state.time - time_step;
-        const Tensor<1, 3> last_velocity =
-          before < 0.5 * time_step ?
-            Tensor<1, 3>() :
-            (factor(before) - factor(before - time_step)) / time_step *
-              displacement;
-        for (const unsigned int node : moved_nodes)
-          for (unsigned int d = 0; d < 3; ++d)
-            {
-              const unsigned int entry = 3 * node + d;
-              double            &u = state.displacement.local_element(entry);
-              double            &v = state.velocity.local_element(entry);
-              const double       wanted = v + (target[d] - u) / time_step;
-              const double       impulse =
-                mass->mass.local_element(entry) * (wanted - v);
-              result.impulse[d] += impulse;
-              result.work += impulse * 0.5 * (wanted + last_velocity[d]);
-              u = target[d];
-              v = wanted;
-            }
+        const Tensor<1, 3> last_velocity = before < 0.5 * time_step ?
+                                             Tensor<1, 3>() :
+                                             rate(before) * displacement;
+        for (unsigned int i = 0; i < moved_nodes.size(); ++i)
+          {
+            const unsigned int first = 3 * moved_nodes[i];
+            Tensor<1, 3>       change;
+            for (unsigned int d = 0; d < 3; ++d)
+              if (prescribed[d])
+                change[d] =
+                  velocity[d] - state.velocity.local_element(first + d);
+            const Tensor<1, 3> impulse = unit_impulses[i] * change;
+            change                     = responses[i] * impulse;
+            for (unsigned int d = 0; d < 3; ++d)
+              {
+                state.velocity.local_element(first + d) += change[d];
+                state.displacement.local_element(first + d) +=
+                  time_step * change[d];
+              }
+            result.impulse += impulse;
+            result.work += 0.5 * (impulse * (velocity + last_velocity));
+          }
         return result;
       }
 
     private:
-      std::string  face_sets;
-      Tensor<1, 3> displacement;
-      TimeFactor   factor;
+      bool
+      acts(const Tensor<2, 3> &inverse_mass, const unsigned int d) const
+      {
+        return prescribed[d] && inverse_mass[d][d] > 0.;
+      }
+
+      void
+      take_components(const std::string &place)
+      {
+        const auto list = split_list(components);
+        if (list.empty())
+          throw UserError("\"Components\" in section \"" + place +
+                          "\" is empty, so that nothing is prescribed; name "
+                          "some of x, y and z.");
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            const std::string axis(1, "xyz"[d]);
+            prescribed[d] =
+              std::find(list.begin(), list.end(), axis) != list.end();
+            if (!prescribed[d] && displacement[d] != 0.)
+              throw UserError("\"Displacement\" in section \"" + place +
+                              "\" moves the faces along " + axis +
+                              ", which is not among the \"Components\"; add "
+                              "it there, or give 0.");
+          }
+      }
+
+      /** What a support holds cannot move. */
+      void
+      refuse_held(const MPI_Comm communicator, const std::string &place) const
+      {
+        std::array<unsigned int, 3> held{{0, 0, 0}};
+        for (const unsigned int node : moved_nodes)
+          for (unsigned int d = 0; d < 3; ++d)
+            if (displacement[d] != 0. &&
+                mass->mass.local_element(3 * node + d) == 0.)
+              held[d] = 1;
+        for (unsigned int d = 0; d < 3; ++d)
+          if (Utilities::MPI::max(held[d], communicator) > 0)
+            throw UserError("\"Displacement\" in section \"" + place +
+                            "\" moves nodes along " + "xyz"[d] +
+                            " that a support of section \"Boundaries\" holds; "
+                            "leave one of them out.");
+      }
+
+      std::string         face_sets, components = "x, y, z";
+      Tensor<1, 3>        displacement;
+      TimeFactor          factor;
+      std::array<bool, 3> prescribed{};
 
       const LumpedMass         *mass = nullptr;
       std::vector<unsigned int> moved_nodes;
+
+      // of each node: impulse by change of velocity, velocity by impulse
+      std::vector<Tensor<2, 3>> unit_impulses, responses;
     };
 
     const Registry<Projection>::Add<PrescribedMotion>
       registered("prescribed motion",
-                 "Nodes of face sets follow a given displacement over time.");
+                 "Nodes of face sets follow a given displacement over time, in "
+                 "all components or some.");
   } // namespace
 } // namespace Voussoir

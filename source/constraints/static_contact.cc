@@ -14,25 +14,44 @@ namespace Voussoir
     }
 
 
+    // Shear per pressure with which a point that closes regains cohesion, and
+    // how much faster it does from one multiplier to the next.
+    constexpr double cohesion_per_pressure = 10., over_relaxation = 10.;
+
+
+    /** Pressure of a spring on the gap @p b above that at which it opens. */
+    double
+    closing_force(const ContactLimits &limits,
+                  const Tensor<1, 3>  &b,
+                  const double         spring)
+    {
+      return -spring * b[0] - limits.opening_force();
+    }
+
+
     /**
-     * Limits whose cohesion grows from none with the pressure of a spring on
-     * the gap @p b. A shear that jumps by all of it as a point closes leaves no
-     * equilibrium where a part of it holds the point closed; within the law,
-     * which allows more shear, this finds one.
+     * Limits with the part of the cohesion c that acts. The law has all of it
+     * under pressure, none in an opening, and any part between where a point
+     * just touches: a shear that jumps by all of it as a point closes leaves no
+     * equilibrium where a part of it holds the point closed. That part is a
+     * multiplier k of its own, min(max(k + 10 (p - r g), 0), c).
      */
     ContactLimits
-    without_jump(const ContactLimits &limits,
-                 const Tensor<1, 3>  &b,
-                 const double         spring)
+    with_part_of_cohesion(const ContactLimits &limits,
+                          const double         multiplier,
+                          const double         closing)
     {
-      constexpr double cohesion_per_pressure = 10.;
-
-      ContactLimits result   = limits;
-      const double  pressure = -spring * b[0];
-      result.cohesion =
-        std::min(limits.cohesion,
-                 cohesion_per_pressure *
-                   std::max(pressure - limits.opening_force(), 0.));
+      ContactLimits result = limits;
+      result.lasting       = 0.; // at rest friction has followed the pressure
+      result.at_once       = 1.;
+      result.cohesion = std::clamp(multiplier + cohesion_per_pressure * closing,
+                                   0.,
+                                   limits.cohesion);
+      if (closing < 0.) // it acts across what there is of a gap
+        {
+          result.bond += result.cohesion;
+          result.cohesion = 0.;
+        }
       return result;
     }
 
@@ -73,8 +92,9 @@ namespace Voussoir
   StaticContact::StaticContact(Contact &contact, const Vector &stiffness)
     : contact(contact)
     , multiplier(contact.points().size())
+    , cohesion(multiplier.size())
+    , closing(multiplier.size())
     , tangent(multiplier.size())
-    , path(multiplier.size())
     , at_nodes(contact.solver->n_nodes())
     , forces(at_nodes.size())
     , at_owned(contact.nodes().size())
@@ -105,7 +125,9 @@ namespace Voussoir
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
         multiplier[k] = before[k].force;
-        path[k]       = before[k].history.slip;
+        cohesion[k]   = before[k].status == ContactStatus::open ?
+                          0. :
+                          before[k].limits.cohesion;
       }
   }
 
@@ -129,10 +151,16 @@ namespace Voussoir
         Tensor<1, 3>  b     = point.gap - multiplier[k] / spring[k];
         b[1] -= point.stick_point[0];
         b[2] -= point.stick_point[1];
-        const ContactLimits limits = without_jump(point.limits, b, spring[k]);
-        const ContactForce  found  = solve_contact(b, 1. / spring[k], limits);
-        point.force                = found.force;
-        point.status               = found.status;
+        closing[k] = closing_force(point.limits, b, spring[k]);
+        const ContactLimits limits =
+          with_part_of_cohesion(point.limits, cohesion[k], closing[k]);
+        const ContactForce found = solve_contact(b, 1. / spring[k], limits);
+        point.force              = found.force;
+        point.status             = found.status;
+        if (limits.bond > point.limits.bond) // what touches is not open
+          point.status = spring[k] * std::hypot(b[1], b[2]) > limits.bond ?
+                           ContactStatus::sliding :
+                           ContactStatus::sticking;
 
         Tensor<2, 3> in_frame = tangent_of(found, b, limits, spring[k]);
         in_frame[0][0] +=
@@ -226,17 +254,19 @@ namespace Voussoir
         changed += (point.force - multiplier[k]).norm_square();
         whole += point.force.norm_square();
         multiplier[k] = point.force;
+        cohesion[k] =
+          std::clamp(cohesion[k] + cohesion_per_pressure * closing[k] *
+                                     (closing[k] > 0. ? over_relaxation : 1.),
+                     0.,
+                     point.limits.cohesion);
 
-        const bool          open   = point.status == ContactStatus::open;
         const ContactLimits limits = point.limits;
-        const Tensor<1, 2>  slip({point.gap[1] - point.stick_point[0],
-                                  point.gap[2] - point.stick_point[1]});
-        if (open)
-          point.history.opening = std::max(point.history.opening, point.gap[0]);
-        if (point.status != ContactStatus::sticking && !limits.locked &&
-            (!open || limits.bond > 0.))
-          point.history.slip =
-            std::max(point.history.slip, path[k] + slip.norm());
+        if (limits.tension > 0. || limits.bond > 0.) // there is a bond to lose
+          {
+            const InterfaceHistory now = history_at(k);
+            point.history = {std::max(point.history.opening, now.opening),
+                             std::max(point.history.slip, now.slip)};
+          }
         contact.solver->yield_bars(point);
         contact.solver->update_limits(point);
 
@@ -244,7 +274,7 @@ namespace Voussoir
                      limits.tension != point.limits.tension ||
                      limits.cohesion != point.limits.cohesion ||
                      limits.locked != point.limits.locked;
-        number[1] += open;
+        number[1] += point.status == ContactStatus::open;
         number[2] += point.status == ContactStatus::sliding;
         number[3] += 1;
       }
@@ -261,17 +291,39 @@ namespace Voussoir
   }
 
 
+  InterfaceHistory
+  StaticContact::history_at(const unsigned int k) const
+  {
+    const ContactPoint &point  = contact.points()[k];
+    const bool          open   = point.status == ContactStatus::open;
+    InterfaceHistory    result = before[k].history;
+    if (open)
+      result.opening = std::max(result.opening, point.gap[0]);
+    if (point.status != ContactStatus::sticking && !point.limits.locked &&
+        (!open || point.limits.bond > 0.))
+      result.slip += std::hypot(point.gap[1] - point.stick_point[0],
+                                point.gap[2] - point.stick_point[1]);
+    return result;
+  }
+
+
   void
   StaticContact::finish_stage()
   {
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
         ContactPoint &point = contact.solver->points[k];
+        // of what was tried on the way here only this happened
+        point.history = history_at(k);
         if (point.status != ContactStatus::sticking && !point.limits.locked)
           {
             point.stick_point[0] = point.gap[1];
             point.stick_point[1] = point.gap[2];
+            point.largest_slip =
+              std::max(point.largest_slip,
+                       std::hypot(point.gap[1], point.gap[2]));
           }
+        contact.solver->catch_up_with_pressure(point);
       }
   }
 

@@ -134,14 +134,15 @@ namespace Voussoir
     prm.add_parameter(
       "Energy interval",
       energy_interval,
-      "Time between two lines of the energy balance, at which the run is also "
-      "checked for growth and NaN [s].",
-      Patterns::Double(1e-9));
+      "Time between two lines of the energy balance [s]; 0 for every 50 steps. "
+      "The run is checked for growth and NaN, and the losses of damping are "
+      "summed up, at least so often.",
+      Patterns::Double(0.));
     prm.add_parameter(
       "Energy limit",
       energy_limit,
-      "Energy that may come from nowhere before the run stops, over what came "
-      "in; from a hundredth on the run warns.",
+      "Energy-balance error at which the run stops, over what came in; from a "
+      "hundredth on the run warns.",
       Patterns::Double(0., 1.));
     prm.add_parameter(
       "Checkpoint interval",
@@ -208,6 +209,7 @@ namespace Voussoir
     if (!generator && !reader.file.empty())
       reader.file = file.resolve(reader.file);
     warnings = unusual_values(prm);
+    find_water_of_uplift();
     check();
     // modes alone need no steps
     if (modes.number > 0 && !moves())
@@ -317,6 +319,20 @@ namespace Voussoir
       throw UserError("The earthquake of section \"Ground motion\" enters "
                       "through a rigid base, but \"Fixed\" in section "
                       "\"Boundaries\" names no face sets; name the base.");
+  }
+
+
+  void
+  Case::find_water_of_uplift()
+  {
+    std::string first;
+    for (const auto &stage : static_state.stage_names())
+      for (const std::string &name : stage)
+        if (first.empty() && file.given("Loads/" + name + "/Class") == "water")
+          first = name;
+    for (InterfaceParameters &interface : interfaces.list)
+      if (interface.uplift.given() && interface.uplift.comes_with.empty())
+        interface.uplift.comes_with = first;
   }
 
 

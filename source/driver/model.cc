@@ -85,6 +85,7 @@ namespace Voussoir
 
       std::vector<std::string> entries{"Boundaries/Fixed",
                                        "Boundaries/Roller",
+                                       "Boundaries/Antisymmetric",
                                        "Boundaries/Absorbing"};
       for (const auto &load : parameters.loads.objects)
         entries.push_back("Loads/" + load.first + "/Face sets");
@@ -142,18 +143,6 @@ namespace Voussoir
         values.push_back(material->inertia_factor < 1. ? 0. :
                                                          material->density);
       return values;
-    }
-
-
-    // The moduli hold at the reference frequency of the damping.
-    std::vector<StiffnessFactors>
-    factors_under(const Damping                       &damping,
-                  const std::vector<const Material *> &materials)
-    {
-      std::vector<StiffnessFactors> list;
-      for (const Material *material : materials)
-        list.push_back(damping.stiffness_factors(material->damping_factor()));
-      return list;
     }
 
 
@@ -272,6 +261,36 @@ namespace Voussoir
     }
 
 
+    // A component of a node has one prescribed motion.
+    void
+    refuse_contradictions(const Model                     &model,
+                          const std::vector<Projection *> &constraints)
+    {
+      const auto &names = model.parameters.projections.objects;
+      std::map<std::pair<unsigned int, unsigned int>, unsigned int> first;
+      unsigned int                                                  found = 0;
+      for (unsigned int i = 0; i < constraints.size(); ++i)
+        for (unsigned int d = 0; d < 3; ++d)
+          if (constraints[i]->prescribed_components()[d])
+            for (const unsigned int node : constraints[i]->nodes())
+              if (const auto other = first.emplace(std::make_pair(node, d), i);
+                  !other.second)
+                found = std::max<unsigned int>(
+                  found,
+                  1 + d + 3 * (i + constraints.size() * other.first->second));
+      found = Utilities::MPI::max(found, model.grid.communicator());
+      if (found == 0)
+        return;
+      const unsigned int pair = (found - 1) / 3;
+      throw UserError(
+        "The constraints \"" + names[pair / constraints.size()].first +
+        "\" and \"" + names[pair % constraints.size()].first +
+        "\" both prescribe the component " + "xyz"[(found - 1) % 3] +
+        " of the same nodes; leave it out of one of them by "
+        "\"Components\", or name other faces.");
+    }
+
+
     std::vector<Projection *>
     prepared_constraints(const Model &model)
     {
@@ -285,15 +304,16 @@ namespace Voussoir
                               "Constraints/" + name);
           list.push_back(constraint.get());
         }
+      refuse_contradictions(model, list);
       return list;
     }
 
 
     std::unique_ptr<const Contact>
-    make_contact(const Discretization       &discretization,
-                 const InterfacesParameters &interfaces,
-                 Log                        &log)
+    make_contact(const Model &model, Log &log)
     {
+      const Discretization       &discretization = model.discretization;
+      const InterfacesParameters &interfaces     = model.parameters.interfaces;
       if (interfaces.list.empty())
         return nullptr;
       for (const InterfaceParameters &interface : interfaces.list)
@@ -308,7 +328,20 @@ namespace Voussoir
                         "\"Upstream level\"" + section,
                         log);
           }
-      return std::make_unique<const Contact>(discretization, interfaces);
+      auto contact = std::make_unique<Contact>(discretization, interfaces);
+      const double delay =
+        contact->set_delay(discretization, [&](const Grid::Cell &cell) {
+          return model.materials[model.material_of(cell)]
+            ->elastic_constants()
+            .s_wave_speed();
+        });
+      const double at_5_hz = 1. / std::hypot(1., 10. * numbers::PI * delay);
+      log.line("Friction follows the pressure with a delay of up to ",
+               1e3 * delay,
+               " ms, as the cells at the interfaces are; a change of 5 Hz to ",
+               std::round(100. * at_5_hz),
+               " %");
+      return contact;
     }
   } // namespace
 
@@ -356,7 +389,7 @@ namespace Voussoir
     , internal_force(discretization,
                      std::vector<const CellKernel *>(materials.begin(),
                                                      materials.end()),
-                     factors_under(Damping(parameters.damping), materials))
+                     std::vector<double>(materials.size(), 1.))
     , boundary(discretization,
                parameters.boundaries.absorbing,
                materials,
@@ -374,7 +407,7 @@ namespace Voussoir
                                                  reservoir,
                                                  log))
     , constraints(prepared_constraints(*this))
-    , contact(make_contact(discretization, parameters.interfaces, log))
+    , contact(make_contact(*this, log))
   {
     for (const std::string &warning : parameters.warnings)
       log.warn(warning);
@@ -444,6 +477,12 @@ namespace Voussoir
                  ", largest step ",
                  reservoir->stable_step(),
                  " s");
+        if (reservoir->end && !reservoir->end->modes.frequencies.empty())
+          log.line("Far reservoir: ",
+                   reservoir->end->modes.frequencies.size(),
+                   " modes across the channel, cut-off frequency of the first ",
+                   reservoir->end->modes.frequencies[0] / (2. * numbers::PI),
+                   " Hz");
       }
     check_source_point(log);
   }

@@ -33,6 +33,17 @@ namespace Voussoir
   }
 
 
+  RestState
+  handed_over(RestState          &&found,
+              const Model         &model,
+              const InternalForce &internal_force)
+  {
+    RestState rest(std::move(found));
+    hand_over(rest.initial, internal_force, model.terms);
+    return rest;
+  }
+
+
   namespace
   {
     /** The interfaces with their gaps at rest, or nothing. */

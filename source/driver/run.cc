@@ -57,7 +57,7 @@ namespace Voussoir
     , water(setup->water)
     , contact(rest.contact)
     , equation{model.discretization,
-               model.internal_force,
+               setup->internal_force,
                model.mass,
                model.terms,
                damping,
@@ -72,8 +72,11 @@ namespace Voussoir
                                rest.initial,
                                state.material_memory,
                                contact ? &*contact : nullptr,
-                               log))
-    , energy(equation, time_step.length)
+                               log,
+                               &scheme))
+    , energy(equation,
+             time_step.length,
+             model.parameters.output.energy_interval)
     , checkpoint(folder.checkpoints(), log.communicator())
     , timer(std::cout, TimerOutput::never, TimerOutput::wall_times)
   {
@@ -84,7 +87,7 @@ namespace Voussoir
     for (Projection *projection : equation.projections)
       projection->start(state);
     // the table has its line of a checkpoint between two
-    if (!folder.restarts() || energy_schedule().due(state.step))
+    if (!folder.restarts() || energy.is_due(state.step))
       energy.evaluate(state);
     keep_last_good();
   }
@@ -115,13 +118,6 @@ namespace Voussoir
   }
 
 
-  Schedule
-  Run::energy_schedule() const
-  {
-    return {model.parameters.output.energy_interval, time_step.length};
-  }
-
-
   unsigned long long
   Run::n_steps() const
   {
@@ -132,10 +128,9 @@ namespace Voussoir
   void
   Run::march()
   {
-    const OutputParameters &output       = model.parameters.output;
-    const Schedule          energy_lines = energy_schedule(),
-                   checkpoints(output.checkpoint_time, time_step.length),
-                   loose_checks(check_interval, time_step.length);
+    const OutputParameters &output = model.parameters.output;
+    const Schedule checkpoints(output.checkpoint_time, time_step.length),
+      loose_checks(check_interval, time_step.length);
     first_step = last_look = next_look = state.step;
     clock.restart();
     since_checkpoint.restart();
@@ -152,12 +147,16 @@ namespace Voussoir
 
     while (state.step < n_steps())
       {
+        const unsigned long long next = state.step + 1;
+        const bool balances = energy.is_due(next) || next == n_steps();
+        if (balances)
+          energy.before_step(state);
         {
           TimerOutput::Scope scope(timer, "step");
           scheme.step(state);
         }
         observe();
-        if (energy_lines.due(state.step) || state.step == n_steps())
+        if (balances)
           {
             check_energy();
             keep_last_good();
@@ -193,7 +192,7 @@ namespace Voussoir
   Run::check_energy()
   {
     TimerOutput::Scope scope(timer, "energy balance");
-    energy.evaluate(state);
+    energy.evaluate(state, state.step == n_steps());
     if (const std::string reason =
           energy.alarm(model.parameters.output.energy_limit);
         !reason.empty())
@@ -204,7 +203,7 @@ namespace Voussoir
       {
         std::ostringstream text;
         text << std::setprecision(3) << "from t = " << state.time
-             << " s on more than 1 % of the energy comes from nowhere: "
+             << " s on the energy-balance error is more than 1 %: "
              << 100. * energy.relative_error() << " % of what came in, "
              << 100. * energy.error_of_losses()
              << " % of what damping, cracks, friction and impacts took";
@@ -292,6 +291,8 @@ namespace Voussoir
     last_good.displacement = state.displacement;
     last_good.velocity     = state.velocity;
     last_good.time         = state.time;
+    if (!model.internal_force.has_memory())
+      last_good.memory = state.memory; // for the stress
   }
 
 
@@ -366,7 +367,8 @@ namespace Voussoir
           write_fields(observed,
                        {{&last_good.displacement, {"displacement"}},
                         {&last_good.velocity, {"velocity"}}},
-                       &last_good.displacement,
+                       // cracks have gone on since
+                       model.internal_force.has_memory() ? nullptr : &last_good,
                        "last_good",
                        last_good.time);
         if (!picture.empty())
@@ -379,6 +381,6 @@ namespace Voussoir
          << written
          << ". The time step may be too large for the model: take a smaller "
             "\"Safety factor\" in section \"Time\".";
-    throw UserError(text.str());
+    throw RunStopped(text.str());
   }
 } // namespace Voussoir

@@ -39,12 +39,13 @@ namespace Voussoir
                                &a.loss_in_dashpots,
                                &a.work_of_base,
                                &a.work_of_projections,
-                               &a.loss_by_mass,
-                               &a.work_on_cells};
+                               &a.loss_by_mass};
     for (unsigned int m = 0; m < model.materials.size(); ++m)
       if (PointHistory *history = state.material_memory.of(m))
         sums.insert(sums.end(),
-                    {&history->losses.material, &history->losses.closing});
+                    {&history->losses.material,
+                     &history->losses.closing,
+                     &history->losses.damping});
     if (water)
       sums.push_back(&water->loss);
     if (contact)
@@ -94,6 +95,7 @@ namespace Voussoir
       }
     content.documents = {{"observers", nullptr},
                          {"free field", nullptr},
+                         {"radiating end", nullptr},
                          {"sums of ranks", nullptr}};
     return content;
   }
@@ -111,6 +113,8 @@ namespace Voussoir
       content.documents["observers"][name] = observer->save();
     if (earthquake.wave)
       content.documents["free field"] = earthquake.wave->save();
+    if (water && water->end)
+      content.documents["radiating end"] = water->end->save();
     std::vector<double> sums;
     for (const double *sum : sums_of_rank())
       sums.push_back(*sum);
@@ -185,6 +189,8 @@ namespace Voussoir
       observer->load(seen.at(name));
     if (earthquake.wave)
       earthquake.wave->load(content.documents["free field"]);
+    if (water && water->end)
+      water->end->load(content.documents["radiating end"]);
 
     // on as many ranks each takes its own, so that nothing rounds differently;
     // else the first one takes all

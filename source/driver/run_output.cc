@@ -155,8 +155,9 @@ namespace Voussoir
     std::ostringstream text;
     text << std::fixed << std::setprecision(3) << "t = " << state.time
          << " s  time left " << duration_text(seconds * (1. - done) / done)
-         << "  energy error " << 100. * energy.relative_error() << " %  "
-         << std::setprecision(1) << throughput(seconds) << " MDOF-steps/s";
+         << "  energy-balance error " << 100. * energy.relative_error()
+         << " %  " << std::setprecision(1) << throughput(seconds)
+         << " MDOF-steps/s";
     log.progress(double(state.step) / double(n_steps()), text.str());
   }
 
@@ -229,8 +230,8 @@ namespace Voussoir
          << (complete ? "Done: " : "Done, but not all is written: ")
          << state.step - first_step << " steps in "
          << duration_text(loop_seconds) << ", " << throughput(loop_seconds)
-         << " MDOF-steps/s, energy error " << 100. * energy.relative_error()
-         << " %\n";
+         << " MDOF-steps/s, energy-balance error "
+         << 100. * energy.relative_error() << " %\n";
     if (contact)
       text << "Contact: "
            << 100. * result.at("contact share of the loop").get<double>()

@@ -23,6 +23,29 @@ namespace Voussoir
     }
 
 
+    InternalForce
+    internal_force_under(const Damping &damping, const Model &model)
+    {
+      std::vector<double> factors;
+      for (const Material *material : model.materials)
+        factors.push_back(damping.stiffness_scale(material->damping_factor()));
+      return model.internal_force.with(factors);
+    }
+
+
+    nlohmann::json
+    summary_of(const Damping &damping, const std::string &name)
+    {
+      nlohmann::json result{{"model", name}};
+      if (damping.n_branches() > 0)
+        {
+          result["moduli hold at [Hz]"]       = damping.reference_frequency();
+          result["moduli at rest over given"] = damping.modulus(0.);
+        }
+      return result;
+    }
+
+
     // Waves below the band are hardly damped, and those in it the mesh has not.
     void
     check_band(const Model &model, Log &log)
@@ -114,7 +137,9 @@ namespace Voussoir
                      Log                &log)
     : model(model)
     , damping(adapted_damping(model.parameters.damping, modes))
+    , internal_force(internal_force_under(damping, model))
     , time_step(model,
+                internal_force,
                 damping,
                 kept_step(folder),
                 record_interval(model, folder),
@@ -142,15 +167,18 @@ namespace Voussoir
 
 
   ObservedModel
-  RunSetup::observed(const std::string    &folder,
-                     const InitialState   &initial,
-                     const MaterialMemory &memory,
-                     const Contact        *contact,
-                     Log                  &log) const
+  RunSetup::observed(const std::string       &folder,
+                     const InitialState      &initial,
+                     const MaterialMemory    &memory,
+                     const Contact           *contact,
+                     Log                     &log,
+                     const CentralDifference *scheme) const
   {
     return {model.discretization,
             model.materials,
             model.material_of_cell(),
+            internal_force,
+            damping,
             memory,
             initial,
             water.get(),
@@ -161,7 +189,9 @@ namespace Voussoir
             model.carried_frequency(),
             earthquake.base,
             ResultNames(model.parameters.material_names(), model.grid, contact),
-            log};
+            log,
+            model.constraints,
+            scheme};
   }
 
 
@@ -183,6 +213,7 @@ namespace Voussoir
             {"degree", model.discretization.degree},
             {"time step [s]", time_step.length},
             {"largest stable step [s]", time_step.limit},
+            {"damping", summary_of(damping, model.parameters.damping.model)},
             {"peak memory of a rank [MB]",
              Utilities::MPI::max(memory.VmHWM / 1024., communicator)},
             {"names", names.json()}};

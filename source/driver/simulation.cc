@@ -44,8 +44,12 @@ namespace Voussoir
                   const RunOptions &options,
                   Log              &log)
     {
-      if (!model.parameters.damping.modes.empty())
-        log.line("Before the modes are known, without damping:");
+      const Case &parameters = model.parameters;
+      if (parameters.modes.number > 0 && parameters.damping.depends_on_modes())
+        log.line("Before the modes are known, ",
+                 parameters.damping.follows_first_mode() ?
+                   "with moduli of another frequency:" :
+                   "without damping:");
       auto setup = std::make_unique<RunSetup>(model, Modes(), folder, log);
       check_modes(model);
       if (folder.wanted() && !options.validate)
@@ -120,19 +124,19 @@ namespace Voussoir
         write_fields(observed,
                      {{&lost.before, {"displacement"}},
                       {&lost.moved, {"displacement when it was given up"}}},
-                     &lost.before,
+                     nullptr,
                      "last_good",
                      0.);
       write_summary(folder.path(),
                     setup.summary(log.communicator()),
                     std::string("stopped: ") + lost.what(),
                     log);
-      throw UserError(std::string(lost.what()) +
-                      (picture.empty() ?
-                         "" :
-                         " The state before this stage and the "
-                         "motion from there are in " +
-                           folder.path() + "/" + picture + "."));
+      throw RunStopped(std::string(lost.what()) +
+                       (picture.empty() ?
+                          "" :
+                          " The state before this stage and the "
+                          "motion from there are in " +
+                            folder.path() + "/" + picture + "."));
     }
 
 
@@ -191,7 +195,7 @@ namespace Voussoir
                   Log                      &log)
     {
       const Model &model = setup->model;
-      if (model.parameters.damping.modes.empty() || modes.list.empty())
+      if (!model.parameters.damping.depends_on_modes() || modes.list.empty())
         return setup;
       return std::make_unique<RunSetup>(model, modes, folder, log);
     }
@@ -204,14 +208,13 @@ namespace Voussoir
     : log(opened_log(parameters, options, communicator))
     , folder(parameters, options, log)
     , model(parameters, log)
-    , setup(checked_setup(model, folder, options, log))
-    , rest(options.validate ? RestState(model) : rest_of(*setup, folder, log))
-    , modes(options.validate ? Modes() : modes_of(model, rest, folder, log))
-    , run(rest,
-          modes,
-          folder,
-          adapted_setup(std::move(setup), modes, folder, log),
-          log)
+    , checked(checked_setup(model, folder, options, log))
+    , found(options.validate ? RestState(model) :
+                               rest_of(*checked, folder, log))
+    , modes(options.validate ? Modes() : modes_of(model, found, folder, log))
+    , setup(adapted_setup(std::move(checked), modes, folder, log))
+    , rest(handed_over(std::move(found), model, setup->internal_force))
+    , run(rest, modes, folder, std::move(setup), log)
   {}
 
 

@@ -17,7 +17,7 @@ namespace Voussoir
              {"displacement", &initial.displacement},
              {"grouted displacement", &initial.grouted_displacement},
              {"temperature", &initial.temperature},
-             {"force", &initial.force},
+             {"reaction", &initial.reaction},
              {"contact force", &initial.contact_force}})
         if (vector->size() > 0)
           content.values[name] = nodes.values(*vector);
@@ -87,7 +87,7 @@ namespace Voussoir
     RestState            rest(model);
     InitialState        &initial = rest.initial;
     if (header.at("static state"))
-      initial.displacement = initial.temperature = initial.force =
+      initial.displacement = initial.temperature = initial.reaction =
         model.discretization.create_vector();
     if (header.at("grouted"))
       initial.grouted_displacement = model.discretization.create_vector();
@@ -99,9 +99,6 @@ namespace Voussoir
     for (unsigned int m = 0; m < model.materials.size(); ++m)
       if (PointHistory *history = initial.material_memory.of(m))
         history->load();
-    model.internal_force.set_static_state(initial.displacement,
-                                          initial.temperature,
-                                          initial.material_memory);
     if (rest.contact)
       rest.contact->load(header.at("contact"));
     rest.summary = header.at("summary");

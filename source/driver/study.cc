@@ -93,7 +93,59 @@ namespace Voussoir
     }
 
 
-    /** A strength divided by what reduces it. */
+    bool
+    ends_with(const std::string &text, const std::string &end)
+    {
+      return text.size() >= end.size() &&
+             text.compare(text.size() - end.size(), end.size(), end) == 0;
+    }
+
+
+    /** Whether an entry of a material or an interface says how much it bears
+     *  before it breaks, or on the way. */
+    bool
+    is_strength(const std::string &entry)
+    {
+      if (entry.rfind("Materials/", 0) != 0 &&
+          entry.rfind("Interfaces/", 0) != 0)
+        return false;
+      const std::string last = entry.substr(entry.rfind('/') + 1);
+      for (const std::string part : {"trength",
+                                     "ohesion",
+                                     "riction",
+                                     "cut-off",
+                                     "nergy",
+                                     "Yield stress"})
+        if (last.find(part) != std::string::npos)
+          return last != "Strength increase";
+      return false;
+    }
+
+
+    /** Strengths of a case that are above zero and not among those reduced, as
+     *  "Entry = value". */
+    std::vector<std::string>
+    strengths_left(const Case                     &parameters,
+                   const std::vector<std::string> &reduced)
+    {
+      std::vector<std::string> result;
+      for (const nlohmann::json &line : identity_of(parameters))
+        {
+          const std::string           text   = line;
+          const auto                  equals = text.find(" =");
+          const std::string           entry  = text.substr(0, equals);
+          const std::optional<double> value =
+            parse_number(Utilities::trim(text.substr(equals + 2)));
+          if (is_strength(entry) && value && *value > 0. &&
+              std::find(reduced.begin(), reduced.end(), entry) == reduced.end())
+            result.push_back(entry + " = " + number_text(*value));
+        }
+      return result;
+    }
+
+
+    /** A strength divided by what reduces it; of an angle of friction the
+     *  tangent is. */
     std::string
     reduced(const std::string &entry,
             const std::string &strength,
@@ -106,9 +158,21 @@ namespace Voussoir
                         entry +
                         "\", to which this file gives no number; set it, or "
                         "leave it out there.");
+      if (!is_strength(entry))
+        throw UserError("\"Reduced strengths\" in section \"Study\" names \"" +
+                        entry +
+                        "\", which is no strength, cohesion, friction or "
+                        "fracture energy of a material or an interface; leave "
+                        "it out there, or vary it by \"Vary\".");
       if (!by || *by <= 0.)
         throw UserError("Section \"Study\" has a " + strength_reduction +
                         " of \"" + divisor + "\"; give numbers above 0.");
+      if (ends_with(entry, "Friction angle"))
+        {
+          constexpr double degree = numbers::PI / 180.;
+          return number_text(std::atan(std::tan(*whole * degree) / *by) /
+                             degree);
+        }
       return number_text(*whole / *by);
     }
   } // namespace
@@ -123,8 +187,11 @@ namespace Voussoir
   {
     const Case whole(file);
     parameters = whole.study;
-    folder     = whole.output.folder.empty() ? "output/" + file.name() :
-                                               whole.output.folder;
+    if (parameters.reduces_strengths())
+      strengths_kept =
+        strengths_left(whole, split_list(parameters.reduced, ';'));
+    folder = whole.output.folder.empty() ? "output/" + file.name() :
+                                           whole.output.folder;
     if (fs::exists(folder + "/parameters.prm"))
       throw UserError("The folder \"" + folder +
                       "\" is that of a single run; choose another \"Folder\" "
@@ -204,6 +271,12 @@ namespace Voussoir
         folder +
         (n_groups > 1 ? ", " + std::to_string(n_groups) + " side by side" :
                         std::string()));
+    if (parameters.reduces_strengths())
+      say("The " + strength_reduction + " divides " +
+          join(split_list(parameters.reduced, ';'), "; ") +
+          (strengths_kept.empty() ?
+             std::string(", all strengths that there are") :
+             "\nIt leaves as they are " + join(strengths_kept, "; ")));
     for (std::size_t i = my_group; i < combinations.size(); i += n_groups)
       if (parameters.seeks_limit())
         seek_limit(combinations[i]);
@@ -212,11 +285,20 @@ namespace Voussoir
     gather();
     write_tables();
     if (std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome &run) {
-          return ended_early(run.summary);
+          return was_stopped(run.summary) || has_failed(run.summary);
         }))
       throw UserError("None of the runs of the study in \"" + folder +
                       "\" came to its end; the first one " +
                       verdict_of(outcomes.at(0).summary) + ".");
+    const auto failed =
+      std::count_if(outcomes.begin(), outcomes.end(), [](const Outcome &run) {
+        return has_failed(run.summary);
+      });
+    if (failed > 0)
+      throw UserError(counted(failed, "run", "runs") + " of the study in \"" +
+                      folder +
+                      "\" failed, see study.csv; mend what its verdict names "
+                      "and start the study again, which does only these.");
   }
 
 
@@ -245,17 +327,21 @@ namespace Voussoir
     const std::string run_folder = folder_of(values),
                       record     = run_folder + ".json";
     Case              run(file_of(values));
-    const std::string identity = checksum_of(run);
-    nlohmann::json    known    = read_json(record, group);
+    const std::string identity      = checksum_of(run);
+    nlohmann::json    known         = read_json(record, group);
+    const bool        has_been_done = !options.overwrite && known.is_object() &&
+                               known.contains("summary") &&
+                               !has_failed(known.at("summary"));
     if (!options.overwrite && known.is_object() &&
-        known.at("identity") != identity)
+        known.at("identity") != identity &&
+        (has_been_done || !known.contains("summary")))
       throw UserError("The run in \"" + run_folder +
                       "\" has been done with other entries; choose another "
                       "\"Folder\" in section \"Output\" for the study, or "
                       "\"--overwrite\".");
     nlohmann::json summary;
     const Timer    clock_of_run;
-    if (!options.overwrite && known.is_object() && known.contains("summary"))
+    if (has_been_done)
       {
         summary = known.at("summary");
         say(description(values) + ": taken, " + verdict_of(summary));
@@ -274,7 +360,11 @@ namespace Voussoir
                             reason + ".");
         };
         write({{"identity", identity}});
-        summary = do_run(run, run_folder);
+        // what failed has nothing to go on from
+        summary = do_run(run,
+                         run_folder,
+                         !options.overwrite &&
+                           !(known.is_object() && known.contains("summary")));
         write({{"identity", identity}, {"summary", summary}});
         ++n_done;
         seconds_of_runs += clock_of_run.wall_time();
@@ -294,30 +384,40 @@ namespace Voussoir
 
 
   nlohmann::json
-  Study::do_run(Case &run, const std::string &run_folder) const
+  Study::do_run(Case              &run,
+                const std::string &run_folder,
+                const bool         may_go_on) const
   {
     RunOptions how = options;
     how.quiet      = true;
     how.overwrite  = true;
     std::vector<std::string> damaged;
     how.restart =
-      !options.overwrite &&
+      may_go_on &&
       !Checkpoint(run_folder + "/checkpoint", group).newest(damaged).empty();
     try
       {
         Simulation simulation(run, how, group);
         simulation.run.march();
       }
-    catch (const UserError &error)
+    catch (const RunStopped &stopped)
       {
         const nlohmann::json summary =
           read_json(run_folder + "/summary.json", group);
-        return summary.is_object() && ended_early(summary) ?
+        return summary.is_object() && was_stopped(summary) ?
                  summary :
                  nlohmann::json{
-                   {"verdict", std::string("stopped: ") + error.what()}};
+                   {"verdict", std::string("stopped: ") + stopped.what()}};
       }
-    return read_json(run_folder + "/summary.json", group);
+    catch (const UserError &error)
+      {
+        return {{"verdict", std::string("failed: ") + error.what()}};
+      }
+    const nlohmann::json summary =
+      read_json(run_folder + "/summary.json", group);
+    return summary.is_object() ?
+             summary :
+             nlohmann::json{{"verdict", "failed: it has left no summary.json"}};
   }
 
 
@@ -325,7 +425,15 @@ namespace Voussoir
   Study::is_met(StudyValues values, const double value)
   {
     values.emplace_back(parameters.varied_to_limit, number_text(value));
-    const nlohmann::json summary = outcome_of(values).summary;
+    const Outcome        outcome = outcome_of(values);
+    const nlohmann::json summary = outcome.summary;
+    const std::string    where =
+      "At " + parameters.varied_to_limit + " = " + number_text(value) + " ";
+    if (has_failed(summary))
+      throw UserError(where + "the run in \"" + outcome.folder + "\" " +
+                      verdict_of(summary) +
+                      ", which says nothing about the criterion of section "
+                      "\"Study/Limit\"; mend that and start the study again.");
     for (const Criterion &criterion : parameters.criteria())
       {
         const auto [number, met] = criterion.look(summary);
@@ -336,6 +444,13 @@ namespace Voussoir
             return true;
           }
       }
+    if (was_stopped(summary))
+      throw UserError(
+        where + "the run in \"" + outcome.folder + "\" was " +
+        verdict_of(summary) +
+        ", before the criterion of section \"Study/Limit\" was met; whether it "
+        "would have been nobody knows: add \"; stopped\" to it if that "
+        "counts as failure.");
     return false;
   }
 
@@ -428,7 +543,10 @@ namespace Voussoir
     std::map<std::string, std::string> files{{"/study.csv", table()},
                                              {"/study.json",
                                               all_results().dump(2) + '\n'}};
-    if (!parameters.spread.empty())
+    if (!parameters.spread.empty() &&
+        !std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome &run) {
+          return has_failed(run.summary);
+        }))
       files["/study_statistics.csv"] = statistics();
     for (const auto &[name, text] : files)
       if (const std::string reason = write_file(folder + name, text);
@@ -459,6 +577,9 @@ namespace Voussoir
           names.push_back(number.path);
         for (const Outcome &outcome : outcomes)
           {
+            // what failed is not beyond the others
+            if (has_failed(outcome.summary))
+              continue;
             samples.push_back({outcome.values, {}});
             for (const SummaryNumber &number : numbers)
               samples.back().quantities.push_back(number.in(outcome.summary));
@@ -520,6 +641,10 @@ namespace Voussoir
             run["quantities"][number.path] = *value;
         all["runs"].push_back(run);
       }
+    if (parameters.reduces_strengths())
+      all[strength_reduction] = {{"divides",
+                                  split_list(parameters.reduced, ';')},
+                                 {"leaves as they are", strengths_kept}};
     for (const Limit &limit : limits)
       all["limits"].push_back({{"of", parameters.varied_to_limit},
                                {"criterion", parameters.criterion},

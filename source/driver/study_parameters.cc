@@ -68,7 +68,9 @@ namespace Voussoir
       reduced,
       "Entries that the " + strength_reduction +
         " divides, separated by semicolons, as in \"Interfaces/planes/Friction "
-        "coefficient; Interfaces/planes/Cohesion\".");
+        "coefficient; Interfaces/planes/Cohesion\"; of an angle of friction, "
+        "its tangent. Those of the case that are not named stay as they are, "
+        "which the log and study.json say.");
     prm.add_parameter(
       "Quantities",
       quantities,
@@ -101,8 +103,10 @@ namespace Voussoir
       "Criterion",
       criterion,
       "What happens at the limit: \"PATH > VALUE\" or \"PATH < VALUE\" of a "
-      "number of summary.json, or \"stopped\", for a run or a static stage that "
-      "comes to no end; one of several, separated by semicolons, is enough.");
+      "number of summary.json, or \"stopped\", for a static stage that comes to "
+      "no equilibrium, or a run that is stopped for its energy; one of several, "
+      "separated by semicolons, is enough. A run that fails otherwise meets "
+      "nothing: it ends the search.");
     prm.add_parameter("Extend",
                       extend,
                       "Goes beyond From and To where the limit is not between "
@@ -125,6 +129,14 @@ namespace Voussoir
   }
 
 
+  bool
+  StudyParameters::reduces_strengths() const
+  {
+    return (vary + ";" + varied_to_limit).find(strength_reduction) !=
+           std::string::npos;
+  }
+
+
   void
   StudyParameters::check() const
   {
@@ -138,8 +150,7 @@ namespace Voussoir
       throw UserError(
         "\"From\" in section \"Study/Limit\" is not below \"To\"; "
         "give the smaller value first.");
-    const std::string whole = vary + ";" + varied_to_limit;
-    if (whole.find(strength_reduction) != std::string::npos && reduced.empty())
+    if (reduces_strengths() && reduced.empty())
       throw UserError("Section \"Study\" has a " + strength_reduction +
                       ", but \"Reduced strengths\" names no entries.");
   }
@@ -202,7 +213,7 @@ namespace Voussoir
       "interfaces/blocks/*/smallest safety;"
       "over-stress/*/above 1/share at any time [%];"
       "over-stress/*/above 1/accumulated time [s];"
-      "through cracks/widest opening from face to face [mm];"
+      "through cracks/largest opening from face to face at one moment [mm];"
       "energy balance/lost to cracks and plastic flow [J]";
     std::vector<SummaryNumber> result;
     for (const std::string &path :

@@ -121,9 +121,9 @@ namespace Voussoir
   Criterion::look(const nlohmann::json &summary) const
   {
     if (!number)
-      return {{}, ended_early(summary)};
+      return {{}, was_stopped(summary)};
     const std::optional<double> value = number->in(summary);
-    if (!value && !ended_early(summary))
+    if (!value && !was_stopped(summary))
       throw UserError("The summary of the run has no number \"" + number->path +
                       "\"; take one that its summary.json has, "
                       "or add the observer that gives it.");
@@ -132,8 +132,16 @@ namespace Voussoir
 
 
   bool
-  ended_early(const nlohmann::json &summary)
+  was_stopped(const nlohmann::json &summary)
   {
     return summary.value("verdict", "").rfind("stopped: ", 0) == 0;
+  }
+
+
+  bool
+  has_failed(const nlohmann::json &summary)
+  {
+    return !summary.is_object() ||
+           summary.value("verdict", "").rfind("failed: ", 0) == 0;
   }
 } // namespace Voussoir

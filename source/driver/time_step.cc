@@ -11,9 +11,10 @@ namespace Voussoir
   namespace
   {
     double
-    limit_with_damping(const Model   &model,
-                       const Damping &damping,
-                       const bool     central)
+    limit_with_damping(const Model         &model,
+                       const InternalForce &internal_force,
+                       const Damping       &damping,
+                       const bool           central)
     {
       const double alpha = damping.mass_coefficient;
       StepLimits   limits;
@@ -32,10 +33,8 @@ namespace Voussoir
           if (model.reservoir)
             model.reservoir->add_coupling(force, displacement, dt);
         };
-      const double step = stable_step(model.discretization,
-                                      model.internal_force,
-                                      model.mass,
-                                      limits);
+      const double step =
+        stable_step(model.discretization, internal_force, model.mass, limits);
       // the bound on the coupling holds up to this share of the water's limit
       return model.reservoir ?
                std::min(step, 0.95 * model.reservoir->stable_step()) :
@@ -44,10 +43,11 @@ namespace Voussoir
 
 
     double
-    limit_without_damping(const Model &model)
+    limit_without_damping(const Model         &model,
+                          const InternalForce &internal_force)
     {
       return stable_step(model.discretization,
-                         model.internal_force,
+                         internal_force,
                          model.mass,
                          {[](const double) { return 0.; },
                           [](Vector &, const Vector &, const double) {}});
@@ -101,6 +101,7 @@ namespace Voussoir
 
 
   TimeStep::TimeStep(const Model                 &model,
+                     const InternalForce         &internal_force,
                      Damping                     &damping,
                      const std::optional<double> &kept,
                      const double                 interval,
@@ -112,21 +113,19 @@ namespace Voussoir
     for (const Material *material : model.materials)
       density.push_back(material->inertial_density());
     std::ostringstream text;
-    ElementSteps(model.discretization, model.internal_force, density)
-      .print(text);
+    ElementSteps(model.discretization, internal_force, density).print(text);
     log(text.str());
 
-    const bool cracks = model.internal_force.has_memory();
+    const bool cracks = internal_force.has_memory();
     if (cracks || damping.stiffening(1.) > 0.)
-      undamped_limit = limit_without_damping(model);
+      undamped_limit = limit_without_damping(model, internal_force);
     if (cracks)
       damping.add_mesh_viscosity(undamped_limit);
-    limit = limit_with_damping(model, damping, central);
+    limit = limit_with_damping(model, internal_force, damping, central);
     if (!std::isfinite(limit))
       throw UserError(
-        "The model cannot move, because \"Fixed\" and \"Roller\" in "
-        "section \"Boundaries\" hold all of its nodes; hold fewer "
-        "face sets, or refine the mesh.");
+        "The model cannot move, because the supports of section \"Boundaries\" "
+        "hold all of its nodes; hold fewer face sets, or refine the mesh.");
     length = kept ? *kept : chosen_step(model.parameters.time, limit, interval);
     check_number_of_steps(model.parameters.time.end_time, length);
     if (cracks)

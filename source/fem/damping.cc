@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/fem/damping.h>
 
 #include <deal.II/base/numbers.h>
@@ -12,6 +13,15 @@
 namespace Voussoir
 {
   using namespace dealii;
+
+  namespace
+  {
+    const std::string first_mode = "first mode";
+
+    // Where no modes are computed that it could follow [Hz].
+    constexpr double usual_reference = 3.;
+  } // namespace
+
 
   void
   DampingParameters::declare(ParameterHandler &prm)
@@ -40,11 +50,14 @@ namespace Voussoir
                       "Number of Maxwell branches; 3 hold the ratio within "
                       "about 5 % of itself over a band of 1 to 20.",
                       Patterns::Integer(1, 6));
-    prm.add_parameter("Reference frequency",
-                      reference,
-                      "Frequency at which the materials' moduli hold under "
-                      "Maxwell damping [Hz]; 0 for at rest.",
-                      Patterns::Double(0.));
+    prm.add_parameter(
+      "Reference frequency",
+      reference,
+      "Frequency of the free vibration for which the materials' "
+      "moduli hold under Maxwell damping [Hz]; in slower motion "
+      "they are smaller, in faster motion larger. \"first mode\": the lowest natural frequency "
+      "where section \"Modes\" computes some, else 3; 0 for at "
+      "rest.");
     prm.add_parameter(
       "Mesh viscosity",
       mesh_viscosity,
@@ -83,14 +96,36 @@ namespace Voussoir
                           std::to_string(n_modes) + "; set it to " +
                           std::to_string(last) + " or more.");
       }
+    if (const auto number = parse_number(reference);
+        reference != first_mode && (!number || *number < 0.))
+      throw UserError("\"Reference frequency\" in section \"Damping\" is \"" +
+                      reference +
+                      "\"; give a frequency [Hz], 0 for at rest, "
+                      "or \"" +
+                      first_mode + "\".");
     if (model != "none" && lowest_frequency >= highest_frequency)
       throw UserError("In section \"Damping\" the \"Lowest frequency\" must be "
                       "below the \"Highest frequency\".");
   }
 
 
+  bool
+  DampingParameters::follows_first_mode() const
+  {
+    return model == "Maxwell" && ratio > 0. && reference == first_mode;
+  }
+
+
+  bool
+  DampingParameters::depends_on_modes() const
+  {
+    return !modes.empty() || follows_first_mode();
+  }
+
+
   Damping::Damping(const DampingParameters &parameters)
     : parameters(parameters)
+    , reference(parse_number(parameters.reference).value_or(usual_reference))
   {
     if (parameters.model == "Maxwell" && parameters.ratio > 0.)
       fit_maxwell();
@@ -105,10 +140,14 @@ namespace Voussoir
   void
   Damping::adapt_to_modes(const std::vector<double> &natural_frequencies)
   {
-    if (parameters.modes.empty())
-      return;
-    fit_rayleigh(natural_frequencies.at(parameters.modes[0] - 1),
-                 natural_frequencies.at(parameters.modes[1] - 1));
+    if (parameters.follows_first_mode() && !natural_frequencies.empty())
+      {
+        reference = natural_frequencies[0];
+        adapted   = true;
+      }
+    if (!parameters.modes.empty())
+      fit_rayleigh(natural_frequencies.at(parameters.modes[0] - 1),
+                   natural_frequencies.at(parameters.modes[1] - 1));
   }
 
 
@@ -180,6 +219,13 @@ namespace Voussoir
   }
 
 
+  double
+  Damping::branch_stiffness() const
+  {
+    return std::accumulate(coefficients.begin(), coefficients.end(), 0.);
+  }
+
+
   unsigned int
   Damping::n_branches() const
   {
@@ -190,8 +236,7 @@ namespace Voussoir
   double
   Damping::stiffening(const double dt) const
   {
-    return 2. * stiffness_coefficient / dt +
-           std::accumulate(coefficients.begin(), coefficients.end(), 0.);
+    return 2. * stiffness_coefficient / dt + branch_stiffness();
   }
 
 
@@ -209,32 +254,49 @@ namespace Voussoir
 
 
   double
-  Damping::ratio(const double frequency, const double factor) const
+  Damping::ratio_of_branches(const double frequency, const double factor) const
   {
-    const double w   = 2. * numbers::PI * frequency;
-    double       sum = 0.;
+    double sum = 0.;
     for (unsigned int i = 0; i < coefficients.size(); ++i)
       {
-        const double x = w * relaxation_times[i];
+        const double x = 2. * numbers::PI * frequency * relaxation_times[i];
         sum += factor * coefficients[i] * x / (1. + x * x);
       }
-    return 0.5 *
-           (sum / modulus_ratio(frequency, factor) + mass_coefficient / w +
-            (factor * stiffness_coefficient + mesh_viscosity) * w);
+    return 0.5 * sum / modulus_ratio(frequency, factor);
+  }
+
+
+  double
+  Damping::ratio(const double frequency, const double factor) const
+  {
+    const double w = 2. * numbers::PI * frequency;
+    return ratio_of_branches(frequency, factor) +
+           0.5 * (mass_coefficient / w +
+                  (factor * stiffness_coefficient + mesh_viscosity) * w);
+  }
+
+
+  double
+  Damping::reference_frequency() const
+  {
+    return reference;
+  }
+
+
+  double
+  Damping::modulus(const double frequency, const double factor) const
+  {
+    return modulus_ratio(frequency, factor) * stiffness_scale(factor);
   }
 
 
   double
   Damping::stiffness_scale(const double factor) const
   {
-    return 1. / modulus_ratio(parameters.reference, factor);
-  }
-
-
-  StiffnessFactors
-  Damping::stiffness_factors(const double factor) const
-  {
-    return {stiffness_scale(factor), 1.};
+    // free vibration, exp(s t) with s = (i - xi) w, has under -k S (1 + 2 i xi)
+    // s^2 = -(1 - xi^2 + 2 i xi) w^2, so that w^2 = k S (1 + xi^2)
+    const double xi = adapted ? ratio_of_branches(reference, factor) : 0.;
+    return 1. / (modulus_ratio(reference, factor) * (1. + xi * xi));
   }
 
 
@@ -253,5 +315,15 @@ namespace Voussoir
       out << "  " << std::setprecision(f < 1. ? 1 : 0) << f << " Hz "
           << std::setprecision(1) << 100. * ratio(f) << " %";
     out << std::defaultfloat << '\n';
+    if (n_branches() == 0)
+      return;
+    out << "    moduli hold at " << std::setprecision(4) << reference << " Hz"
+        << (adapted ? ", in free vibration in the first mode" :
+            parameters.follows_first_mode() ? ", as no modes are known" :
+                                              "")
+        << "; of them " << std::setprecision(3) << modulus(0.) << " at rest";
+    for (const double f : {1., 3., 10.})
+      out << ", " << modulus(f) << " at " << f << " Hz";
+    out << '\n';
   }
 } // namespace Voussoir

@@ -229,20 +229,32 @@ namespace Voussoir
             if (grid.in_face_set(cell, face, support.set))
               {
                 std::array<bool, 3> held{{true, true, true}};
-                if (support.normal_only)
+                if (support.held != Support::Held::all)
                   {
                     normals.reinit(
                       static_cast<Triangulation<3>::active_cell_iterator>(cell),
                       face);
-                    const Tensor<1, 3> n = normals.normal_vector(0);
+                    const Tensor<1, 3> n       = normals.normal_vector(0);
+                    bool               upright = false;
                     for (unsigned int d = 0; d < 3; ++d)
-                      held[d] = std::abs(n[d]) > 1. - 1e-6;
-                    if (!held[0] && !held[1] && !held[2])
+                      {
+                        const bool along = std::abs(n[d]) > 1. - 1e-6;
+                        upright          = upright || along;
+                        held[d] =
+                          along == (support.held == Support::Held::normal);
+                      }
+                    if (!upright)
                       throw UserError(
-                        "\"Roller\" in section \"Boundaries\" names \"" +
+                        (support.held == Support::Held::normal ?
+                           "\"Roller\" in section \"Boundaries\" names \"" :
+                           "\"Antisymmetric\" in section \"Boundaries\" names "
+                           "\"") +
                         support.set +
-                        "\", which is not perpendicular to a coordinate axis; "
-                        "rollers need faces of constant x, y or z, so use "
+                        "\", which is not perpendicular to a coordinate axis; " +
+                        (support.held == Support::Held::normal ?
+                           "rollers need" :
+                           "planes of antisymmetry need") +
+                        " faces of constant x, y or z, so use "
                         "\"Fixed\" or an absorbing boundary there.");
                   }
                 const auto nodes = cell_nodes(cell);

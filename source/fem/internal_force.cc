@@ -61,7 +61,7 @@ namespace Voussoir
 
   InternalForce::InternalForce(const Discretization &discretization,
                                const std::vector<const CellKernel *> &kernels,
-                               const std::vector<StiffnessFactors>   &factors)
+                               const std::vector<double>             &factors)
     : discretization(discretization)
     , kernels(kernels)
     , factors(factors)
@@ -69,14 +69,14 @@ namespace Voussoir
 
 
   InternalForce
-  InternalForce::with(const std::vector<StiffnessFactors> &other_factors) const
+  InternalForce::with(const std::vector<double> &other_factors) const
   {
     return {discretization, kernels, other_factors};
   }
 
 
-  const StiffnessFactors &
-  InternalForce::factors_of(const unsigned int material) const
+  double
+  InternalForce::factor_of(const unsigned int material) const
   {
     return factors[material];
   }
@@ -229,18 +229,25 @@ namespace Voussoir
 
 
   void
+  InternalForce::make_static_strains(MaterialMemory &memory) const
+  {
+    for (unsigned int m = 0; m < kernels.size(); ++m)
+      if (PointHistory *history = memory.of(m))
+        history->make_static_strains();
+  }
+
+
+  void
   InternalForce::set_thermal_strain(const Vector   &temperature,
                                     MaterialMemory &memory) const
   {
     temperature.update_ghost_values();
-    for (unsigned int m = 0; m < kernels.size(); ++m)
-      if (PointHistory *history = memory.of(m))
-        history->make_static_strains();
+    make_static_strains(memory);
     for_each_history(memory,
                      [&](const CellKernel &kernel,
                          const CellRange  &cells,
                          PointHistory     &history,
-                         const StiffnessFactors &) {
+                         const double) {
                        kernel.set_thermal_strain(cells, history, temperature);
                      });
     temperature.zero_out_ghost_values();
@@ -254,9 +261,7 @@ namespace Voussoir
                      [](const CellKernel &kernel,
                         const CellRange  &cells,
                         PointHistory     &history,
-                        const StiffnessFactors &) {
-                       kernel.hand_over(cells, history);
-                     });
+                        const double) { kernel.hand_over(cells, history); });
   }
 
 
@@ -269,16 +274,17 @@ namespace Voussoir
       return;
     displacement.update_ghost_values();
     temperature.update_ghost_values();
-    for (unsigned int m = 0; m < kernels.size(); ++m)
-      if (PointHistory *history = memory.of(m))
-        history->make_static_strains();
+    make_static_strains(memory);
     for_each_history(memory,
-                     [&](const CellKernel       &kernel,
-                         const CellRange        &cells,
-                         PointHistory           &history,
-                         const StiffnessFactors &factors) {
-                       kernel.set_static_state(
-                         cells, factors, history, displacement, temperature);
+                     [&](const CellKernel &kernel,
+                         const CellRange  &cells,
+                         PointHistory     &history,
+                         const double      stress_factor) {
+                       kernel.set_static_state(cells,
+                                               stress_factor,
+                                               history,
+                                               displacement,
+                                               temperature);
                      });
     displacement.zero_out_ghost_values();
     temperature.zero_out_ghost_values();
@@ -301,16 +307,17 @@ namespace Voussoir
   }
 
 
-  double
+  template <typename Sum>
+  Sum
   InternalForce::sum(
-    const std::vector<const Vector *> &read,
-    const std::function<double(const unsigned int, const CellRange &)>
-      &evaluate) const
+    const std::vector<const Vector *>                               &read,
+    const std::function<Sum(const unsigned int, const CellRange &)> &evaluate)
+    const
   {
     for (const Vector *vector : read)
       if (!vector->has_ghost_elements())
         vector->update_ghost_values();
-    double sum = 0.;
+    Sum sum{};
     for_each_run(discretization,
                  0,
                  discretization.matrix_free.n_cell_batches(),
@@ -319,35 +326,52 @@ namespace Voussoir
                  });
     for (const Vector *vector : read)
       vector->zero_out_ghost_values();
-    return Utilities::MPI::sum(sum, discretization.grid.communicator());
+    return sum;
   }
 
 
-  double
-  InternalForce::stored_energy(const Vector         &displacement,
-                               const MaterialMemory &memory,
-                               const InitialState   &initial,
-                               const Vector         &moved,
-                               const Vector         &moved_before) const
+  ElasticEnergy
+  InternalForce::elastic_energy(const DampedMotion &motion,
+                                MaterialMemory     &memory) const
   {
-    std::vector<const Vector *> read{&displacement, &moved, &moved_before};
+    std::vector<const Vector *> read{&motion.displacement,
+                                     &motion.velocity,
+                                     &motion.velocity_before};
+    for (const Vector &branch : motion.memory)
+      read.push_back(&branch);
+    return sum<ElasticEnergy>(
+      read, [&](const unsigned int material, const CellRange &cells) {
+        return kernels[material]->elastic_energy(cells,
+                                                 factors[material],
+                                                 motion,
+                                                 memory.of(material));
+      });
+  }
+
+
+  InelasticEnergy
+  InternalForce::inelastic_energy(const Vector         &displacement,
+                                  const MaterialMemory &memory,
+                                  const InitialState   &initial,
+                                  const Damping        &damping) const
+  {
+    std::vector<const Vector *> read{&displacement};
     if (initial.displacement.size() > 0)
       read.push_back(&initial.displacement);
-    return sum(read, [&](const unsigned int material, const CellRange &cells) {
-      const CellKernel   &kernel  = *kernels[material];
-      const PointHistory *history = memory.of(material);
-      double              energy =
-        0.5 *
-        kernel.work(cells, factors[material], moved, moved_before, history);
-      if (history != nullptr)
-        energy += kernel.inelastic_energy(cells,
-                                          factors[material],
-                                          *history,
-                                          displacement,
-                                          initial.material_memory.of(material),
-                                          initial.displacement);
-      return energy;
-    });
+    return sum<InelasticEnergy>(
+      read, [&](const unsigned int material, const CellRange &cells) {
+        const PointHistory *history = memory.of(material);
+        if (history == nullptr)
+          return InelasticEnergy();
+        return kernels[material]->inelastic_energy(cells,
+                                                   factors[material],
+                                                   damping.branch_stiffness(),
+                                                   *history,
+                                                   displacement,
+                                                   initial.material_memory.of(
+                                                     material),
+                                                   initial.displacement);
+      });
   }
 
 
@@ -357,12 +381,13 @@ namespace Voussoir
                               const MaterialMemory &memory,
                               const bool            by_damping_factor) const
   {
-    return sum(
+    const double of_rank = sum<double>(
       {&u, &v}, [&](const unsigned int material, const CellRange &cells) {
         const CellKernel &kernel = *kernels[material];
         return (by_damping_factor ? kernel.damping_factor() : 1.) *
                kernel.work(cells, factors[material], u, v, memory.of(material));
       });
+    return Utilities::MPI::sum(of_rank, discretization.grid.communicator());
   }
 
 

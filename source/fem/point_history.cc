@@ -39,6 +39,7 @@ namespace Voussoir
       }
     const std::size_t n_points = std::size_t(n_slots) * found.per_cell;
     numbers.resize(n_points * width);
+    imbalances.resize(n_points);
     active.resize(n_points, 0);
     points = std::make_shared<const Points>(std::move(found));
   }
@@ -87,6 +88,42 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    SymmetricTensor<2, 3>
+    lane_of(const SymmetricTensor3<Lanes> &tensor, const unsigned int lane)
+    {
+      SymmetricTensor<2, 3> one;
+      for (unsigned int c = 0; c < 6; ++c)
+        one.access_raw_entry(c) = tensor.access_raw_entry(c)[lane];
+      return one;
+    }
+  } // namespace
+
+
+  SymmetricTensor<2, 3>
+  PointHistory::stress(const Place &place, const unsigned int q) const
+  {
+    const ActivePoint &point = active_point(place.batch, q);
+    return lane_of(point.total_stress(), place.lane);
+  }
+
+
+  SymmetricTensor<2, 3>
+  PointHistory::inelastic_strain(const Place       &place,
+                                 const unsigned int q,
+                                 const double       young_modulus,
+                                 const double       poisson_ratio) const
+  {
+    const ActivePoint          &point  = active_point(place.batch, q);
+    const SymmetricTensor<2, 3> stress = lane_of(point.stress, place.lane);
+    return lane_of(point.seen, place.lane) -
+           1. / young_modulus *
+             ((1. + poisson_ratio) * stress -
+              poisson_ratio * trace(stress) * unit_symmetric_tensor<3>());
+  }
+
+
   std::vector<double>
   PointHistory::read(const Place &place, const unsigned int q) const
   {
@@ -111,12 +148,16 @@ namespace Voussoir
         trade(number);
         ++n;
       };
-      for (Lanes *number : {&point.band, &point.share, &point.impact})
+      for (Lanes *number :
+           {&point.band, &point.share, &point.impact, &point.filter_imbalance})
         trade_one(*number);
       for (unsigned int d = 0; d < 3; ++d)
         trade_one(point.normal[d]);
-      for (SymmetricTensor3<Lanes> *tensor :
-           {&point.strain, &point.seen, &point.plastic, &point.stress})
+      for (SymmetricTensor3<Lanes> *tensor : {&point.strain,
+                                              &point.seen,
+                                              &point.plastic,
+                                              &point.stress,
+                                              &point.filter})
         for (unsigned int i = 0; i < 6; ++i)
           trade_one(tensor->access_raw_entry(i));
       return n;
@@ -135,7 +176,8 @@ namespace Voussoir
   KeyedValues
   PointHistory::checkpoint_values()
   {
-    const unsigned int of_cell = n_points() * (n_numbers + n_of_active_point());
+    const unsigned int of_cell =
+      n_points() * (n_numbers + 1 + n_of_active_point());
     packed.assign(points->cells.size() * of_cell, 0.);
     exchange(false);
     KeyedValues values{of_cell, {}};
@@ -172,6 +214,7 @@ namespace Voussoir
           lane                     = place.second.lane;
           for (unsigned int i = 0; i < n_numbers; ++i)
             trade(values(batch, q)[i]);
+          trade(imbalance(batch, q));
           // points of batches that are elastic leave zeros
           const bool is_known = is_active(batch, q);
           const bool has_numbers =

@@ -15,7 +15,14 @@ namespace Voussoir
     prm.add_parameter("Roller",
                       roller,
                       "Face sets that do not move at right angles to "
-                      "themselves; planes of constant x, y or z.");
+                      "themselves; planes of constant x, y or z. A plane of "
+                      "symmetry is one.");
+    prm.add_parameter("Antisymmetric",
+                      antisymmetric,
+                      "Face sets that move at right angles to themselves only, "
+                      "the two components in the plane held: planes of "
+                      "symmetry of a structure whose other half moves the "
+                      "opposite way; planes of constant x, y or z.");
   }
 
 
@@ -24,9 +31,11 @@ namespace Voussoir
   {
     std::vector<Support> supports;
     for (const std::string &set : split_list(fixed))
-      supports.push_back({set, false});
+      supports.push_back({set, Support::Held::all});
     for (const std::string &set : split_list(roller))
-      supports.push_back({set, true});
+      supports.push_back({set, Support::Held::normal});
+    for (const std::string &set : split_list(antisymmetric))
+      supports.push_back({set, Support::Held::tangential});
     return supports;
   }
 } // namespace Voussoir

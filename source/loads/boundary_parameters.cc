@@ -24,6 +24,8 @@ namespace Voussoir
     for (const auto &[kind, list] :
          std::map<std::string, std::string>{{"Fixed", supports.fixed},
                                             {"Roller", supports.roller},
+                                            {"Antisymmetric",
+                                             supports.antisymmetric},
                                             {"Absorbing", absorbing.face_sets}})
       for (const std::string &set : split_list(list))
         {
@@ -51,7 +53,8 @@ namespace Voussoir
   {
     std::vector<Support> result = supports.list();
     for (const std::string &set : split_list(absorbing.face_sets))
-      result.push_back({set, roller});
+      result.push_back(
+        {set, roller ? Support::Held::normal : Support::Held::all});
     return result;
   }
 } // namespace Voussoir

@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/time_factor.h>
 #include <voussoir/fem/lumped_mass.h>
 #include <voussoir/fem/named_sets.h>
 #include <voussoir/loads/load.h>
@@ -24,20 +25,33 @@ namespace Voussoir
         prm.add_parameter("Acceleration",
                           acceleration,
                           "Acceleration of gravity, x, y, z [m/s2].");
+        factor.declare(prm,
+                       "Time function",
+                       "Factor on the acceleration, for weight that belongs to "
+                       "no static stage but comes with time; empty: it belongs "
+                       "to one.");
       }
 
       bool
       steady() const override
       {
-        return true;
+        return !factor.given();
+      }
+
+      bool
+      over_time() const override
+      {
+        return factor.given();
       }
 
       void
       prepare(const LoadedModel &model,
-              NodalTerms &,
+              NodalTerms        &terms,
               const std::string &place) override
       {
         check(place, model.log);
+        if (factor.given())
+          factor.prepare("\"Time function\" in section \"" + place + "\"");
         const Discretization &discretization = model.discretization;
         NodalVolumes          nodal_volumes(discretization);
         std::vector<std::pair<types::global_dof_index, double>> records;
@@ -58,11 +72,28 @@ namespace Voussoir
         mass.assign(discretization.n_owned_nodes(), 0.);
         for (const auto &[node, part] : discretization.send_to_owners(records))
           mass[node] += part;
+        if (!factor.given())
+          return;
+        for (unsigned int node = 0; node < mass.size(); ++node)
+          if (mass[node] > 0.)
+            shares.emplace_back(terms.add_node(node), mass[node]);
+      }
+
+      void
+      add_forces(const double time, NodalForces &forces) override
+      {
+        if (!factor.given())
+          return;
+        const Tensor<1, 3> now = factor(time) * acceleration;
+        for (const auto &[slot, node_mass] : shares)
+          forces[slot] += node_mass * now;
       }
 
       void
       add_steady_force(Vector &force) const override
       {
+        if (factor.given())
+          return;
         for (unsigned int node = 0; node < mass.size(); ++node)
           for (unsigned int d = 0; d < 3; ++d)
             force.local_element(3 * node + d) += mass[node] * acceleration[d];
@@ -88,7 +119,11 @@ namespace Voussoir
 
       std::string         cell_sets;
       Tensor<1, 3>        acceleration{{0., 0., -9.81}};
+      TimeFactor          factor{""};
       std::vector<double> mass; // of each owned node [kg]
+
+      // of a weight over time, slots of the nodal terms and their mass [kg]
+      std::vector<std::pair<unsigned int, double>> shares;
     };
 
     const Registry<Load>::Add<Gravity> registered("gravity",

@@ -23,6 +23,11 @@ namespace Voussoir
     constexpr double largest_relative_step = 0.95;
 
 
+    // z of the normal out of the water, which upright planes of symmetry do not
+    // have.
+    constexpr double largest_normal_of_floor = -0.3;
+
+
     bool
     in_any(const Grid                     &grid,
            const std::vector<std::string> &sets,
@@ -134,7 +139,7 @@ namespace Voussoir
   {
     const Grid &grid   = space.grid;
     const auto surface = checked_sets(grid, parameters.surface, "Free surface");
-    const auto end     = checked_sets(grid, parameters.end, "Radiating end");
+    const auto ends    = checked_sets(grid, parameters.end, "Radiating end");
     const double alpha = parameters.bottom_reflection;
     const auto   dam = alpha < 1. ? checked_sets(grid, parameters.dam, "Dam") :
                                     std::vector<std::string>();
@@ -144,31 +149,55 @@ namespace Voussoir
         return in_any(grid, surface, cell, face);
       });
     check_surface(space, surface, log);
-    const Vector end_area =
-      space.areas([&](const Grid::Cell &cell, const unsigned int face) {
-        return in_any(grid, end, cell, face);
-      });
+    const AcousticSpace::FacePredicate is_end = [&](const Grid::Cell  &cell,
+                                                    const unsigned int face) {
+      return in_any(grid, ends, cell, face);
+    };
+    const Vector end_area = space.areas(is_end);
     const Vector bottom_area =
       space.areas([&](const Grid::Cell &cell, const unsigned int face) {
         return alpha < 1. && grid.in_face_set(cell, face, wet_wall) &&
                !in_any(grid, dam, cell, face);
       });
     const double admittance = 1. / (density * parameters.sound_speed);
+    Vector       bottom_dashpots(bottom_area);
+    bottom_dashpots *= admittance * (1. - alpha) / (1. + alpha);
     for (unsigned int i = 0; i < dashpots.locally_owned_size(); ++i)
       {
         if (surface_area.local_element(i) > 0.)
           continue;
         inverse_storage.local_element(i) =
           1. / (compressibility * space.volumes.local_element(i));
-        dashpots.local_element(i) =
-          admittance *
-          (end_area.local_element(i) +
-           (1. - alpha) / (1. + alpha) * bottom_area.local_element(i));
+        dashpots.local_element(i) = admittance * end_area.local_element(i) +
+                                    bottom_dashpots.local_element(i);
         if (dashpots.local_element(i) > 0.)
           lossy_nodes.push_back(i);
       }
     couple(solid, terms);
+    std::vector<std::string> open_sets(surface);
+    open_sets.insert(open_sets.end(), ends.begin(), ends.end());
+    find_floor(open_sets);
+    if (alpha < 1. &&
+        Utilities::MPI::logical_or(!floor_nodes.empty(), grid.communicator()))
+      log.warn("\"Bottom reflection coefficient\" in section \"Reservoir\" is ",
+               alpha,
+               ", but part of the floor of the water meets no solid and "
+               "reflects all; give it cells of rock");
     largest_step = find_stable_step();
+    if (end_area.linfty_norm() > 0.)
+      {
+        end = std::make_unique<const ReservoirEnd>(
+          space,
+          is_end,
+          ReservoirEnd::Water{density,
+                              parameters.sound_speed,
+                              end_area,
+                              bottom_dashpots,
+                              inverse_storage,
+                              parameters.far_reservoir == "channel"},
+          log);
+        largest_step = std::min(largest_step, end->stable_step());
+      }
   }
 
 
@@ -261,6 +290,38 @@ namespace Voussoir
                               Tensor<1, 3>({sums[0].local_element(i),
                                             sums[1].local_element(i),
                                             sums[2].local_element(i)})});
+  }
+
+
+  void
+  Reservoir::find_floor(const std::vector<std::string> &open_sets)
+  {
+    FaceNodes                            face_nodes(space.mapping, space.fe);
+    std::array<Vector, 3>                sums;
+    std::vector<types::global_dof_index> dofs(space.fe.n_dofs_per_cell());
+    for (Vector &sum : sums)
+      sum = space.create_ghosted_vector();
+    for (const auto &cell : space.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const unsigned int face : cell->face_indices())
+          if (cell->at_boundary(face) &&
+              !space.grid.in_face_set(cell, face, wet_wall) &&
+              !in_any(space.grid, open_sets, cell, face))
+            {
+              cell->get_dof_indices(dofs);
+              for (const FaceNode &node : face_nodes.of(cell, face))
+                if (node.normal[2] < largest_normal_of_floor)
+                  for (unsigned int d = 0; d < 3; ++d)
+                    sums[d](dofs[node.number]) += node.area * node.normal[d];
+            }
+    for (Vector &sum : sums)
+      sum.compress(VectorOperation::add);
+    for (unsigned int i = 0; i < dashpots.locally_owned_size(); ++i)
+      if (sums[2].local_element(i) < 0.)
+        floor_nodes.push_back({i,
+                               Tensor<1, 3>({sums[0].local_element(i),
+                                             sums[1].local_element(i),
+                                             sums[2].local_element(i)})});
   }
 
 

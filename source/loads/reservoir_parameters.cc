@@ -40,8 +40,18 @@ namespace Voussoir
     prm.add_parameter(
       "Radiating end",
       end,
-      "Compressible: face sets of the water through which sound "
+      "Compressible: face sets of the water, upright, through which sound "
       "leaves upstream; other ends reflect.");
+    prm.add_parameter(
+      "Far reservoir",
+      far_reservoir,
+      "Compressible: what lies behind the radiating end. Channel: the section "
+      "of the end goes on without end, and takes no energy below its cut-off "
+      "frequency, sound speed / (4 depth) where the bottom is level, but what "
+      "its bottom absorbs. Plane waves: a dashpot of density times sound speed, as in most "
+      "programs, which takes some there, too. Both leave alone what the motion "
+      "of floor and banks makes along the whole reservoir.",
+      Patterns::Selection("channel|plane waves"));
     prm.add_parameter("Dam",
                       dam,
                       "Compressible: face sets of the dam. All other walls of "

@@ -13,6 +13,7 @@ namespace Voussoir
     , base(base)
     , time_step(time_step)
     , last_wall_pressure(reservoir.wall_nodes.size())
+    , last_floor_pressure(reservoir.floor_nodes.size())
     , last_lossy_pressure(reservoir.lossy_nodes.size())
     , keep(pressure)
     , push(pressure)
@@ -27,6 +28,11 @@ namespace Voussoir
         const double damping = 0.5 * gain * reservoir.dashpots.local_element(i);
         push.local_element(i) = gain / (1. + damping);
         keep.local_element(i) = (1. - damping) / (1. + damping);
+      }
+    if (reservoir.end)
+      {
+        end.emplace(*reservoir.end, time_step);
+        last_end_pressure.resize(reservoir.end->nodes.size());
       }
   }
 
@@ -55,6 +61,18 @@ namespace Voussoir
       }
     for (unsigned int i = 0; i < reservoir.lossy_nodes.size(); ++i)
       last_lossy_pressure[i] = pressure.local_element(reservoir.lossy_nodes[i]);
+    for (unsigned int i = 0; i < last_end_pressure.size(); ++i)
+      {
+        const unsigned int node  = reservoir.end->nodes[i].water;
+        last_end_pressure[i]     = pressure.local_element(node);
+        flux.local_element(node) = 0.;
+      }
+    for (unsigned int i = 0; i < reservoir.floor_nodes.size(); ++i)
+      {
+        const unsigned int node  = reservoir.floor_nodes[i].water;
+        last_floor_pressure[i]   = pressure.local_element(node);
+        flux.local_element(node) = 0.;
+      }
     reservoir.gather_flux(flux, velocity);
 
     // the work needs the flux without that of the base
@@ -65,6 +83,10 @@ namespace Voussoir
         flux.local_element(reservoir.wall_nodes[i].water) +=
           reservoir.wall_nodes[i].area * base_velocity;
       }
+    for (const Reservoir::WallNode &node : reservoir.floor_nodes)
+      flux.local_element(node.water) += node.area * base_velocity;
+    if (end)
+      end->advance(pressure, flux);
 
     double       *p = pressure.begin(), *I = impulse.begin();
     double       *f = stiffness.begin();
@@ -95,6 +117,11 @@ namespace Voussoir
         work_on_base +=
           time_step * mean * (reservoir.wall_nodes[i].area * base_velocity);
       }
+    for (unsigned int i = 0; i < reservoir.floor_nodes.size(); ++i)
+      work_on_base +=
+        0.5 * time_step *
+        (last_floor_pressure[i] + p[reservoir.floor_nodes[i].water]) *
+        (reservoir.floor_nodes[i].area * base_velocity);
     for (unsigned int i = 0; i < reservoir.lossy_nodes.size(); ++i)
       {
         const double mean =
@@ -103,6 +130,9 @@ namespace Voussoir
                 reservoir.dashpots.local_element(reservoir.lossy_nodes[i]) *
                 mean * mean;
       }
+    for (unsigned int i = 0; i < last_end_pressure.size(); ++i)
+      loss += 0.5 * time_step * end->added[i] *
+              (last_end_pressure[i] + p[reservoir.end->nodes[i].water]);
   }
 
 

@@ -121,6 +121,7 @@ namespace Voussoir
       set_static(const double factor)
       {
         SplitDamage::set_static(factor, strength_increase);
+        relaxation_time = 0.;
       }
 
       std::vector<SofteningCurve::Node>
@@ -332,7 +333,7 @@ namespace Voussoir
       {
         return {OutputName::tension_damage,
                 OutputName::compression_damage,
-                OutputName::crack_opening};
+                OutputName::largest_opening};
       }
 
       std::vector<double>

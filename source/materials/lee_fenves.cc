@@ -149,8 +149,10 @@ namespace Voussoir
                 const double crushing,
                 const double length) const
       {
-        const double t =
-          std::exp(-tensile_strength * length * opening / fracture_energy);
+        // what is wide open bears nothing, and its effective strength is finite
+        const double t = std::max(1e-10,
+                                  std::exp(-tensile_strength * length *
+                                           opening / fracture_energy));
         const double c = std::exp(-yield_strength * (1. + 0.5 * hump) * length *
                                   crushing / crushing_energy);
         Strengths    result;
@@ -392,7 +394,7 @@ namespace Voussoir
       {
         return {OutputName::tension_damage,
                 OutputName::compression_damage,
-                OutputName::crack_opening};
+                OutputName::largest_opening};
       }
 
       std::vector<double>

@@ -59,23 +59,24 @@ namespace Voussoir
   }
 
 
-  StiffnessFactors
-  Material::static_factors() const
+  double
+  Material::factor_at_rest() const
   {
-    const double factor = n_history() > 0 ? 1. : static_factor;
-    return {factor, factor};
+    return n_history() > 0 ? 1. : static_factor;
   }
 
 
   SymmetricTensor3<double>
-  Material::strain_of_law(const SymmetricTensor3<double> &strain,
-                          const SymmetricTensor3<double> &initial_strain,
-                          const double                    temperature) const
+  Material::elastic_strain(const SymmetricTensor3<double> &filtered,
+                           const SymmetricTensor3<double> &initial_strain,
+                           const double                    temperature,
+                           const double                    stress_factor) const
   {
     SymmetricTensor3<double> at_rest = initial_strain;
     for (unsigned int d = 0; d < 3; ++d)
       at_rest[d][d] -= expansion * temperature;
-    return strain - initial_strain + static_factor * at_rest;
+    return stress_factor * (filtered - initial_strain) +
+           static_factor * at_rest;
   }
 
 

@@ -24,8 +24,8 @@ namespace Voussoir
      */
     struct Mazars : IsotropicElasticity, TensileCrack
     {
-      // largest equivalent strain, damage
-      static constexpr unsigned int n_history = 2;
+      // largest equivalent strain, damage, and the CurveMemory of D_t
+      static constexpr unsigned int n_history = 2 + CurveMemory::n_numbers;
 
       double share = 1.1;   // A
       double rate  = 1500.; // B
@@ -76,15 +76,24 @@ namespace Voussoir
       hand_over(const SymmetricTensor3<double> &strain,
                 const PointResponse<double>    &response,
                 double                         *history,
-                const double,
-                const double static_factor) const
+                const double                    element_length,
+                const double                    static_factor) const
       {
-        const double damage = history[1],
-                     growth = 1. - damage + damage / static_factor;
-        history[0] *= static_factor * growth;
-        history[1] = damage / static_factor / growth;
-        return strain +
-               (1. - 1. / static_factor) * this->strain(response.stress);
+        const DamageHandedOver now(history[1], static_factor),
+          in_tension(history[5], static_factor);
+        CurveMemory memory{};
+        if (history[2] > 0.)
+          tension.hand_over(in_tension.damage,
+                            history[4] * in_tension.strain_factor,
+                            element_length,
+                            memory);
+        history[0] *= now.strain_factor;
+        history[1] = now.damage;
+        history[2] = memory.largest;
+        history[3] = memory.position;
+        history[4] = memory.last;
+        history[5] = memory.damage;
+        return strain_handed_over(strain, response.stress, static_factor);
       }
 
       template <typename Number>
@@ -146,23 +155,42 @@ namespace Voussoir
                          threshold  = tension.elastic_limit(band);
             double &largest         = lane_of(history[0], lane),
                    &damage          = lane_of(history[1], lane);
-            if (equivalent > std::max(largest, threshold))
+            const double start      = std::max(largest, threshold);
+            CurveMemory  memory{lane_of(history[2], lane),
+                               lane_of(history[3], lane),
+                               lane_of(history[4], lane),
+                               lane_of(history[5], lane)};
+            const double last   = memory.largest > 0. ? memory.last : threshold,
+                         before = damage, before_in_tension = memory.damage;
+            DamageProgress<double> progress;
+            if (equivalent > start || memory.largest > 0.)
+              progress =
+                tension.go_on(young_modulus * equivalent, memory, band);
+            if (equivalent > start)
               {
-                const double start = std::max(largest, threshold);
-                largest            = equivalent;
+                largest = equivalent;
                 const double weight =
                   std::max(0.,
                            std::min(1.,
                                     lane_of(in_tension, lane) /
                                       lane_of(squares, lane)));
-                const double before = damage;
-                damage              = std::max(
-                  damage,
-                  weight * tension.at(largest, band).damage(young_modulus) +
-                    (1. - weight) * damage_in_compression(largest, threshold));
-                lane_of(lost, lane) = (damage - before) * start / largest;
+                damage =
+                  std::max(damage,
+                           weight * memory.damage +
+                             (1. - weight) *
+                               damage_in_compression(largest, threshold));
+                // as D_t does, which in the static state follows its curve
+                const double growth = memory.damage - before_in_tension;
+                lane_of(lost, lane) =
+                  (damage - before) * (growth > 0. ?
+                                         progress.dissipation / growth :
+                                         last / largest);
               }
-            lane_of(intact, lane) = 1. - damage;
+            lane_of(history[2], lane) = memory.largest;
+            lane_of(history[3], lane) = memory.position;
+            lane_of(history[4], lane) = memory.last;
+            lane_of(history[5], lane) = memory.damage;
+            lane_of(intact, lane)     = 1. - damage;
           }
 
         PointResponse<Number> response(strain);

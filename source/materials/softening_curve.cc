@@ -85,9 +85,13 @@ namespace Voussoir
         memory.position = before + way * (after - before);
       }
     else
-      // where the stress stays, the elastic strain grows in proportion
-      memory.position = before + std::max(0., elastic_strain - start.elastic) /
-                                   (1. - irreversible_share);
+      {
+        // where the stress stays, the elastic strain grows in proportion
+        const double elastic =
+          start.stress > 0. ? start.stress / modulus : elastic_strain;
+        memory.position = before + std::max(0., elastic - start.elastic) /
+                                     (1. - irreversible_share);
+      }
     memory.largest = memory.position;
     memory.last    = elastic_strain;
     memory.damage  = damage;
@@ -202,9 +206,10 @@ namespace Voussoir
     double used = 0.;
     for (;; ++node)
       {
-        double end =
-          node < nodes.size() ? curve.strain(node) : position + 10. + strain;
-        const bool arrives = is_followed_exactly && end >= memory.largest;
+        const bool is_last = node == nodes.size();
+        double     end = is_last ? position + 10. + strain : curve.strain(node);
+        const bool arrives =
+          is_followed_exactly && (is_last || end >= memory.largest);
         if (arrives)
           end = memory.largest;
         const Point  far     = curve.on_piece(node, end);
@@ -216,7 +221,7 @@ namespace Voussoir
                                0.5 * now.stress * (last - flowed);
         const double rate =
           0.5 * (now.stress * (de + dp) - ds * (now.elastic - last + flowed));
-        if (!is_followed_exactly && (rate > missing || node == nodes.size()))
+        if (!is_followed_exactly && (rate > missing || is_last))
           {
             // no energy is left where there is no stress
             const double way =

@@ -7,24 +7,39 @@ namespace Voussoir
 {
   using namespace dealii;
 
+  namespace
+  {
+    // Steps from one evaluation to the next, which takes as long as a step or
+    // two: 50 at most, one in models that are small enough to afford it ...
+    unsigned int
+    most_steps_between(const types::global_dof_index n_unknowns)
+    {
+      return std::min<types::global_dof_index>(50, 1 + n_unknowns / 1000);
+    }
+
+    // ... and no more than the trapezoidal rule needs: the loss of the cells
+    // may change by so much of itself, or of this share of what came in.
+    constexpr double largest_change = 0.1, share_that_counts = 0.01;
+  } // namespace
+
+
   EnergyBalance::EnergyBalance(const EquationOfMotion &equation,
-                               const double            time_step)
+                               const double            time_step,
+                               const double            interval)
     : equation(equation)
     , time_step(time_step)
+    , viscous(equation.damping.stiffness_coefficient > 0. ||
+              equation.damping.mesh_viscosity > 0.)
+    , most_steps(most_steps_between(equation.discretization.owned_dofs.size()))
+    , lines(interval > 0. ? interval : 50. * time_step, time_step)
     , moved(equation.discretization.create_vector())
     , moved_before(moved)
   {
     const InitialState &initial_state = equation.initial;
     if (initial_state.force.size() > 0)
       static_work = std::abs(initial_state.displacement * initial_state.force);
-    if (initial_state.displacement.size() > 0)
-      {
-        force_at_rest = moved;
-        equation.terms.add_to(force_at_rest, initial_state.displacement, 0.);
-        force_at_rest *= -1.;
-        if (initial_state.contact_force.size() > 0)
-          force_at_rest += initial_state.contact_force;
-      }
+    if (viscous)
+      velocity_before = moved;
   }
 
 
@@ -52,38 +67,63 @@ namespace Voussoir
   }
 
 
-  double
-  EnergyBalance::energy_of_branches(const State &state)
+  bool
+  EnergyBalance::is_due(const unsigned long long step) const
   {
-    // branch i is a spring D_i s K: stored w_n^T K w_(n-1) / (2 D_i / s)
-    const Damping    &damping = equation.damping;
-    const MaxwellStep maxwell(damping, time_step);
-    double            energy = 0.;
-    for (unsigned int i = 0; i < state.memory.size(); ++i)
-      if (damping.coefficients[i] > 0.)
-        {
-          Vector &next = moved_before; // has done its work
-          next.equ(maxwell.decay[i], state.memory[i]);
-          next.add(maxwell.gain[i], state.velocity);
-          energy += 0.5 / damping.coefficients[i] *
-                    equation.internal_force.elastic_work(state.memory[i],
-                                                         next,
-                                                         state.material_memory,
-                                                         true);
-        }
-    return energy;
+    return step >= due_step || lines.due(step);
+  }
+
+
+  void
+  EnergyBalance::before_step(const State &state)
+  {
+    if (viscous)
+      velocity_before = state.velocity;
+    kept_step = state.step + 1;
+  }
+
+
+  double
+  EnergyBalance::loss_in_cells(const unsigned long long step,
+                               const double             next,
+                               const double             last)
+  {
+    // of the steps in between, the ends with the weight that makes one step
+    // exact
+    const unsigned int n = first ? 0 : step - loss_step;
+    const double       loss =
+      n == 0 ? known_loss :
+                     known_loss + 0.5 * ((n + 1.) * next_loss + (n - 1.) * next) +
+                 0.5 * ((n - 1.) * last_loss + (n + 1.) * last);
+    // looks beside the schedule leave it as it is
+    if (!first && (n == 0 || !is_due(step)))
+      return loss;
+
+    const double change  = n * (std::abs(next - next_loss) +
+                               std::abs(last - last_loss)),
+                 allowed = largest_change *
+                           std::max(known_loss, share_that_counts * came_in);
+    if (n > 1 && change > allowed)
+      steps_between = n / 2;
+    else if (n > 0 && 4. * change <= allowed)
+      steps_between = std::min(most_steps, std::max(steps_between, 2 * n));
+    known_loss = loss;
+    next_loss  = next;
+    last_loss  = last;
+    loss_step  = step;
+    due_step   = step + steps_between;
+    return loss;
   }
 
 
   const EnergyTerms &
-  EnergyBalance::evaluate(const State &state)
+  EnergyBalance::evaluate(State &state, const bool end)
   {
     const InitialState &initial_state = equation.initial;
     moved                             = state.displacement;
     if (initial_state.displacement.size() > 0)
       moved -= initial_state.displacement;
 
-    // local sums first, then one reduction
     double kinetic = 0.;
     for (unsigned int i = 0; i < state.velocity.locally_owned_size(); ++i)
       {
@@ -92,51 +132,58 @@ namespace Voussoir
         moved_before.local_element(i) = moved.local_element(i) - time_step * v;
       }
     kinetic += equation.terms.kinetic_energy(state.velocity);
+    const bool          knows_velocity = viscous && kept_step == state.step;
+    const ElasticEnergy elastic =
+      equation.internal_force.elastic_energy({moved,
+                                              state.velocity,
+                                              knows_velocity ? velocity_before :
+                                                               state.velocity,
+                                              state.memory,
+                                              equation.damping,
+                                              time_step},
+                                             state.material_memory);
+    const InelasticEnergy inelastic =
+      equation.internal_force.inelastic_energy(state.displacement,
+                                               state.material_memory,
+                                               initial_state,
+                                               equation.damping);
+
+    // local sums first, then one reduction
     const EnergyAccounts     &accounts = state.accounts;
     const PointLosses         lost     = state.material_memory.losses();
     const std::vector<double> sums     = sum_over_ranks(
       std::vector<double>{kinetic,
-                              equation.terms.spring_energy(moved, moved_before),
+                              elastic.strain + inelastic.stored +
+                                equation.terms.spring_energy(moved, moved_before),
+                              elastic.memory,
+                              accounts.loss_by_mass + lost.damping -
+                                inelastic.damping,
+                              elastic.next_loss,
+                              elastic.last_loss,
                               accounts.loss_in_dashpots,
-                              accounts.work_of_forces + accounts.work_of_base,
-                              accounts.work_of_projections,
-                              accounts.loss_by_mass,
-                              accounts.work_on_cells,
                               lost.material,
-                              lost.closing},
+                              lost.closing,
+                              accounts.work_of_forces + accounts.work_of_base,
+                              accounts.work_of_projections},
       equation.discretization.grid.communicator());
 
-    const double in_cells =
-      equation.internal_force.stored_energy(state.displacement,
-                                            state.material_memory,
-                                            initial_state,
-                                            moved,
-                                            moved_before);
     EnergyTerms &terms = terms_now;
     terms.kinetic      = sums[0];
-    terms.strain       = in_cells + sums[1];
-    terms.boundary     = sums[2];
-    terms.input        = sums[3];
-    terms.constraints  = sums[4];
+    terms.strain       = sums[1];
+    terms.memory       = sums[2];
+    terms.damping      = sums[3] + loss_in_cells(state.step, sums[4], sums[5]);
+    terms.boundary     = sums[6];
     terms.material     = sums[7];
     terms.closing      = sums[8];
+    terms.input        = sums[9];
+    terms.constraints  = sums[10];
     // of the work of contact, what its static forces do on the way
     if (initial_state.contact_force.size() > 0)
       terms.constraints -= 0.5 * (initial_state.contact_force * moved +
                                   initial_state.contact_force * moved_before);
-    double work_on_cells = sums[6];
-    if (force_at_rest.size() > 0)
-      work_on_cells -=
-        0.5 * (force_at_rest * moved + force_at_rest * moved_before);
-    terms.memory = energy_of_branches(state);
     if (first)
-      {
-        initial          = terms.stored();
-        initial_in_cells = in_cells + terms.memory - work_on_cells;
-        first            = false;
-      }
-    terms.damping = sums[5] + work_on_cells + initial_in_cells - in_cells -
-                    terms.memory - terms.material - terms.closing;
+      initial = terms.stored() + terms.lost() - terms.input - terms.constraints;
+    first        = false;
     most_damping = std::max(most_damping, terms.damping);
 
     // waves that pass through the rock are a thousand times what stays; neither
@@ -149,6 +196,8 @@ namespace Voussoir
                                  initial,
                                  1e-12 * static_work});
     largest_error    = std::max(largest_error, relative_error());
+    if (!lines.due(state.step) && !end)
+      return terms_now;
     table.write(state.time,
                 {terms_now.kinetic,
                  terms_now.strain,
@@ -212,7 +261,7 @@ namespace Voussoir
     const double losses = terms_now.damping + terms_now.material +
                           std::max(terms_now.closing, 0.) +
                           std::max(-terms_now.constraints, 0.);
-    return losses > 1e-3 * came_in ? made() / losses : 0.;
+    return losses > 0.1 * came_in ? made() / losses : 0.;
   }
 
 
@@ -230,7 +279,7 @@ namespace Voussoir
       {
         std::ostringstream text;
         text << std::setprecision(3) << 100. * relative_error()
-             << " % of the energy that came in has come from nowhere ("
+             << " % of the energy that came in are the energy-balance error ("
              << terms_now.error(initial) << " J unaccounted for, "
              << given_back(terms_now, most_damping)
              << " J given back by damping, " << made_by_closing(terms_now)
@@ -254,9 +303,10 @@ namespace Voussoir
             {"input [J]", terms_now.input},
             {"work of constraints [J]", terms_now.constraints},
             {"initial [J]", initial},
-            {"from nowhere, share of the input", relative_error()},
-            {"largest share from nowhere", largest_error},
-            {"from nowhere, share of the losses", error_of_losses()}};
+            {"unaccounted [J]", terms_now.error(initial)},
+            {"energy-balance error, share of the input", relative_error()},
+            {"largest energy-balance error", largest_error},
+            {"energy-balance error, share of the losses", error_of_losses()}};
   }
 
 
@@ -264,7 +314,22 @@ namespace Voussoir
   EnergyBalance::save() const
   {
     return {{"initial", initial},
-            {"initial in cells", initial_in_cells},
+            {"loss in cells", known_loss},
+            {"loss of the next step", next_loss},
+            {"loss of the last step", last_loss},
+            {"step", loss_step},
+            {"steps between", steps_between},
+            {"due", due_step},
+            {"terms",
+             {terms_now.kinetic,
+              terms_now.strain,
+              terms_now.memory,
+              terms_now.damping,
+              terms_now.boundary,
+              terms_now.material,
+              terms_now.closing,
+              terms_now.input,
+              terms_now.constraints}},
             {"most damping", most_damping},
             {"came in", came_in},
             {"largest error", largest_error}};
@@ -274,11 +339,26 @@ namespace Voussoir
   void
   EnergyBalance::load(const nlohmann::json &saved)
   {
-    initial          = saved.at("initial");
-    initial_in_cells = saved.at("initial in cells");
-    most_damping     = saved.at("most damping");
-    came_in          = saved.at("came in");
-    largest_error    = saved.at("largest error");
-    first            = false;
+    initial                         = saved.at("initial");
+    known_loss                      = saved.at("loss in cells");
+    next_loss                       = saved.at("loss of the next step");
+    last_loss                       = saved.at("loss of the last step");
+    loss_step                       = saved.at("step");
+    steps_between                   = saved.at("steps between");
+    due_step                        = saved.at("due");
+    const std::vector<double> terms = saved.at("terms");
+    terms_now                       = {terms.at(0),
+                                       terms.at(1),
+                                       terms.at(2),
+                                       terms.at(3),
+                                       terms.at(4),
+                                       terms.at(5),
+                                       terms.at(6),
+                                       terms.at(7),
+                                       terms.at(8)};
+    most_damping                    = saved.at("most damping");
+    came_in                         = saved.at("came in");
+    largest_error                   = saved.at("largest error");
+    first                           = false;
   }
 } // namespace Voussoir

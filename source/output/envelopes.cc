@@ -1,6 +1,8 @@
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/materials/cell_kernels.h>
 #include <voussoir/materials/principal_stress.h>
 #include <voussoir/output/field_writer.h>
+#include <voussoir/output/filtered_displacement.h>
 #include <voussoir/output/law_stress.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -32,6 +34,7 @@ namespace Voussoir
         : model(model)
         , matrix_free(model.discretization.matrix_free)
         , points(QTrapezoid<1>(), model.discretization.degree)
+        , filtered(model)
       {
         const auto &scalar = model.discretization.fe.base_element(0);
         const auto  order  = FETools::lexicographic_to_hierarchic_numbering<3>(
@@ -71,19 +74,32 @@ namespace Voussoir
       }
 
       void
-      update(const Vector &displacement, const double time)
+      update(const State &state)
       {
-        displacement.update_ghost_values();
+        filtered.update(state);
         Evaluation cells(matrix_free);
         for (Batch &batch : batches)
           {
             cells.reinit(batch.number);
-            cells.read_dof_values(displacement);
-            Lanes high = -std::numeric_limits<double>::max(), low = -high;
+            CellKernels::read_filtered(cells,
+                                       filtered.displacement(),
+                                       filtered.memory(),
+                                       batch.damping_factor);
+            Lanes high, low;
+            for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+              {
+                high[lane] = batch.extremes[lane][0];
+                low[lane]  = batch.extremes[lane][1];
+              }
             for (unsigned int p = 0; p < points.size(); ++p)
               {
-                const auto [largest, smallest] = largest_and_smallest_principal(
-                  batch.laws[p](strain(cells, batch, p)));
+                const SymmetricTensor3<Lanes> now =
+                  batch.laws[p](strain(cells, batch, p));
+                const auto [below, above] = principal_bounds(now);
+                if (are_within(below, above, low, high))
+                  continue;
+                const auto [largest, smallest] =
+                  largest_and_smallest_principal(now);
                 high = std::max(high, largest);
                 low  = std::min(low, smallest);
               }
@@ -94,16 +110,29 @@ namespace Voussoir
                 if (!(high[lane] <= extremes[0]))
                   {
                     extremes[0] = high[lane];
-                    extremes[2] = time;
+                    extremes[2] = state.time;
                   }
                 if (!(low[lane] >= extremes[1]))
                   {
                     extremes[1] = low[lane];
-                    extremes[3] = time;
+                    extremes[3] = state.time;
                   }
               }
           }
-        displacement.zero_out_ghost_values();
+      }
+
+      /** Of all cells those that are looked at; all ranks must call this
+       *  together. */
+      double
+      share_of_cells() const
+      {
+        std::size_t n = 0;
+        for (const Batch &batch : batches)
+          n += batch.watched.count();
+        const auto &triangulation = model.discretization.grid.triangulation();
+        return double(
+                 Utilities::MPI::sum(n, triangulation.get_communicator())) /
+               double(triangulation.n_global_active_cells());
       }
 
       /** Visits each cell that is looked at. */
@@ -120,7 +149,23 @@ namespace Voussoir
 
     private:
       using Evaluation = FEEvaluation<3, -1, 0, 3, double>;
-      using LaneSet    = std::bitset<Lanes::size()>;
+
+      /** Whether neither bound leaves these values in any lane; not if one is a
+       *  NaN. */
+      static bool
+      are_within(const Lanes &below,
+                 const Lanes &above,
+                 const Lanes &low,
+                 const Lanes &high)
+      {
+        bool within = true;
+        for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+          within =
+            within && above[lane] <= high[lane] && below[lane] >= low[lane];
+        return within;
+      }
+
+      using LaneSet = std::bitset<Lanes::size()>;
 
       struct Batch
       {
@@ -132,7 +177,8 @@ namespace Voussoir
                           0.}});
         }
 
-        unsigned int                       number = 0;
+        unsigned int                       number         = 0;
+        double                             damping_factor = 1.;
         LaneSet                            watched;
         std::array<Tensor<1, 3, Lanes>, 8> vertices;
 
@@ -167,6 +213,9 @@ namespace Voussoir
         Batch batch;
         batch.number  = number;
         batch.watched = watched;
+        batch.damping_factor =
+          model.materials[model.discretization.material_of_batch[number]]
+            ->damping_factor();
         batch.laws.resize(points.size());
         for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
           {
@@ -203,21 +252,37 @@ namespace Voussoir
              const Batch       &batch,
              const unsigned int point) const
       {
-        Tensor<2, 3, Lanes> jacobian;
-        for (unsigned int v = 0; v < 8; ++v)
-          for (unsigned int d = 0; d < 3; ++d)
-            for (unsigned int k = 0; k < 3; ++k)
-              jacobian[d][k] +=
-                vertex_gradients[point][v][k] * batch.vertices[v][d];
+        Tensor<2, 3, Lanes> jacobian, unit_gradient;
         const Lanes        *values = cells.begin_dof_values();
-        Tensor<2, 3, Lanes> unit_gradient;
-        for (unsigned int d = 0; d < 3; ++d)
-          for (const Tensor<1, 3> &gradient : shape_gradients[point])
+        if (model.discretization.degree == 1)
+          // the edges that meet in the corner
+          for (unsigned int k = 0; k < 3; ++k)
             {
-              for (unsigned int k = 0; k < 3; ++k)
-                unit_gradient[d][k] += gradient[k] * *values;
-              ++values;
+              const unsigned int end   = point | (1U << k),
+                                 begin = point & ~(1U << k);
+              for (unsigned int d = 0; d < 3; ++d)
+                {
+                  jacobian[d][k] =
+                    batch.vertices[end][d] - batch.vertices[begin][d];
+                  unit_gradient[d][k] =
+                    values[8 * d + end] - values[8 * d + begin];
+                }
             }
+        else
+          {
+            for (unsigned int v = 0; v < 8; ++v)
+              for (unsigned int d = 0; d < 3; ++d)
+                for (unsigned int k = 0; k < 3; ++k)
+                  jacobian[d][k] +=
+                    vertex_gradients[point][v][k] * batch.vertices[v][d];
+            for (unsigned int d = 0; d < 3; ++d)
+              for (const Tensor<1, 3> &gradient : shape_gradients[point])
+                {
+                  for (unsigned int k = 0; k < 3; ++k)
+                    unit_gradient[d][k] += gradient[k] * *values;
+                  ++values;
+                }
+          }
         return symmetrize(unit_gradient * invert(jacobian));
       }
 
@@ -229,6 +294,8 @@ namespace Voussoir
       std::vector<std::vector<double>>         shape_values;
       std::vector<std::vector<Tensor<1, 3>>>   shape_gradients;
       std::vector<std::array<Tensor<1, 3>, 8>> vertex_gradients;
+
+      FilteredDisplacement filtered;
 
       AlignedVector<Batch> batches;
     };
@@ -357,16 +424,23 @@ namespace Voussoir
                           "what is above 0.44 over this time, and that of "
                           "single steps at the looks.",
                           Patterns::Double(1e-6));
+        prm.add_parameter("Stress",
+                          wants_stress,
+                          "Whether to look at the principal stresses at the "
+                          "nodes of each cell, the points that pictures show.");
         prm.add_parameter("Stress interval",
                           stress_interval,
-                          "Time between two looks at the principal stresses "
-                          "at the nodes of each cell, the points that pictures "
-                          "show [s]; 0 for none.",
+                          "Time between two looks at these [s]; 0 for a "
+                          "twentieth of the shortest period that the mesh "
+                          "carries with eight nodes per wavelength, or so much "
+                          "more that looks cost no more than 2 % of the time "
+                          "steps: the fewer cells, the shorter. summary.json "
+                          "has it.",
                           Patterns::Double(0.));
         prm.add_parameter("Stress in",
                           stress_sets,
-                          "Cell sets whose stresses are looked at; empty for "
-                          "all cells.");
+                          "Cell sets whose stresses are looked at, as those of "
+                          "the dam; empty for all cells.");
       }
 
       void
@@ -387,11 +461,16 @@ namespace Voussoir
         accelerations = previous = last_look = largest;
         last_step                            = 0;
         stress.reset();
-        if (stress_interval > 0.)
+        if (wants_stress)
           {
-            stress_schedule = Schedule(stress_interval, model->time_step);
             stress =
               std::make_unique<StressEnvelope>(*model, split_list(stress_sets));
+            looked_at       = stress_interval > 0. ?
+                                stress_interval :
+                                std::max(model->resolving_interval(),
+                                   steps_per_look * stress->share_of_cells() *
+                                     model->time_step);
+            stress_schedule = Schedule(looked_at, model->time_step);
           }
       }
 
@@ -404,7 +483,7 @@ namespace Voussoir
         if (schedule.due(state.step + 1))
           previous = state.velocity;
         if (stress && stress_schedule.due(state.step))
-          stress->update(state.displacement, state.time);
+          stress->update(state);
       }
 
       void
@@ -434,6 +513,9 @@ namespace Voussoir
                            {&values[2], "time_of_largest_s"},
                            {&values[3], "time_of_smallest_s"}};
             summarise_stress(summary["envelopes"]);
+            summary["looks at the stress of cells"] = {
+              {"interval [s]", looked_at},
+              {"extremes hold to 1.2 % up to [Hz]", 0.05 / looked_at}};
           }
         write_fields(*model,
                      {{&largest,
@@ -540,15 +622,20 @@ namespace Voussoir
         last_step = state.step;
       }
 
-      double      interval = 0.01, stress_interval = 0.02;
+      // a look at all cells costs about a quarter of a step
+      static constexpr double steps_per_look = 12.;
+
+      bool        wants_stress = true;
+      double      interval = 0.01, stress_interval = 0.;
       std::string stress_sets;
 
       std::unique_ptr<ObservedModel> model;
       Schedule                       schedule, stress_schedule;
       Vector                         largest, accelerations;
       Vector previous, last_look; // velocities of a step and of a look before
-      unsigned long long              last_step = 0; // of that look
-      std::unique_ptr<StressEnvelope> stress;        // null: not wanted
+      unsigned long long              last_step = 0;  // of that look
+      double                          looked_at = 0.; // interval of stress [s]
+      std::unique_ptr<StressEnvelope> stress;         // null: not wanted
     };
 
     const Registry<Observer>::Add<Envelopes> registered(

@@ -306,9 +306,9 @@ namespace Voussoir
 
 
   const std::vector<SymmetricTensor<2, 3>> &
-  FaceMesh::stress(const Vector &displacement)
+  FaceMesh::stress(const State &state)
   {
-    const auto &sums = points->evaluate(displacement);
+    const auto &sums = points->evaluate(state);
     components.resize(6 * sums.size());
     for (unsigned int node = 0; node < sums.size(); ++node)
       for (unsigned int c = 0; c < 6; ++c)

@@ -27,10 +27,13 @@ namespace Voussoir
           "Faces to look at. On them arch stress is along the horizontal, "
           "cantilever stress along the steepest line; tension is positive "
           "[MPa].");
-        prm.add_parameter("Envelope interval",
-                          envelope_interval,
-                          "Time between two looks for the envelopes [s].",
-                          Patterns::Double(1e-6));
+        prm.add_parameter(
+          "Envelope interval",
+          envelope_interval,
+          "Time between two looks for the envelopes [s]; 0 for a "
+          "twentieth of the shortest period that the mesh "
+          "carries with eight nodes per wavelength.",
+          Patterns::Double(0.));
         pictures.declare_parameters(prm);
       }
 
@@ -47,8 +50,10 @@ namespace Voussoir
               const bool           restarted) override
       {
         pictures.prepare(model, start_time, restarted);
-        schedule = Schedule(envelope_interval, model.time_step);
-        mesh     = make_mesh(model);
+        schedule = Schedule(envelope_interval > 0. ? envelope_interval :
+                                                     model.resolving_interval(),
+                            model.time_step);
+        mesh = make_mesh(model);
         directions.clear();
         envelopes.assign(n_values * mesh->n_nodes(), 0.);
         for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
@@ -66,7 +71,7 @@ namespace Voussoir
         const bool picture = pictures.due(state);
         if (!picture && !schedule.due(state.step))
           return;
-        const std::vector<double> now = stresses(state.displacement);
+        const std::vector<double> now = stresses(state);
         if (schedule.due(state.step))
           for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
             for (unsigned int c = 0; c < n_extremes; ++c)
@@ -166,9 +171,9 @@ namespace Voussoir
       /** Arch, cantilever, largest and smallest principal stress of each node
        *  [MPa]. */
       std::vector<double>
-      stresses(const Vector &displacement)
+      stresses(const State &state)
       {
-        const auto         &tensors = mesh->stress(displacement);
+        const auto         &tensors = mesh->stress(state);
         std::vector<double> result;
         result.reserve(4 * tensors.size());
         for (unsigned int node = 0; node < tensors.size(); ++node)
@@ -188,7 +193,7 @@ namespace Voussoir
       }
 
       std::string   sets              = "upstream face, downstream face";
-      double        envelope_interval = 0.01;
+      double        envelope_interval = 0.;
       PictureSeries pictures{"face_stresses", "Output/face stresses"};
 
       Schedule                  schedule;

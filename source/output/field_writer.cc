@@ -1,6 +1,7 @@
 #include <voussoir/fem/nodal_values.h>
 #include <voussoir/materials/principal_stress.h>
 #include <voussoir/output/field_writer.h>
+#include <voussoir/output/filtered_displacement.h>
 #include <voussoir/output/law_stress.h>
 #include <voussoir/output/material_memory.h>
 #include <voussoir/output/vtu_file.h>
@@ -16,49 +17,82 @@ namespace Voussoir
 
   namespace
   {
-    /** What the static stage left, at the points of a cell that are drawn. */
-    struct InitialPoints
+    /** Strain of a displacement at the points of a cell that are drawn. */
+    class DrawnStrains
     {
-      explicit InitialPoints(const ObservedModel &model)
-        : discretization(model.discretization)
-        , displacement(with_ghosts(discretization, model.initial.displacement))
-        , temperature(with_ghosts(discretization, model.initial.temperature))
+    public:
+      DrawnStrains(const Discretization &discretization, const Vector &vector)
+        : displacement(with_ghosts(discretization, vector))
         , values(discretization.mapping,
                  discretization.fe,
                  QIterated<3>(QTrapezoid<1>(), discretization.degree),
-                 update_values | update_gradients)
+                 update_gradients)
         , strains(values.n_quadrature_points)
+      {}
+
+      const std::vector<SymmetricTensor<2, 3>> &
+      at(const Discretization::Cell &cell)
+      {
+        values.reinit(cell);
+        values[FEValuesExtractors::Vector(0)].get_function_symmetric_gradients(
+          displacement, strains);
+        return strains;
+      }
+
+    private:
+      const Vector                       displacement;
+      FEValues<3>                        values;
+      std::vector<SymmetricTensor<2, 3>> strains;
+    };
+
+
+    /** What the static stage left there. */
+    struct InitialPoints
+    {
+      explicit InitialPoints(const ObservedModel &model)
+        : drawn(model.discretization, model.initial.displacement)
+        , temperature(
+            with_ghosts(model.discretization, model.initial.temperature))
+        , values(model.discretization.mapping,
+                 model.discretization.fe,
+                 QIterated<3>(QTrapezoid<1>(), model.discretization.degree),
+                 update_values)
         , temperatures(values.n_quadrature_points)
       {}
 
       void
       reinit(const Discretization::Cell &cell)
       {
+        strains = drawn.at(cell);
         values.reinit(cell);
-        values[FEValuesExtractors::Vector(0)].get_function_symmetric_gradients(
-          displacement, strains);
         values[FEValuesExtractors::Scalar(0)].get_function_values(temperature,
                                                                   temperatures);
       }
 
-      const Discretization              &discretization;
-      const Vector                       displacement, temperature;
+      DrawnStrains                       drawn;
+      const Vector                       temperature;
       FEValues<3>                        values;
       std::vector<SymmetricTensor<2, 3>> strains;
       std::vector<double>                temperatures; // change [K]
     };
 
 
-    /** Principal stresses in MPa from the displacement gradient. */
+    /** Principal stresses in MPa from the gradient of u, or of u + s w where
+     * all materials have the same damping. */
     class PrincipalStresses : public DataPostprocessor<3>
     {
     public:
-      explicit PrincipalStresses(const ObservedModel &model)
+      /** @param memory w of FilteredDisplacement, or null */
+      PrincipalStresses(const ObservedModel &model, const Vector *memory)
         : model(model)
         , points(QTrapezoid<1>(), model.discretization.degree)
         , initial(model.initial.displacement.size() > 0 ?
                     std::make_unique<InitialPoints>(model) :
                     nullptr)
+        , memory(
+            memory != nullptr ?
+              std::make_unique<DrawnStrains>(model.discretization, *memory) :
+              nullptr)
       {}
 
       void
@@ -66,20 +100,28 @@ namespace Voussoir
         const DataPostprocessorInputs::Vector<3> &inputs,
         std::vector<dealii::Vector<double>>      &values) const override
       {
-        const auto cell = inputs.get_cell<3>();
+        const auto   cell = inputs.get_cell<3>();
+        const double damping =
+          model.materials[model.material_of_cell(cell)]->damping_factor();
         if (initial)
           initial->reinit(cell);
+        const auto *strains_of_memory = memory ? &memory->at(cell) : nullptr;
         for (unsigned int q = 0; q < values.size(); ++q)
           {
             Tensor<2, 3> gradient;
             for (unsigned int d = 0; d < 3; ++d)
               gradient[d] = inputs.solution_gradients[q][d];
+            SymmetricTensor<2, 3> filtered = symmetrize(gradient);
+            if (strains_of_memory != nullptr)
+              filtered += damping * (*strains_of_memory)[q];
             const LawStress law(model, cell, points.point(q));
-            const auto [largest, smallest] = largest_and_smallest_principal(
-              initial ? law(symmetrize(gradient),
-                            initial->strains[q],
-                            initial->temperatures[q]) :
-                        law(symmetrize(gradient), {}, 0.));
+            const auto      elastic =
+              initial ? law.elastic_strain(filtered,
+                                           initial->strains[q],
+                                           initial->temperatures[q]) :
+                             law.elastic_strain(filtered, {}, 0.);
+            const auto [largest, smallest] =
+              largest_and_smallest_principal(law(elastic));
             values[q](0) = 1e-6 * largest;
             values[q](1) = 1e-6 * smallest;
           }
@@ -108,6 +150,7 @@ namespace Voussoir
       const ObservedModel                 &model;
       const QIterated<3>                   points;  // that are drawn
       const std::unique_ptr<InitialPoints> initial; // null: no static stage
+      const std::unique_ptr<DrawnStrains>  memory;  // null: none of its own
     };
 
 
@@ -154,7 +197,7 @@ namespace Voussoir
   std::string
   write_fields(const ObservedModel           &model,
                const std::vector<NodalField> &fields,
-               const Vector                  *stress_of,
+               const State                   *stress_of,
                const std::string             &name,
                const double                   time,
                const std::vector<CellField>  &cell_fields)
@@ -178,11 +221,15 @@ namespace Voussoir
             one ? DataComponentInterpretation::component_is_part_of_vector :
                   DataComponentInterpretation::component_is_scalar));
       }
-    PrincipalStresses stresses(model);
+    std::unique_ptr<const PrincipalStresses> stresses;
     if (stress_of != nullptr)
       {
-        vectors.push_back(with_ghosts(discretization, *stress_of));
-        data_out.add_data_vector(vectors.back(), stresses);
+        FilteredDisplacement filtered(model);
+        filtered.update(*stress_of);
+        stresses =
+          std::make_unique<PrincipalStresses>(model, filtered.memory());
+        vectors.push_back(with_ghosts(discretization, filtered.displacement()));
+        data_out.add_data_vector(vectors.back(), *stresses);
       }
 
     const auto material = material_of_cells(model);

@@ -84,9 +84,7 @@ namespace Voussoir
         pictures.add(state.time,
                      write_fields(*model,
                                   nodal,
-                                  wants("principal stress") ?
-                                    &state.displacement :
-                                    nullptr,
+                                  wants("principal stress") ? &state : nullptr,
                                   pictures.next_name(state),
                                   state.time,
                                   of_cells));

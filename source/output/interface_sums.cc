@@ -36,16 +36,18 @@ namespace Voussoir
         sum[shear_x + d] += global[d] - F[0] * point.frame[0][d];
         sum[force_x + d] += global[d];
       }
-    ContactLimits limits = point.limits;
+    const ContactLimits &limits = point.limits;
     if (limits.locked)
       sum[locked_area] += point.area;
     else
       {
-        sum[resistance] += limits.shear(open, F[0]);
-        sum[shear_of_points] += std::hypot(F[1], F[2]);
+        sum[resistance] +=
+          limits.bond +
+          (open ? 0. : limits.cohesion + limits.friction * point.mean_pressure);
+        for (unsigned int d = 0; d < 3; ++d)
+          sum[driving_x + d] += global[d] - F[0] * point.frame[0][d];
       }
-    limits.locked = false;
-    sum[cohesion] += limits.shear(open, 0.);
+    sum[cohesion] += limits.bond + (open ? 0. : limits.cohesion);
     sum[friction] += open ? 0. : limits.friction * point.area;
   }
 
@@ -53,12 +55,14 @@ namespace Voussoir
   std::array<double, n_surface_columns>
   surface_values(const double *sum, const double *largest, const double area)
   {
-    // infinite without shear, as in an open joint without keys or one that keys
-    // hold, or with as good as none
-    const double       safety = sum[shear_of_points] > 1e-6 * sum[resistance] ?
-                                  sum[resistance] / sum[shear_of_points] :
-                                  std::numeric_limits<double>::infinity();
-    const Tensor<1, 3> shear({sum[shear_x], sum[shear_y], sum[shear_z]});
+    // Of the plane as a whole, (c A + f N) / T. Infinite without shear, as in
+    // an open joint without keys or one that keys hold, or with as good as
+    // none.
+    const Tensor<1, 3> shear({sum[shear_x], sum[shear_y], sum[shear_z]}),
+      driving({sum[driving_x], sum[driving_y], sum[driving_z]});
+    const double safety = driving.norm() > 1e-6 * sum[resistance] ?
+                            sum[resistance] / driving.norm() :
+                            std::numeric_limits<double>::infinity();
     return {{1e3 * largest[0],
              1e3 * sum[opening] / area,
              1e3 * largest[1],

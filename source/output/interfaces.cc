@@ -44,9 +44,10 @@ namespace Voussoir
         prm.add_parameter("Interval",
                           interval,
                           "Time between two lines of interfaces.csv, and two "
-                          "looks for the sliding safety [s], which is what "
-                          "friction and cohesion could bear, without keys, "
-                          "over the shear force.",
+                          "looks for the sliding safety of each surface [s], "
+                          "(c A + f N) / T: what friction and cohesion could "
+                          "bear over the resultant of the shear, both where "
+                          "no keys hold.",
                           Patterns::Double(1e-6));
       }
 
@@ -255,8 +256,8 @@ namespace Voussoir
                 line.insert(line.end(), values.begin(), values.end());
                 const double safety = values.back();
                 smallest_safety[s]  = std::min(smallest_safety[s], safety);
-                // points that slide are at their limit, not beyond it
-                if (safety < 1. + 1e-6)
+                // what slides is at its limit, up to the waves inside
+                if (safety < 1. + 1e-3)
                   time_at_one[s] += interval;
               }
             for (unsigned int k = 0; k < 3 * points.size(); ++k)

@@ -11,6 +11,7 @@ namespace Voussoir
     const unsigned int number = model.material_of_cell(cell);
     material                  = model.materials[number];
     history                   = model.material_memory.of(number);
+    k                         = model.internal_force.factor_of(number);
     if (history == nullptr)
       return;
     place              = history->place_of(cell);
@@ -23,20 +24,25 @@ namespace Voussoir
 
 
   SymmetricTensor<2, 3>
-  LawStress::operator()(const SymmetricTensor<2, 3> &strain,
-                        const SymmetricTensor<2, 3> &initial_strain,
-                        const double                 temperature) const
+  LawStress::operator()(const SymmetricTensor<2, 3> &elastic_strain) const
   {
-    const auto strain_of_law =
-      material->strain_of_law(strain, initial_strain, temperature);
-    const auto elastic = material->stress(strain_of_law);
+    if (is_active())
+      return history->stress(place, q);
+    const auto elastic = material->stress(elastic_strain);
     if (is_elastic(elastic))
       return elastic;
-    const double band = history->band(place, q);
-    const double width =
-      band > 0. ? band : history->bands(place.batch).widest[place.lane];
     std::vector<double> memory = history->read(place, q);
-    return material->respond(strain_of_law, memory.data(), {width, 0.}).stress;
+    return material->respond(elastic_strain, memory.data(), {widest_band(), 0.})
+      .stress;
+  }
+
+
+  SymmetricTensor<2, 3>
+  LawStress::elastic_strain(const SymmetricTensor<2, 3> &filtered,
+                            const SymmetricTensor<2, 3> &initial_strain,
+                            const double                 temperature) const
+  {
+    return material->elastic_strain(filtered, initial_strain, temperature, k);
   }
 
 
@@ -44,10 +50,23 @@ namespace Voussoir
   LawStress::is_elastic(const SymmetricTensor<2, 3> &elastic_stress) const
   {
     return history == nullptr ||
-           (history->band(place, q) == 0. &&
-            material->load_level(
-              elastic_stress, history->bands(place.batch).widest[place.lane]) <=
-              1.);
+           (!is_active() &&
+            material->load_level(elastic_stress, widest_band()) <= 1.);
+  }
+
+
+  bool
+  LawStress::is_active() const
+  {
+    return history != nullptr && history->band(place, q) > 0.;
+  }
+
+
+  double
+  LawStress::widest_band() const
+  {
+    return history == nullptr ? 0. :
+                                history->bands(place.batch).widest[place.lane];
   }
 
 
@@ -62,6 +81,13 @@ namespace Voussoir
   LawStress::law() const
   {
     return *material;
+  }
+
+
+  double
+  LawStress::stress_factor() const
+  {
+    return k;
   }
 
 
@@ -92,9 +118,19 @@ namespace Voussoir
   LawStressLanes::set(const unsigned int lane, const LawStress &law)
   {
     const ElasticConstants elastic = law.law().elastic_constants();
-    laws[lane]                     = law;
-    lame_lambda[lane]              = elastic.lame_lambda();
-    shear_modulus[lane]            = elastic.shear_modulus();
+    const bool             is_first =
+      std::none_of(laws.begin(), laws.end(), [](const auto &one) {
+        return one.has_value();
+      });
+    common      = law.law().isotropic() && (is_first || common == &law.law()) ?
+                    &law.law() :
+                    nullptr;
+    laws[lane]  = law;
+    bands[lane] = law.widest_band();
+    lame_lambda[lane]    = elastic.lame_lambda();
+    shear_modulus[lane]  = elastic.shear_modulus();
+    stress_factor[lane]  = law.stress_factor();
+    damping_factor[lane] = law.law().damping_factor();
     all_are_elastic =
       all_are_elastic && law.law().isotropic() && law.is_always_elastic();
   }
@@ -108,26 +144,40 @@ namespace Voussoir
       if (laws[lane])
         set_lane(offset,
                  lane,
-                 laws[lane]->law().strain_of_law({},
-                                                 lane_of(strain, lane),
-                                                 temperature[lane]));
+                 laws[lane]->elastic_strain({},
+                                            lane_of(strain, lane),
+                                            temperature[lane]));
   }
 
 
   SymmetricTensor3<Lanes>
-  LawStressLanes::operator()(const SymmetricTensor3<Lanes> &strain) const
+  LawStressLanes::operator()(const SymmetricTensor3<Lanes> &filtered) const
   {
-    const SymmetricTensor3<Lanes> of_law = strain + offset;
+    const SymmetricTensor3<Lanes> of_law = stress_factor * filtered + offset;
     SymmetricTensor3<Lanes>       result = 2. * shear_modulus * of_law;
     const Lanes                   mean   = lame_lambda * trace(of_law);
     for (unsigned int d = 0; d < 3; ++d)
       result[d][d] += mean;
     if (all_are_elastic)
       return result;
+    const bool none_begins =
+      common != nullptr && !any_above(common->load_level(result, bands), 1.);
     for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-      if (laws[lane] && (!laws[lane]->law().isotropic() ||
-                         !laws[lane]->is_elastic(lane_of(result, lane))))
-        set_lane(result, lane, (*laws[lane])(lane_of(of_law, lane), {}, 0.));
+      if (none_begins)
+        {
+          if (laws[lane] && laws[lane]->is_active())
+            set_lane(result, lane, (*laws[lane])(lane_of(of_law, lane)));
+        }
+      else if (laws[lane] && (!laws[lane]->law().isotropic() ||
+                              !laws[lane]->is_elastic(lane_of(result, lane))))
+        set_lane(result, lane, (*laws[lane])(lane_of(of_law, lane)));
     return result;
+  }
+
+
+  const Lanes &
+  LawStressLanes::damping_factors() const
+  {
+    return damping_factor;
   }
 } // namespace Voussoir

@@ -8,7 +8,75 @@ namespace Voussoir
 
   namespace
   {
-    /** Calls visit(cell, band, outputs of one point) for all points of a
+    const std::string opening_now = "crack opening now [mm]";
+
+    /** Number of an output of a material; past the end if it has none. */
+    std::size_t
+    output_number(const Material &material, const std::string &name)
+    {
+      const auto names = material.output_names();
+      return std::find(names.begin(), names.end(), name) - names.begin();
+    }
+
+
+    /**
+     * Opening of the crack of an active point at its last step [m], and not
+     * more than the largest one, which has been found already: the largest
+     * principal value of e_in = e - C^-1 : sigma times the band, but not more
+     * than the strain across the crack, n . e . n. Where that is pressed it is
+     * closed, also if shear opens it along an inclined strut; and crushed
+     * concrete that swells is no crack.
+     */
+    double
+    opening_of(const Material            &material,
+               const PointHistory        &history,
+               const PointHistory::Place &place,
+               const unsigned int         q,
+               const double               largest)
+    {
+      const ActivePoint &point  = history.active_point(place.batch, q);
+      const Lanes        across = point.normal * (point.seen * point.normal),
+                  traction      = point.normal * (point.stress * point.normal);
+      const ElasticConstants elastic       = material.elastic_constants();
+      const double           strain_across = across[place.lane];
+      if (!(strain_across > 0.) ||
+          traction[place.lane] < -1e-6 * elastic.young_modulus * strain_across)
+        return 0.;
+      const auto strain = history.inelastic_strain(place,
+                                                   q,
+                                                   elastic.young_modulus,
+                                                   elastic.poisson_ratio);
+      return std::max(0.,
+                      std::min(largest,
+                               history.band(place, q) *
+                                 std::min(strain_across,
+                                          eigenvalues(strain)[0])));
+    }
+
+
+    /** The names of the outputs of a material, and of what follows from all
+     *  that its points remember. */
+    std::vector<std::string>
+    names_of(const Material &material)
+    {
+      auto names = material.output_names();
+      if (tells_of_cracks(material))
+        names.push_back(opening_now);
+      return names;
+    }
+
+
+    /** Of the largest value of all points at the end. */
+    std::string
+    summary_name(const std::string &name)
+    {
+      return name == opening_now ? "widest crack opening at the end [mm]" :
+             name.rfind("largest", 0) == 0 ? name :
+                                             "largest " + name;
+    }
+
+
+    /** Calls visit(cell, band, values of these names) for all points of a
      *  material; without band [m] where it is elastic still. */
     void
     for_each_point(
@@ -18,19 +86,71 @@ namespace Voussoir
                                const double,
                                const std::vector<double> &)> &visit)
     {
-      const std::vector<double> nothing(material.output_names().size());
+      const std::vector<double> nothing(names_of(material).size());
+      const bool                cracks = tells_of_cracks(material);
+      const std::size_t         largest =
+        output_number(material, OutputName::largest_opening);
+      std::vector<double> values;
       for (const auto &[cell, place] : history.cells())
         for (unsigned int q = 0; q < history.n_points(); ++q)
           {
             const double band = history.band(place, q);
-            visit(cell,
-                  band,
-                  band > 0. ?
-                    material.outputs(history.read(place, q).data(), band) :
-                    nothing);
+            if (band > 0.)
+              {
+                values = material.outputs(history.read(place, q).data(), band);
+                if (cracks)
+                  values.push_back(1e3 * opening_of(material,
+                                                    history,
+                                                    place,
+                                                    q,
+                                                    1e-3 * values[largest]));
+              }
+            visit(cell, band, band > 0. ? values : nothing);
           }
     }
   } // namespace
+
+
+  bool
+  tells_of_cracks(const Material &material)
+  {
+    return output_number(material, OutputName::largest_opening) <
+           material.output_names().size();
+  }
+
+
+  void
+  for_each_crack(const ObservedModel                             &model,
+                 const std::function<void(const Discretization::Cell &,
+                                          const unsigned int,
+                                          const double,
+                                          const CrackOpening &)> &visit)
+  {
+    for (unsigned int m = 0; m < model.materials.size(); ++m)
+      {
+        const Material     &material = *model.materials[m];
+        const PointHistory *history  = model.material_memory.of(m);
+        if (history == nullptr || !tells_of_cracks(material))
+          continue;
+        const std::size_t number =
+          output_number(material, OutputName::largest_opening);
+        for (const auto &[cell, place] : history->cells())
+          for (unsigned int q = 0; q < history->n_points(); ++q)
+            if (const double band = history->band(place, q); band > 0.)
+              {
+                const double largest =
+                  1e-3 * material.outputs(history->read(place, q).data(),
+                                          band)[number];
+                visit(cell,
+                      q,
+                      band,
+                      {largest > 0. ?
+                         opening_of(material, *history, place, q, largest) :
+                         0.,
+                       largest});
+              }
+      }
+  }
 
 
   std::map<std::string, dealii::Vector<float>>
@@ -41,7 +161,7 @@ namespace Voussoir
     for (unsigned int m = 0; m < model.materials.size(); ++m)
       {
         const PointHistory *history = model.material_memory.of(m);
-        const auto          names   = model.materials[m]->output_names();
+        const auto          names   = names_of(*model.materials[m]);
         for (const std::string &name : names)
           if (result[name].size() == 0)
             result[name].reinit(n);
@@ -66,24 +186,14 @@ namespace Voussoir
   widest_crack(const ObservedModel &model)
   {
     WidestCrack widest;
-    for (unsigned int m = 0; m < model.materials.size(); ++m)
-      {
-        const auto names = model.materials[m]->output_names();
-        const auto opening =
-          std::find(names.begin(), names.end(), OutputName::crack_opening) -
-          names.begin();
-        if (const PointHistory *history = model.material_memory.of(m);
-            history != nullptr && opening < std::ptrdiff_t(names.size()))
-          for_each_point(*model.materials[m],
-                         *history,
-                         [&](const Discretization::Cell &,
-                             const double               band,
-                             const std::vector<double> &outputs) {
-                           const double metres = 1e-3 * outputs[opening];
-                           if (band > 0. && metres > widest.share * band)
-                             widest = {metres, metres / band};
-                         });
-      }
+    for_each_crack(model,
+                   [&](const Discretization::Cell &,
+                       const unsigned int,
+                       const double        band,
+                       const CrackOpening &opening) {
+                     if (opening.now > widest.share * band)
+                       widest = {opening.now, opening.now / band};
+                   });
     const auto all =
       Utilities::MPI::all_gather(model.discretization.grid.communicator(),
                                  std::make_pair(widest.share, widest.opening));
@@ -103,7 +213,7 @@ namespace Voussoir
         const PointHistory *history = model.material_memory.of(m);
         if (history == nullptr)
           continue;
-        const auto          names = model.materials[m]->output_names();
+        const auto          names = names_of(*model.materials[m]);
         std::vector<double> largest(names.size()), volumes(3);
         for_each_point(*model.materials[m],
                        *history,
@@ -125,7 +235,7 @@ namespace Voussoir
           volumes[1] / volumes[0];
         item["energy lost [J]"] = volumes[2];
         for (unsigned int i = 0; i < names.size(); ++i)
-          item["largest " + names[i]] =
+          item[summary_name(names[i])] =
             Utilities::MPI::max(largest[i], communicator);
       }
     return result;

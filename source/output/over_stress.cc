@@ -248,7 +248,7 @@ namespace Voussoir
           return;
         const double interval = state.step == 0 ? 0. : time_step;
         next_step             = state.step + 1;
-        find_ratios(state.displacement);
+        find_ratios(state);
         for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
           {
             const double ratio = ratio_of_node[node];
@@ -380,9 +380,9 @@ namespace Voussoir
 
       /** Finds the demand-capacity ratio of each node. */
       void
-      find_ratios(const Vector &displacement)
+      find_ratios(const State &state)
       {
-        const auto &tensors = mesh->stress(displacement);
+        const auto &tensors = mesh->stress(state);
         ratio_of_node.resize(tensors.size());
         for (unsigned int first = 0; first < tensors.size();
              first += Lanes::size())

@@ -53,7 +53,10 @@ namespace Voussoir
                           "Face sets on which the lines end.");
         prm.add_parameter("Interval",
                           interval,
-                          "Time between two lines of section_forces.csv [s].",
+                          "Time between two lines of section_forces.csv [s]; "
+                          "extremes are those of a twentieth of the shortest "
+                          "period that the mesh carries with eight nodes per "
+                          "wavelength, if that is shorter.",
                           Patterns::Double(1e-6));
       }
 
@@ -70,6 +73,8 @@ namespace Voussoir
       {
         communicator = model.discretization.grid.communicator();
         schedule     = Schedule(interval, model.time_step);
+        looks        = Schedule(std::min(interval, model.resolving_interval()),
+                         model.time_step);
         lines        = make_lines(model);
         std::vector<StressPoints::Place> places;
         for (const SectionLine &line : lines)
@@ -98,9 +103,10 @@ namespace Voussoir
       void
       observe(const State &state) override
       {
-        if (!schedule.due(state.step))
+        const bool has_line = schedule.due(state.step);
+        if (!has_line && !looks.due(state.step))
           return;
-        const auto &stress = stress_points->evaluate(state.displacement);
+        const auto &stress = stress_points->evaluate(state);
         auto        tensor = stress.begin();
         for (const SectionLine &line : lines)
           {
@@ -122,7 +128,7 @@ namespace Voussoir
               }
             shares.insert(shares.end(), sums.begin(), sums.end());
           }
-        times.push_back(state.time);
+        times.emplace_back(state.time, has_line);
         if (times.size() >= 100)
           flush();
       }
@@ -199,7 +205,9 @@ namespace Voussoir
                 largest[k]  = std::max(largest[k], values[k]);
                 smallest[k] = std::min(smallest[k], values[k]);
               }
-            table.write(times[i], values);
+            const auto &[time, has_line] = times[i];
+            if (has_line)
+              table.write(time, values);
           }
         table.flush();
         shares.clear();
@@ -212,11 +220,13 @@ namespace Voussoir
       double      interval        = 0.01;
 
       MPI_Comm                      communicator;
-      Schedule                      schedule;
+      Schedule                      schedule, looks;
       std::vector<SectionLine>      lines;
       std::unique_ptr<StressPoints> stress_points;
       TimeTable                     table;
-      std::vector<double>           largest, smallest, shares, times;
+      std::vector<double>           largest, smallest, shares;
+
+      std::vector<std::pair<double, bool>> times; // of looks; with a line
     };
 
     const Registry<Observer>::Add<SectionForces> registered(

@@ -28,10 +28,9 @@ namespace Voussoir
       unsigned int point;
       LawStress    law;
 
-      // gradients of the shape functions by the node's x in a vector with
-      // ghosts
-      std::map<unsigned int, Tensor<1, 3>> weights;
-      double                               temperature = 0.; // change [K]
+      // gradients of the shape functions by the node
+      std::map<types::global_dof_index, Tensor<1, 3>> weights;
+      double temperature = 0.; // change [K]
     };
 
 
@@ -52,15 +51,15 @@ namespace Voussoir
         for (const auto &carrier : discretization.carriers(nodes[j]))
           {
             const Tensor<1, 3> unit = scalar.shape_grad(j, place.unit);
-            const unsigned int entry =
-              partitioner.global_to_local(3 * carrier.node);
             // at a node only those in line with it count
             if (unit.norm() > 1e-12)
-              sample.weights[entry] += carrier.weight * (to_space * unit);
+              sample.weights[carrier.node] +=
+                carrier.weight * (to_space * unit);
             if (temperature != nullptr)
-              sample.temperature += carrier.weight *
-                                    scalar.shape_value(j, place.unit) *
-                                    temperature->local_element(entry);
+              sample.temperature +=
+                carrier.weight * scalar.shape_value(j, place.unit) *
+                temperature->local_element(
+                  partitioner.global_to_local(3 * carrier.node));
           }
     }
 
@@ -89,10 +88,7 @@ namespace Voussoir
   {
     const bool is_static = model.initial.displacement.size() > 0;
     if (is_static)
-      {
-        model.initial.temperature.update_ghost_values();
-        model.initial.displacement.update_ghost_values();
-      }
+      model.initial.temperature.update_ghost_values();
     std::vector<Sample>                                              samples;
     std::map<std::pair<unsigned int, const Material *>, std::size_t> linear;
     for (std::size_t i = 0; i < places.size(); ++i)
@@ -109,6 +105,20 @@ namespace Voussoir
             is_static ? &model.initial.temperature : nullptr,
             samples[sample]);
       }
+
+    IndexSet needed(model.discretization.dof_handler.n_dofs());
+    {
+      std::vector<types::global_dof_index> indices;
+      for (const Sample &sample : samples)
+        for (const auto &[node, gradient] : sample.weights)
+          for (unsigned int d = 0; d < 3; ++d)
+            indices.push_back(3 * node + d);
+      std::sort(indices.begin(), indices.end());
+      needed.add_indices(indices.begin(), indices.end());
+    }
+    filtered = std::make_unique<FilteredDisplacement>(model, needed);
+    const Vector initial =
+      is_static ? filtered->entries_of(model.initial.displacement) : Vector();
 
     for (std::size_t first = 0; first < samples.size(); first += Lanes::size())
       {
@@ -133,13 +143,14 @@ namespace Voussoir
             const auto &own =
               samples[first + (lane < n_samples ? lane : 0)].weights;
             for (std::size_t i = begin; i < weights.size(); ++i)
-              weights[i].entries[lane] = own.begin()->first;
+              weights[i].entries[lane] =
+                filtered->entry(3 * own.begin()->first);
             if (lane >= n_samples)
               continue;
             std::size_t i = begin;
-            for (const auto &[entry, gradient] : own)
+            for (const auto &[node, gradient] : own)
               {
-                weights[i].entries[lane] = entry;
+                weights[i].entries[lane] = filtered->entry(3 * node);
                 for (unsigned int d = 0; d < 3; ++d)
                   weights[i].gradient[d][lane] = gradient[d];
                 ++i;
@@ -147,15 +158,11 @@ namespace Voussoir
           }
         group.end_of_weights = weights.size();
         if (is_static)
-          group.laws.set_initial(strain(groups.size() - 1,
-                                        model.initial.displacement),
+          group.laws.set_initial(strain(groups.size() - 1, initial),
                                  temperature);
       }
     if (is_static)
-      {
-        model.initial.temperature.zero_out_ghost_values();
-        model.initial.displacement.zero_out_ghost_values();
-      }
+      model.initial.temperature.zero_out_ghost_values();
   }
 
 
@@ -178,13 +185,17 @@ namespace Voussoir
 
 
   const std::vector<SymmetricTensor<2, 3>> &
-  StressPoints::evaluate(const Vector &displacement)
+  StressPoints::evaluate(const State &state)
   {
-    displacement.update_ghost_values();
+    filtered->update(state);
     std::fill(stress.begin(), stress.end(), SymmetricTensor<2, 3>());
     for (unsigned int g = 0; g < groups.size(); ++g)
       {
-        const auto        sample = groups[g].laws(strain(g, displacement));
+        const LawStressLanes   &laws  = groups[g].laws;
+        SymmetricTensor3<Lanes> total = strain(g, filtered->displacement());
+        if (const Vector *memory = filtered->memory())
+          total += laws.damping_factors() * strain(g, *memory);
+        const auto        sample = laws(total);
         const std::size_t first  = g * Lanes::size();
         const std::size_t n =
           std::min<std::size_t>(Lanes::size(), point_of_sample.size() - first);
@@ -195,7 +206,6 @@ namespace Voussoir
               point.access_raw_entry(c) += sample.access_raw_entry(c)[lane];
           }
       }
-    displacement.zero_out_ghost_values();
     return stress;
   }
 } // namespace Voussoir

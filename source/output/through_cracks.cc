@@ -10,6 +10,8 @@
 #include <boost/pending/disjoint_sets.hpp>
 #include <boost/serialization/array.hpp>
 
+#include <bitset>
+
 namespace Voussoir
 {
   using namespace dealii;
@@ -19,65 +21,133 @@ namespace Voussoir
     const std::string section = "section \"Output/through cracks\"";
 
 
-    /** A cell with a crack in it. */
-    struct CrackedCell
+    /** An eighth of a cell, at one of its corners, with a crack in it. */
+    struct CrackedEighth
     {
-      double                                 opening; // [mm]
-      std::array<types::global_dof_index, 8> corners;
-      bool                                   begins, ends; // at the two faces
+      double                  opening; // [mm]
+      std::uint64_t           cell;    // Grid::global_key
+      unsigned int            corner;  // of the cell
+      types::global_dof_index node;    // there
+
+      // of the edges of the cell that begin there, in thousandths, as those of
+      // cells of other size begin there too
+      std::array<std::array<int, 3>, 3> directions;
+
+      bool begins, ends; // at the two faces
 
       template <typename Archive>
       void
       serialize(Archive &archive, const unsigned int)
       {
-        archive &opening &corners &begins &ends;
+        archive &opening &cell &corner &node &directions &begins &ends;
       }
     };
 
 
     /**
-     * The widest opening that a chain of cells, each next to the last one by an
-     * edge, has everywhere on its way from one face to the other; 0 if there is
-     * no such chain. Cells are taken in from the most open one on until a chain
-     * is whole.
+     * The widest opening that a chain of eighths of cells has everywhere on its
+     * way from one face to the other; 0 if there is no such chain. Eighths of
+     * one cell are next to each other unless they lie across its middle, those
+     * of two cells if an edge of both begins in their corner. They are taken in
+     * from the most open one on until a chain is whole.
      */
     double
-    widest_way(std::vector<CrackedCell> cells)
+    widest_way(std::vector<CrackedEighth> eighths)
     {
-      std::sort(cells.begin(), cells.end(), [](const auto &a, const auto &b) {
-        return a.opening > b.opening;
-      });
-      boost::disjoint_sets_with_storage<> chains(cells.size());
-      std::vector<bool> begins(cells.size()), ends(cells.size()); // of a chain
-      using Edge = std::pair<types::global_dof_index, types::global_dof_index>;
-      std::map<Edge, std::size_t> cell_at;
-      for (std::size_t i = 0; i < cells.size(); ++i)
+      const auto none = [&](const bool CrackedEighth::*at_face) {
+        return std::none_of(eighths.begin(),
+                            eighths.end(),
+                            [&](const auto &one) { return one.*at_face; });
+      };
+      if (none(&CrackedEighth::begins) || none(&CrackedEighth::ends))
+        return 0.;
+      std::sort(eighths.begin(),
+                eighths.end(),
+                [](const auto &a, const auto &b) {
+                  return a.opening > b.opening;
+                });
+      boost::disjoint_sets_with_storage<> chains(eighths.size());
+      std::vector<bool> begins(eighths.size()), ends(eighths.size()); // of one
+      std::map<std::pair<types::global_dof_index, std::array<int, 3>>,
+               std::size_t>
+                                                        at_edge;
+      std::map<std::uint64_t, std::vector<std::size_t>> in_cell;
+      for (std::size_t i = 0; i < eighths.size(); ++i)
         {
-          begins[i] = cells[i].begins;
-          ends[i]   = cells[i].ends;
-          for (unsigned int line = 0; line < GeometryInfo<3>::lines_per_cell;
-               ++line)
+          const CrackedEighth &own = eighths[i];
+          begins[i]                = own.begins;
+          ends[i]                  = own.ends;
+          const auto join          = [&](const std::size_t other) {
+            const std::size_t a = chains.find_set(other),
+                              b = chains.find_set(i);
+            const bool begin = begins[a] || begins[b], end = ends[a] || ends[b];
+            chains.link(a, b);
+            const std::size_t whole = chains.find_set(i);
+            begins[whole]           = begin;
+            ends[whole]             = end;
+          };
+          for (const auto &direction : own.directions)
             {
-              const Edge edge = std::minmax(
-                cells[i]
-                  .corners[GeometryInfo<3>::line_to_cell_vertices(line, 0)],
-                cells[i]
-                  .corners[GeometryInfo<3>::line_to_cell_vertices(line, 1)]);
-              const auto [other, is_first] = cell_at.insert({edge, i});
-              if (is_first)
-                continue;
-              const std::size_t a = chains.find_set(other->second),
-                                b = chains.find_set(i);
-              chains.link(a, b);
-              const std::size_t whole = chains.find_set(i);
-              begins[whole]           = begins[a] || begins[b];
-              ends[whole]             = ends[a] || ends[b];
+              const auto [known, is_first] =
+                at_edge.insert({{own.node, direction}, i});
+              if (!is_first)
+                join(known->second);
             }
+          auto &others = in_cell[own.cell];
+          for (const std::size_t other : others)
+            if ((eighths[other].corner ^ own.corner) != 7)
+              join(other);
+          others.push_back(i);
           if (const std::size_t chain = chains.find_set(i);
               begins[chain] && ends[chain])
-            return cells[i].opening;
+            return own.opening;
         }
       return 0.;
+    }
+
+
+    /** The edges that begin in a corner of a cell, see CrackedEighth. */
+    std::array<std::array<int, 3>, 3>
+    directions_at(const Discretization::Cell &cell, const unsigned int corner)
+    {
+      std::array<std::array<int, 3>, 3> directions;
+      for (unsigned int k = 0; k < 3; ++k)
+        {
+          Tensor<1, 3> edge =
+            cell->vertex(corner ^ (1 << k)) - cell->vertex(corner);
+          edge /= edge.norm();
+          for (unsigned int d = 0; d < 3; ++d)
+            directions[k][d] = std::lround(1e3 * edge[d]);
+        }
+      return directions;
+    }
+
+
+    /** Shares of the integration points of a cell in the mean of each eighth:
+     *  those in it, and those between it and its neighbours by halves. */
+    std::vector<std::array<double, 8>>
+    shares_in_eighths(const Quadrature<3> &points)
+    {
+      std::vector<std::array<double, 8>> shares(points.size());
+      std::array<double, 8>              sums{};
+      for (unsigned int q = 0; q < points.size(); ++q)
+        for (unsigned int corner = 0; corner < 8; ++corner)
+          {
+            shares[q][corner] = points.weight(q);
+            for (unsigned int d = 0; d < 3; ++d)
+              {
+                const double beyond = (points.point(q)[d] - 0.5) *
+                                      ((corner >> d & 1) == 1 ? 1 : -1);
+                shares[q][corner] *= beyond > 1e-10  ? 1. :
+                                     beyond > -1e-10 ? 0.5 :
+                                                       0.;
+              }
+            sums[corner] += shares[q][corner];
+          }
+      for (auto &of_point : shares)
+        for (unsigned int corner = 0; corner < 8; ++corner)
+          of_point[corner] /= sums[corner];
+      return shares;
     }
 
 
@@ -92,7 +162,8 @@ namespace Voussoir
         prm.add_parameter("To", to, "Face sets on which it ends.");
         prm.add_parameter("Interval",
                           interval,
-                          "Time between two lines of through_cracks.csv [s].",
+                          "Time between two lines of through_cracks.csv, the "
+                          "moments at which cracks are looked at [s].",
                           Patterns::Double(1e-6));
       }
 
@@ -109,7 +180,9 @@ namespace Voussoir
         check_sets(model, "\"To\" in " + section, to);
         if (std::none_of(model.materials.begin(),
                          model.materials.end(),
-                         tells_of_cracks))
+                         [](const Material *material) {
+                           return tells_of_cracks(*material);
+                         }))
           throw UserError("No material of the case cracks, but " + section +
                           " looks for cracks; leave out the observer "
                           "\"through cracks\", or give a material a law that "
@@ -123,9 +196,15 @@ namespace Voussoir
       {
         model    = std::make_unique<ObservedModel>(observed);
         schedule = Schedule(interval, observed.time_step);
+        most     = {{0., 0.}};
+        shares.clear();
+        for (unsigned int m = 0; m < observed.materials.size(); ++m)
+          shares.push_back(
+            shares_in_eighths(observed.discretization.points(m)));
+        find_touching();
         table.open(observed.log,
                    observed.folder + "/through_cracks.csv",
-                   {title},
+                   {now_title, ever_title},
                    observed.time_step,
                    start_time,
                    restarted);
@@ -134,15 +213,36 @@ namespace Voussoir
       void
       observe(const State &state) override
       {
-        if (schedule.due(state.step))
-          table.write(state.time, {widest_opening()});
+        if (!schedule.due(state.step))
+          return;
+        const Ways ways = find_ways();
+        take(ways, state.time);
+        table.write(state.time, {ways.now, ways.ever});
       }
 
       void
-      finish(const State &, nlohmann::json &summary) override
+      finish(const State &state, nlohmann::json &summary) override
       {
         table.flush();
-        summary["through cracks"][title] = widest_opening();
+        const Ways ways = find_ways();
+        take(ways, state.time);
+        summary["through cracks"] = {
+          {"largest opening from face to face at one moment [mm]", most[0]},
+          {"at the time [s]", most[1]},
+          {"opening from face to face at the end [mm]", ways.now},
+          {"largest openings ever from face to face [mm]", ways.ever}};
+      }
+
+      nlohmann::json
+      save() override
+      {
+        return most;
+      }
+
+      void
+      load(const nlohmann::json &saved) override
+      {
+        saved.get_to(most);
       }
 
     private:
@@ -158,67 +258,118 @@ namespace Voussoir
           model.discretization.grid.check_face_set(set, place);
       }
 
-      static bool
-      tells_of_cracks(const Material *material)
+      /** Widest openings all the way from face to face [mm]. */
+      struct Ways
       {
-        const auto names = material->output_names();
-        return std::find(names.begin(),
-                         names.end(),
-                         OutputName::crack_opening) != names.end();
+        double now;
+        double ever; // by the largest openings, which need not be of one moment
+      };
+
+      void
+      take(const Ways &ways, const double time)
+      {
+        if (!(ways.now <= most[0])) // a NaN stays
+          most = {{ways.now, time}};
       }
 
-      /** [mm] */
-      double
-      widest_opening() const
+      Ways
+      find_ways() const
       {
         const Discretization &discretization = model->discretization;
-        const auto            openings =
-          memory_of_cells(*model).at(OutputName::crack_opening);
-        const auto begins = split_list(from), ends = split_list(to);
-        std::vector<CrackedCell> mine;
-        for (const auto &cell :
-             discretization.dof_handler.active_cell_iterators())
-          if (cell->is_locally_owned() &&
-              openings[cell->active_cell_index()] > 0.)
-            {
-              const auto nodes = discretization.cell_nodes(cell);
-              mine.push_back({openings[cell->active_cell_index()],
-                              {},
-                              touches(cell, begins),
-                              touches(cell, ends)});
-              // vertices come first
-              std::copy_n(nodes.begin(), 8, mine.back().corners.begin());
-            }
-        return widest_way(
-          join_over_ranks(mine, discretization.grid.communicator()));
+        using OfEighths                      = std::array<double, 8>;
+        struct Cracked
+        {
+          Discretization::Cell cell;
+          OfEighths            now{}, ever{};
+        };
+        std::vector<Cracked> cells;
+        for_each_crack(*model,
+                       [&](const Discretization::Cell &cell,
+                           const unsigned int          q,
+                           const double,
+                           const CrackOpening &opening) {
+                         if (opening.largest == 0.)
+                           return;
+                         if (cells.empty() || cells.back().cell != cell)
+                           cells.push_back({cell});
+                         const auto &share =
+                           shares[model->material_of_cell(cell)][q];
+                         for (unsigned int corner = 0; corner < 8; ++corner)
+                           {
+                             const double factor = 1e3 * share[corner];
+                             cells.back().now[corner] += factor * opening.now;
+                             cells.back().ever[corner] +=
+                               factor * opening.largest;
+                           }
+                       });
+        std::array<std::vector<CrackedEighth>, 2> mine;
+        for (const Cracked &cracked : cells)
+          {
+            const auto  nodes   = discretization.cell_nodes(cracked.cell);
+            const auto &touched = touching[cracked.cell->active_cell_index()];
+            for (unsigned int corner = 0; corner < 8; ++corner)
+              {
+                CrackedEighth one{cracked.now[corner],
+                                  Grid::global_key(cracked.cell),
+                                  corner,
+                                  nodes[corner], // vertices come first
+                                  directions_at(cracked.cell, corner),
+                                  touched[0][corner],
+                                  touched[1][corner]};
+                if (one.opening > 0.)
+                  mine[0].push_back(one);
+                one.opening = cracked.ever[corner];
+                if (one.opening > 0.)
+                  mine[1].push_back(one);
+              }
+          }
+        const MPI_Comm communicator = discretization.grid.communicator();
+        return {widest_way(join_over_ranks(mine[0], communicator)),
+                widest_way(join_over_ranks(mine[1], communicator))};
       }
 
-      bool
-      touches(const Discretization::Cell     &cell,
-              const std::vector<std::string> &sets) const
+      /** Finds the corners of cells that lie on the two sets of faces. */
+      void
+      find_touching()
       {
         const Grid &grid = model->discretization.grid;
-        for (const std::string &set : sets)
-          for (const unsigned int face : cell->face_indices())
-            if (grid.in_face_set(cell, face, set))
-              return true;
-        return false;
+        touching.assign(grid.triangulation().n_active_cells(), {});
+        const std::array<std::string, 2> lists{{from, to}};
+        for (const unsigned int side : {0, 1})
+          for (const std::string &set : split_list(lists[side]))
+            grid.for_each_face(
+              set, [&](const auto &cell, const unsigned int face) {
+                for (unsigned int v = 0; v < 4; ++v)
+                  touching[cell->active_cell_index()][side]
+                          [GeometryInfo<3>::face_to_cell_vertices(face, v)] =
+                            true;
+              });
       }
 
-      static inline const std::string title =
-        "widest opening from face to face [mm]";
+      static inline const std::string
+        now_title  = "opening from face to face now [mm]",
+        ever_title = "largest openings ever from face to face [mm]";
 
       std::string from = "upstream face", to = "downstream face";
-      double      interval = 0.1;
+      double      interval = 0.02;
 
       std::unique_ptr<ObservedModel> model;
       Schedule                       schedule;
       TimeTable                      table;
+
+      // of each material and point
+      std::vector<std::vector<std::array<double, 8>>> shares;
+
+      // of each active cell, whether its corners lie on the two sets of faces
+      std::vector<std::array<std::bitset<8>, 2>> touching;
+
+      // largest opening all the way at one moment [mm], and when [s]
+      std::array<double, 2> most{{0., 0.}};
     };
 
     const Registry<Observer>::Add<ThroughCracks> registered(
       "through cracks",
-      "Cracks that go through the dam: how wide they are open all the way from "
-      "one face to the other, in through_cracks.csv.");
+      "Cracks that go through the dam: how wide they are open at one moment all "
+      "the way from one face to the other, in through_cracks.csv.");
   } // namespace
 } // namespace Voussoir

@@ -1,6 +1,7 @@
 #include <voussoir/fem/nodal_values.h>
 #include <voussoir/time/central_difference.h>
 
+#include <algorithm>
 #include <set>
 
 namespace Voussoir
@@ -19,6 +20,14 @@ namespace Voussoir
                    leap_frog)
     , mass_coefficient(equation.damping.mass_coefficient)
     , stiffness_coefficient(equation.damping.stiffness_coefficient)
+    , point_step{time_step,
+                 equation.closing_viscosity,
+                 equation.damping.branch_stiffness(),
+                 maxwell.decay.empty() ?
+                   1. :
+                   std::pow(*std::max_element(maxwell.decay.begin(),
+                                              maxwell.decay.end()),
+                            2)}
     , uniform(
         equation.internal_force.uniform_damping() ||
         (equation.damping.n_branches() == 0 && stiffness_coefficient == 0.))
@@ -31,16 +40,33 @@ namespace Voussoir
   }
 
 
+  Tensor<2, 3>
+  CentralDifference::mass_at(const unsigned int node) const
+  {
+    if (const auto with_terms = nodal_update.mass_at(node))
+      return *with_terms;
+    Tensor<2, 3> result;
+    for (unsigned int d = 0; d < 3; ++d)
+      result[d][d] = (1. + leap_frog.implicit_share() * mass_coefficient) *
+                     equation.mass.mass.local_element(3 * node + d);
+    return result;
+  }
+
+
   void
   CentralDifference::tell_projections()
   {
-    std::set<unsigned int> projected, prescribed;
+    using Components = std::array<bool, 3>;
+    std::set<unsigned int>             projected;
+    std::map<unsigned int, Components> prescribed;
     for (const Projection *projection : equation.projections)
       {
         const auto &nodes = projection->nodes();
         projected.insert(nodes.begin(), nodes.end());
-        if (projection->prescribes())
-          prescribed.insert(nodes.begin(), nodes.end());
+        for (const unsigned int node : nodes)
+          for (unsigned int d = 0; d < 3; ++d)
+            if (projection->prescribed_components()[d])
+              prescribed[node][d] = true;
       }
     projected_nodes.assign(projected.begin(), projected.end());
     for (const unsigned int node : projected_nodes)
@@ -48,21 +74,53 @@ namespace Voussoir
     last_velocity.resize(projected_nodes.size());
     predicted_velocity.resize(projected_nodes.size());
 
-    const double mass_factor =
-      1. + leap_frog.implicit_share() * mass_coefficient;
-    const auto inverse_mass = [&](const unsigned int node) {
-      Tensor<2, 3> result;
-      if (prescribed.count(node) > 0)
-        return result;
-      if (const auto with_terms = nodal_update.inverse_at(node))
-        return *with_terms;
-      for (unsigned int d = 0; d < 3; ++d)
-        result[d][d] =
-          equation.mass.inverse.local_element(3 * node + d) / mass_factor;
-      return result;
-    };
     for (Projection *projection : equation.projections)
-      projection->prepare_step(inverse_mass, time_step);
+      projection->prepare_step(
+        [&](const unsigned int node) {
+          const Tensor<2, 3> mass       = mass_at(node);
+          const Components   own        = projection->prescribed_components();
+          const auto         all        = prescribed.find(node);
+          const auto         can_change = [&](const unsigned int d) {
+            return mass[d][d] > 0. &&
+                   (all == prescribed.end() || !all->second[d] || own[d]);
+          };
+          Tensor<2, 3> result;
+          for (unsigned int d = 0; d < 3; ++d)
+            for (unsigned int e = 0; e < 3; ++e)
+              result[d][e] =
+                can_change(d) && can_change(e) ? mass[d][e] : double(d == e);
+          result = invert(result);
+          for (unsigned int d = 0; d < 3; ++d)
+            if (!can_change(d))
+              result[d][d] = 0.;
+          return result;
+        },
+        time_step);
+  }
+
+
+  Tensor<1, 3>
+  CentralDifference::support_force(const State       &state,
+                                   const unsigned int node) const
+  {
+    Tensor<1, 3>       result;
+    const Tensor<1, 3> velocity = node_value(state.velocity, node),
+                       mass     = node_value(equation.mass.mass, node);
+    const auto         slot     = equation.terms.slot_at(node);
+    const Tensor<1, 3> holding =
+      slot ? nodal_update.holding_force(*slot, velocity) : Tensor<1, 3>();
+    for (unsigned int d = 0; d < 3; ++d)
+      if (mass[d] == 0.)
+        result[d] = force.local_element(3 * node + d) + holding[d];
+
+    const auto projected =
+      std::lower_bound(projected_nodes.begin(), projected_nodes.end(), node);
+    if (projected != projected_nodes.end() && *projected == node)
+      result +=
+        mass_at(node) *
+        (velocity - predicted_velocity[projected - projected_nodes.begin()]) /
+        time_step;
+    return result;
   }
 
 
@@ -103,7 +161,7 @@ namespace Voussoir
       uniform ? nullptr : &memory,
       state.displacement,
       state.material_memory,
-      {time_step, equation.closing_viscosity},
+      point_step,
       [&](const unsigned int begin, const unsigned int end) {
         update_memory(state, begin, end);
       },
@@ -117,35 +175,9 @@ namespace Voussoir
 
     // contact: u_(n+1) += dt^2 M^-1 R^T p
     project(state, base);
-    state.accounts.work_on_cells +=
-      half_work(state, 0, force.locally_owned_size());
 
     for (NodalLoad *load : equation.loads)
       load->end_step(state);
-  }
-
-
-  double
-  CentralDifference::half_work(const State       &state,
-                               const unsigned int begin,
-                               const unsigned int end) const
-  {
-    const double *v = state.velocity.begin(), *f = force.begin();
-    Lanes         sums = 0.;
-    unsigned int  i    = begin;
-    for (; i + Lanes::size() <= end; i += Lanes::size())
-      {
-        Lanes a, b;
-        a.load(f + i);
-        b.load(v + i);
-        sums += a * b;
-      }
-    double sum = 0.;
-    for (; i < end; ++i)
-      sum += f[i] * v[i];
-    for (const double part : sums)
-      sum += part;
-    return 0.5 * time_step * sum;
   }
 
 
@@ -282,7 +314,6 @@ namespace Voussoir
     double       *u       = state.displacement.begin();
     const double *f       = force.begin();
     const double *inverse = equation.mass.inverse.begin();
-    state.accounts.work_on_cells += half_work(state, begin, end);
 
     if (equation.base == nullptr && mass_coefficient == 0.)
       {

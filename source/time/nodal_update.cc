@@ -41,16 +41,27 @@ namespace Voussoir
 
 
   std::optional<Tensor<2, 3>>
-  NodalUpdate::inverse_at(const unsigned int node) const
+  NodalUpdate::mass_at(const unsigned int node) const
   {
     const auto slot = terms.slot_at(node);
     if (!slot)
       return {};
-    Tensor<2, 3> result = inverse[*slot];
+    Tensor<2, 3> result = invert(inverse[*slot]);
     for (unsigned int d = 0; d < 3; ++d)
       if (masses[*slot][d] == 0.)
         result[d][d] = 0.;
     return result;
+  }
+
+
+  Tensor<1, 3>
+  NodalUpdate::holding_force(const unsigned int  slot,
+                             const Tensor<1, 3> &next) const
+  {
+    const Tensor<1, 3> &last = last_velocity[slot];
+    return terms.added_mass[slot] * (next - last) / leap_frog.time_step +
+           terms.dashpots[slot] * leap_frog.damped(last, next) +
+           terms.springs[slot] * last_displacement[slot] - applied[slot];
   }
 
 

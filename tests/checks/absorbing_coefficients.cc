@@ -142,6 +142,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: published
     const Registry<Check>::Add<BoundaryCoefficients>
       registered("boundary coefficients", "The published sets.");
 
@@ -215,6 +216,7 @@ namespace Voussoir
       double              tolerance = 0.01, largest = 0.1;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Absorption>
       registered_absorption("absorption", "Of a P pulse by the other sets.");
   } // namespace

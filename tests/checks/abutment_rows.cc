@@ -152,6 +152,7 @@ namespace Voussoir
       std::vector<double> numbers;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<AbutmentRows>
       registered("abutment rows", "Cells beside the rock.");
   } // namespace

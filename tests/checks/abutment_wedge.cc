@@ -207,6 +207,7 @@ namespace Voussoir
         cell_sizes{"22"};
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<AbutmentWedgeCheck>
       registered("abutment wedge", "Wedges of rock in the banks.");
   } // namespace

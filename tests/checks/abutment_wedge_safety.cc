@@ -36,6 +36,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<AbutmentWedgeSafety>
       registered("abutment wedge safety", "A wedge on a plane that dips.");
   } // namespace

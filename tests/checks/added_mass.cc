@@ -75,6 +75,7 @@ namespace Voussoir
       double depth = 1., width = 1., mass = 1., force = 1., tolerance = 0.01;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<AddedMass>
       registered("added mass", "Westergaard's added mass on a rigid block.");
   } // namespace

@@ -247,6 +247,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<AddedMassDirection>
       registered("added mass direction", "Of plane faces of any normal.");
   } // namespace

@@ -350,6 +350,7 @@ namespace Voussoir
       double              tolerance = 0.01;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<CustomArchDam>
       registered("custom arch dam", "Measures of an own shape.");
   } // namespace

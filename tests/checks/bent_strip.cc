@@ -86,6 +86,7 @@ namespace Voussoir
       double tolerance = 0.01;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<BentStrip>
       registered("bent strip", "One point and full integration in bending.");
   } // namespace

@@ -38,11 +38,27 @@ namespace Voussoir
     void
     is_true(const std::string &name, const bool value);
 
+    /** A text beside what it must be. */
+    void
+    same_text(const std::string &name,
+              const std::string &text,
+              const std::string &expected);
+
+    /** What the lines below are about; no verdict. */
+    void
+    heading(const std::string &text);
+
+    /** Whether a line printed by the first rank is WRONG. */
+    bool
+    any_wrong() const;
+
   private:
     void
     say(const std::string &text, const bool good);
 
-    const bool speaks;
+    const MPI_Comm communicator;
+    const bool     speaks;
+    bool           all_good = true;
   };
 
   /** Takes the value if it is larger; a NaN stays. */

@@ -190,7 +190,11 @@ namespace Voussoir
             const Tensor<2, 3>  C   = R * (H1 + H2) * transpose(R);
             const Tensor<1, 3>  gap = R * (displacement_at(free, second) -
                                           displacement_at(free, first));
-            const Tensor<1, 3>  p   = dense_force(dt * dt * C, gap, friction);
+            // after one step friction has followed the pressure so far
+            const double wave_speed = std::sqrt(1e9 / 2.4 / 2400.),
+                         followed   = -std::expm1(-dt * wave_speed / 4.);
+            const Tensor<1, 3> p =
+              dense_force(dt * dt * C, gap, followed * friction);
             keep_largest(force_error, (p - point.force).norm());
             keep_largest(largest_force, p.norm());
 
@@ -223,6 +227,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: other program
     const Registry<Check>::Add<AddedMassContact>
       registered("contact added mass",
                  "A step of contact with water on a leaning face.");

@@ -195,6 +195,7 @@ namespace Voussoir
              stiffness = 0.;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Bond>
       registered_bond("contact bond", "Laws of a bond in tension and shear.");
 
@@ -245,6 +246,7 @@ namespace Voussoir
       double way = 1e-3;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Keys>
       registered_keys("contact keys", "Shear keys of a joint that opens.");
 
@@ -330,6 +332,7 @@ namespace Voussoir
       double way = 1e-3, stiffness = 0.;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Bars>
       registered_bars("contact bars", "Joint reinforcement that yields.");
   } // namespace

@@ -537,6 +537,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<ContactClusters>
       registered("contact clusters",
                  "Contact clusters of all kinds, each point against its law.");

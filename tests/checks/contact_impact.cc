@@ -137,6 +137,7 @@ namespace Voussoir
       std::vector<bool> is_upper; // of the owned nodes
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Impact>
       registered("contact impact", "Bars that hit each other or a wall.");
   } // namespace

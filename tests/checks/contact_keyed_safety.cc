@@ -141,6 +141,7 @@ namespace Voussoir
       std::vector<double> slopes{1., 1.};
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<KeyedSafety>
       registered("keyed safety", "No sliding safety of what keys hold.");
   } // namespace

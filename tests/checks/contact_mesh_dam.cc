@@ -134,6 +134,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<ContactMeshDam>
       registered("contact mesh dam", "Joints of an arch dam, and its rock.");
   } // namespace

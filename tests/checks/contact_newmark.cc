@@ -10,8 +10,9 @@ namespace Voussoir
   {
     /**
      * Newmark's block: a stiff block under its weight on a base that moves with
-     * A sin(wt), by choice pushed by a steady force along it, against the
-     * motion of a point mass with dry friction, and with cohesion that breaks.
+     * A sin(wt), by choice pushed by a steady force along it or shaken up and
+     * down at the same time, against the motion of a point mass with dry
+     * friction f m (g + a_v), and with cohesion that breaks.
      */
     class Newmark : public Check
     {
@@ -21,6 +22,10 @@ namespace Voussoir
       {
         prm.add_parameter("Push", push, "Steady acceleration [m/s2].");
         prm.add_parameter("Friction", friction, "Coefficient.");
+        prm.add_parameter("Vertical",
+                          vertical,
+                          "Acceleration of the base upwards over that along "
+                          "it.");
         prm.add_parameter("Cohesion", cohesion, "Over mass per area [m/s2].");
         prm.add_parameter("Cycles", cycles, "To compare.");
       }
@@ -131,16 +136,16 @@ namespace Voussoir
         constexpr double dt = 2e-6, omega = 2. * numbers::PI;
         for (; mass.t < end; mass.t += dt)
           {
-            const double drive =
-              push - amplitude * std::sin(omega * (mass.t + 0.5 * dt));
-            const double limit =
-              friction * gravity + (mass.broken ? 0. : cohesion);
+            const double base =
+              amplitude * std::sin(omega * (mass.t + 0.5 * dt));
+            const double drive = push - base,
+                         rubs  = friction * (gravity + vertical * base);
+            const double limit = rubs + (mass.broken ? 0. : cohesion);
             if (mass.v == 0. && std::abs(drive) <= limit)
               continue;
             mass.broken       = true;
             const double sign = mass.v != 0. ? mass.v : drive;
-            double       next =
-              mass.v + dt * (drive - std::copysign(friction * gravity, sign));
+            double next = mass.v + dt * (drive - std::copysign(rubs, sign));
             if (mass.v * next < 0.)
               next = 0.; // it stops within the step
             mass.x += 0.5 * dt * (mass.v + next);
@@ -151,10 +156,11 @@ namespace Voussoir
           }
       }
 
-      double       push = 0., friction = 0.3, cohesion = 0.;
+      double       push = 0., friction = 0.3, cohesion = 0., vertical = 0.;
       unsigned int cycles = 3;
     };
 
+    // Reference: other program
     const Registry<Check>::Add<Newmark>
       registered("contact newmark", "A block that slides on a shaken plane.");
   } // namespace

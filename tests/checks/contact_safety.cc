@@ -12,7 +12,8 @@ namespace Voussoir
   {
     /**
      * The sliding safety that the observer "interfaces" reports for a block at
-     * rest on an incline: (c A + f W cos) / (W sin).
+     * rest on an incline: (c A + f W cos) / (W sin), also where the block is
+     * warmer than its base, so that shear in all directions cancels.
      */
     class Safety : public Check
     {
@@ -39,16 +40,21 @@ namespace Voussoir
             std::ostringstream name;
             name << "tan(theta) = " << slope
                  << " f, cohesion = " << 1e-3 * cohesion << " kPa: safety";
-            verdicts.near(
-              name.str(),
-              reported(
-                file.with(
-                  {vector_entry("Loads/weight/Acceleration",
-                                9.81 * Tensor<1, 3>({along, 0., -normal})),
-                   "Interfaces/plane/Cohesion=" + std::to_string(cohesion)}),
-                communicator),
-              (cohesion * area + friction * weight * normal) / (weight * along),
-              0.01);
+            for (const std::string stages : {"weight", "weight; warmth"})
+              verdicts.near(
+                stages + ", " + name.str(),
+                reported(
+                  file.with(
+                    {vector_entry("Loads/weight/Acceleration",
+                                  9.81 * Tensor<1, 3>({along, 0., -normal})),
+                     "Interfaces/plane/Cohesion=" + std::to_string(cohesion),
+                     "Loads/warmth/Active=" +
+                       std::string(stages == "weight" ? "false" : "true"),
+                     "Static state/Stages=" + stages}),
+                  communicator),
+                (cohesion * area + friction * weight * normal) /
+                  (weight * along),
+                0.01);
           }
       }
 
@@ -81,6 +87,7 @@ namespace Voussoir
       double weight = 1., area = 1.;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Safety>
       registered("contact safety", "Sliding safety of a block at rest.");
   } // namespace

@@ -480,6 +480,7 @@ namespace Voussoir
       };
     };
 
+    // Reference: other program
     const Registry<Check>::Add<ContactSolverCheck>
       registered("contact solver", "Contact clusters against dense systems.");
   } // namespace

@@ -268,6 +268,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Staging>
       registered("contact staging", "Blocks that are grouted after a stage.");
   } // namespace

@@ -95,6 +95,7 @@ namespace Voussoir
       static constexpr double gravity = 9.81, density = 2000., friction = 0.5;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Incline>
       registered("contact incline", "A cube on a level and inclined base.");
   } // namespace

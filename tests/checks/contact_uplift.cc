@@ -118,6 +118,61 @@ namespace Voussoir
       Tensor<1, 2> heads{{1., 0.}}, drains{{0.25, 0.5}};
     };
 
+    /**
+     * A block that the water in its joint lifts, unless that on its top presses
+     * it down: the uplift must not be there before the reservoir is.
+     */
+    class UpliftByStage : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Area", area, "Of the joint [m2].");
+        prm.add_parameter("Weight", weight, "Of the block [N].");
+        prm.add_parameter("Heads", heads, "On the top, in the joint [m].");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto with = [&](const std::string &load) {
+          return file.with({"Interfaces/plane/Uplift/Comes with=" + load});
+        };
+        verdicts.is_true("it floats if the uplift comes with its weight",
+                         !stands(with("weight"), communicator));
+        for (const std::string load : {"", "reservoir"})
+          {
+            const auto parameters  = make_case(with(load));
+            const auto simulation  = make_simulation(*parameters, communicator);
+            const ContactSums sums = contact_sums(*simulation, 0);
+            const std::string name =
+              load.empty() ? "by default: " : "with the reservoir: ";
+            const double specific = 1000. * 9.81 * area;
+            verdicts.near(name + "resultant of the uplift [kN]",
+                          1e-3 * sums.given,
+                          1e-3 * specific * heads[1],
+                          1e-8);
+            verdicts.near(name + "resultant of the contact pressure [kN]",
+                          1e-3 * sums.pressure,
+                          1e-3 * (weight + specific * (heads[0] - heads[1])),
+                          1e-8);
+          }
+      }
+
+    private:
+      double       area = 1., weight = 1.;
+      Tensor<1, 2> heads;
+    };
+
+    // Reference: closed form
+    const Registry<Check>::Add<UpliftByStage>
+      registered_by_stage("contact uplift by stage",
+                          "Uplift that comes with the reservoir.");
+
+    // Reference: closed form
     const Registry<Check>::Add<Uplift>
       registered("contact uplift", "Water pressure under a block.");
   } // namespace

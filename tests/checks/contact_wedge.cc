@@ -256,6 +256,7 @@ namespace Voussoir
       Tensor<1, 2> friction{{0.6, 0.6}}, cohesion;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<WedgeSafety>
       registered("contact wedge", "A wedge against limit equilibrium.");
   } // namespace

@@ -50,7 +50,8 @@ namespace Voussoir
       Change
       largest_change(const Simulation &simulation, const unsigned int n) const
       {
-        const InternalForce  &internal_force = simulation.model.internal_force;
+        const InternalForce &internal_force =
+          simulation.run.equation.internal_force;
         const Discretization &discretization = simulation.model.discretization;
         Vector u = discretization.create_vector(), force(u), before(u);
         Change change{0., 0.};
@@ -78,6 +79,7 @@ namespace Voussoir
       double pressed = 0., stretched = 0.;
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<ContinuousResponse>
       registered("continuous response",
                  "Stress of concrete that is pressed and stretched.");

@@ -127,6 +127,7 @@ namespace Voussoir
       unsigned int coarse = 6, fine = 12;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Convergence>
       registered("convergence", "Order in space of degrees 1 to 4.");
   } // namespace

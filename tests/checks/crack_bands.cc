@@ -75,6 +75,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<CrackBandsCheck>
       registered("crack bands", "Width of the band of a crack in a cell.");
   } // namespace

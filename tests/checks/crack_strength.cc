@@ -51,8 +51,9 @@ namespace Voussoir
       {
         const auto simulation = make_simulation(parameters, communicator);
         Run       &run        = simulation->run;
-        const InternalForce &internal_force = simulation->model.internal_force;
-        const MaxwellStep    maxwell(run.damping, run.time_step.length);
+        const InternalForce &internal_force =
+          simulation->run.equation.internal_force;
+        const MaxwellStep maxwell(run.damping, run.time_step.length);
         Vector force    = simulation->model.discretization.create_vector();
         Vector filtered = force;
         double largest  = 0.;
@@ -94,6 +95,7 @@ namespace Voussoir
       double strength = 2e6;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<CrackStrength>
       registered("crack strength", "One strength at all rates and dampings.");
   } // namespace

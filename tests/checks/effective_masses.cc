@@ -186,6 +186,7 @@ namespace Voussoir
       unsigned int        modes_to_all = 0;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<EffectiveMasses>
       registered("effective masses", "Of nearly all modes, with added mass.");
 
@@ -251,6 +252,7 @@ namespace Voussoir
       double       tolerance = 0.01;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Chain> registered_chain("modes of a chain",
                                                        "A rod of few cells.");
   } // namespace

@@ -56,6 +56,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<EnergyKept>
       registered("energy kept",
                  "Discrete energy of an undriven, undamped box.");

@@ -40,6 +40,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<FoundByMultigrid>
       registered("found by multigrid", "Static stages.");
   } // namespace

@@ -69,6 +69,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<GravitySection>
       registered("gravity section",
                  "Volumes and faces of a dam with an upstream batter.");

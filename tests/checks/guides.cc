@@ -114,6 +114,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<GeneratorGuide>
       registered_generator("guide to a mesh generator",
                            "The volume of the mesh.");
@@ -139,6 +140,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<LoadGuide>
       registered_load("guide to a load", "The resultant of the load.");
 
@@ -165,6 +167,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<ObserverGuide>
       registered_observer("guide to an observer", "Speed of a pushed column.");
 
@@ -198,6 +201,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<InterfaceLawGuide>
       registered_interface_law("guide to an interface law",
                                "Strengths and energy of the law.");
@@ -238,6 +242,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<MeshGuide>
       registered_mesh("guide to a mesh of one's own",
                       "The mesh that Gmsh makes, its names and its joint.");

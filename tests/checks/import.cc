@@ -138,6 +138,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Import>
       registered("mesh import", "All formats, and files that are refused.");
   } // namespace

@@ -168,6 +168,7 @@ namespace Voussoir
       double       volume = 1., length = 1.;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<InertiaFactor> registered("inertia factor",
                                                          "Periods and weight.");
   } // namespace

@@ -131,6 +131,7 @@ namespace Voussoir
       std::string points, coarser_cells;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Lamb>
       registered("Lamb", "A point load on a half-space.");
   } // namespace

@@ -85,6 +85,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<LargestEigenvalue>
       registered("largest eigenvalue", "Of slow spectra; steps that jump.");
   } // namespace

@@ -67,6 +67,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<LawDefaultsCheck>
       registered("law defaults", "A law with nothing that it need not have.");
   } // namespace

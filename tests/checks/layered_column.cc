@@ -1,7 +1,7 @@
 #include <voussoir/loads/column_field.h>
 
-#include "check.h"
 #include "histories.h"
+#include "layered_ground.h"
 
 namespace Voussoir
 {
@@ -11,9 +11,8 @@ namespace Voussoir
   {
     /**
      * A soft layer on rock under a vertical S wave (x) and P wave (z): the box
-     * moves as the one-dimensional column does. Undamped, its surface amplifies
-     * the motion of an outcrop by 1 / sqrt(cos^2 kH + alpha^2 sin^2 kH), alpha
-     * the ratio of the impedances.
+     * moves as the one-dimensional column does, and its surface over an outcrop
+     * as plane waves in closed form.
      */
     class LayeredColumn : public Check
     {
@@ -21,7 +20,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Layer", layer, "Thickness of the soft layer [m].");
+        prm.add_parameter("Thicknesses",
+                          thicknesses,
+                          "Of the layers, in the order of the materials [m].");
         prm.add_parameter("Frequencies",
                           frequencies,
                           "Where to look at the amplification of S; that of P "
@@ -86,62 +87,32 @@ namespace Voussoir
                        difference / peak,
                        1e-10);
 
-        amplification("S",
-                      soil.s_wave_speed(),
-                      soil.density / rock.density * soil.s_wave_speed() /
-                        rock.s_wave_speed(),
-                      1.,
-                      histories.times,
-                      histories.component(0, 0),
-                      *motion[0],
-                      verdicts);
-        amplification("P",
-                      soil.p_wave_speed(),
-                      soil.density / rock.density * soil.p_wave_speed() /
-                        rock.p_wave_speed(),
-                      soil.p_wave_speed() / soil.s_wave_speed(),
-                      histories.times,
-                      histories.component(0, 2),
-                      *motion[2],
-                      verdicts);
-      }
-
-    private:
-      void
-      amplification(const std::string         &wave,
-                    const double               speed,
-                    const double               impedance_ratio,
-                    const double               frequency_factor,
-                    const std::vector<double> &times,
-                    const std::vector<double> &surface,
-                    const Signal              &motion,
-                    Verdicts                  &verdicts) const
-      {
-        std::vector<double> outcrop;
-        for (const double t : times)
-          outcrop.push_back(2. * motion.displacement(t));
-        for (const double frequency : frequencies)
+        const LayeredGround ground(*parameters, thicknesses);
+        for (const unsigned int d : {0, 2})
           {
-            const double f  = frequency_factor * frequency;
-            const double kH = 2. * numbers::PI * f / speed * layer;
-            const double ratio =
-              std::abs(fourier_sum(times, surface, f, 0., 1e300)) /
-              std::abs(fourier_sum(times, outcrop, f, 0., 1e300));
-            std::ostringstream name;
-            name << wave << ", kH = " << kH / numbers::PI
-                 << " pi: surface over outcrop";
-            verdicts.near(name.str(),
-                          ratio,
-                          1. / std::hypot(std::cos(kH),
-                                          impedance_ratio * std::sin(kH)),
-                          0.02);
+            std::vector<double> outcrop, scaled;
+            for (const double time : histories.times)
+              outcrop.push_back(2. * motion[d]->displacement(time));
+            for (const double frequency : frequencies)
+              scaled.push_back(
+                frequency *
+                (d == 2 ? soil.p_wave_speed() / soil.s_wave_speed() : 1.));
+            ground.compare(d == 2 ? "P" : "S",
+                           d == 2,
+                           histories.times,
+                           histories.component(0, d),
+                           outcrop,
+                           scaled,
+                           0.02,
+                           verdicts);
           }
       }
 
-      double              layer = 10.;
-      std::vector<double> frequencies;
+    private:
+      std::vector<double> thicknesses, frequencies;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<LayeredColumn>
       registered("layered column", "Amplification by a soft layer.");
   } // namespace

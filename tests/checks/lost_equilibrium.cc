@@ -57,6 +57,7 @@ namespace Voussoir
       std::string named;
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<LostStage>
       registered("lost equilibrium", "A static stage without equilibrium.");
   } // namespace

@@ -1,5 +1,6 @@
 // Runs the test that a parameter file names in its section "Check":
 //   voussoir_check test.prm
+// Exit code 1: something is WRONG, or an error.
 
 #include <voussoir/base/parallel_session.h>
 #include <voussoir/driver/command_line.h>
@@ -13,7 +14,8 @@ namespace Voussoir
   using namespace dealii;
 
   Verdicts::Verdicts(const MPI_Comm communicator)
-    : speaks(Utilities::MPI::this_mpi_process(communicator) == 0)
+    : communicator(communicator)
+    , speaks(Utilities::MPI::this_mpi_process(communicator) == 0)
   {}
 
 
@@ -69,8 +71,36 @@ namespace Voussoir
 
 
   void
+  Verdicts::same_text(const std::string &name,
+                      const std::string &text,
+                      const std::string &expected)
+  {
+    const bool good = text == expected;
+    say(name + ": " + text + (good ? "" : " (must be: " + expected + ')'),
+        good);
+  }
+
+
+  void
+  Verdicts::heading(const std::string &text)
+  {
+    if (speaks)
+      std::cout << text << std::endl;
+  }
+
+
+  bool
+  Verdicts::any_wrong() const
+  {
+    // what the others were given may be no number
+    return Utilities::MPI::logical_or(speaks && !all_good, communicator);
+  }
+
+
+  void
   Verdicts::say(const std::string &text, const bool good)
   {
+    all_good = all_good && good;
     if (speaks)
       std::cout << text << "  " << (good ? "ok" : "WRONG") << std::endl;
   }
@@ -140,7 +170,8 @@ main(int argc, char **argv)
 {
   using namespace Voussoir;
   const ParallelSession session(argc, argv);
-  return guarded(
+  bool                  any_wrong = false;
+  const int             code      = guarded(
     [&] {
       const ParameterFile file(argv[1]);
       const auto          check = make_check(file);
@@ -150,6 +181,8 @@ main(int argc, char **argv)
       });
       Verdicts   verdicts(MPI_COMM_WORLD);
       check->run(file, verdicts, MPI_COMM_WORLD);
+      any_wrong = verdicts.any_wrong();
     },
     MPI_COMM_WORLD);
+  return any_wrong ? 1 : code;
 }

@@ -5,19 +5,19 @@
 
 namespace Voussoir
 {
-  /** Marches to the end time and evaluates the balance at the case's interval;
+  /** Marches to the end time and evaluates the balance when it is due;
    *  look(evaluated) is called after each step. */
   template <typename Look>
   void
-  march_with_energy(const Case &parameters, Run &run, const Look &look)
+  march_with_energy(Run &run, const Look &look)
   {
-    const Schedule schedule(parameters.output.energy_interval,
-                            run.time_step.length);
-    while (run.state.time < parameters.time.end_time)
+    while (run.state.step < run.n_steps())
       {
+        const bool evaluated = run.energy.is_due(run.state.step + 1) ||
+                               run.state.step + 1 == run.n_steps();
+        if (evaluated)
+          run.energy.before_step(run.state);
         run.scheme.step(run.state);
-        const bool evaluated = schedule.due(run.state.step) ||
-                               run.state.time >= parameters.time.end_time;
         if (evaluated)
           run.energy.evaluate(run.state);
         look(evaluated);

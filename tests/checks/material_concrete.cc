@@ -141,6 +141,7 @@ namespace Voussoir
       double compressive_strength = 25e6, crushing_energy = 60e3;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<ConcreteEnergies>
       energies("concrete energies", "Energy of cracks and crushing.");
 
@@ -183,6 +184,7 @@ namespace Voussoir
       std::string points;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<CompressionTable>
       table("compression table", "An own law in compression.");
 
@@ -266,6 +268,7 @@ namespace Voussoir
       double fracture_energy = 250., tensile_strength = 2.5e6;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<IrreversibleStrain>
       irreversible("irreversible strain", "Strain that stays on unloading.");
   } // namespace

@@ -150,6 +150,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<MaterialLeeFenves>
       lee_fenves("lee-fenves", "The reference law of concrete at one point.");
 
@@ -192,6 +193,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<MaterialLeeFenvesClosing>
       lee_fenves_closing("lee-fenves closing",
                          "Cracks of the reference law that close.");
@@ -258,6 +260,7 @@ namespace Voussoir
              energy = 10e3;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<MaterialRockShear>
       rock_shear("rock shear damage", "Rock that loses cohesion, at a point.");
 
@@ -306,6 +309,7 @@ namespace Voussoir
       double strength = 2.5e6, energy = 250., a = 1.1, b = 1500.;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<MaterialMazars>
       mazars("mazars", "Mazars' law at one point.");
   } // namespace

@@ -55,6 +55,7 @@ namespace Voussoir
       Tensor<1, 3> young, shear, poisson;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<MaterialOrthotropic>
       registered("orthotropic constants", "Elastic rock with directions.");
   } // namespace

@@ -192,6 +192,7 @@ namespace Voussoir
              cut_off = 0., confinement = 20e6;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<MaterialPlastic>
       registered("rock plasticity", "Rock that yields, at one point.");
   } // namespace

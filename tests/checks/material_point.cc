@@ -153,6 +153,7 @@ namespace Voussoir
       std::string openings;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<MaterialPoint>
       registered("material point", "Concrete at one point.");
   } // namespace

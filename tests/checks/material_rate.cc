@@ -60,6 +60,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<MaterialRate>
       registered("material rate", "Concrete whose damage lags behind.");
   } // namespace

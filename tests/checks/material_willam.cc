@@ -173,6 +173,7 @@ namespace Voussoir
       std::string stages;
     };
 
+    // Reference: published
     const Registry<Check>::Add<Willam>
       registered("willam", "A crack whose principal axes turn.");
   } // namespace

@@ -206,8 +206,8 @@ namespace Voussoir
                     const MPI_Comm     communicator) const
       {
         const auto simulation = make_simulation(parameters, communicator);
-        const InternalForce  &internal       = simulation->model.internal_force;
-        MaterialMemory        memory         = internal.new_memory();
+        const InternalForce &internal = simulation->run.equation.internal_force;
+        MaterialMemory       memory   = internal.new_memory();
         const Discretization &discretization = simulation->model.discretization;
         const Material       &material       = *simulation->model.materials[0];
 
@@ -282,7 +282,7 @@ namespace Voussoir
             for (unsigned int d = 0; d < 3; ++d)
               u.local_element(3 * node + d) = value[d];
           }
-        simulation->model.internal_force.respond(
+        simulation->run.equation.internal_force.respond(
           force, u, simulation->run.state.material_memory);
         double inside = 0.;
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
@@ -345,7 +345,7 @@ namespace Voussoir
         std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
         std::vector<Tensor2> strains(values.n_quadrature_points);
         if (one_point)
-          simulation.model.internal_force.apply(result, u);
+          simulation.run.equation.internal_force.apply(result, u);
         else
           result = 0.;
         for (const auto &cell :
@@ -402,6 +402,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<Materials>
       registered("materials", "What must hold for all materials.");
   } // namespace

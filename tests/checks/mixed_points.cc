@@ -128,12 +128,14 @@ namespace Voussoir
             for (unsigned int d = 0; d < 3; ++d)
               u.local_element(3 * node + d) = value[d];
           }
-        MaterialMemory memory = simulation.model.internal_force.new_memory();
-        simulation.model.internal_force.respond(force, u, memory);
+        MaterialMemory memory =
+          simulation.run.equation.internal_force.new_memory();
+        simulation.run.equation.internal_force.respond(force, u, memory);
         return force;
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<MixedPoints>
       registered("mixed points",
                  "One integration point where elastic, eight elsewhere.");

@@ -101,6 +101,7 @@ namespace Voussoir
       double              tolerance = 0.01;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<NaturalModes>
       registered_modes("natural modes", "Against known frequencies.");
 
@@ -220,6 +221,7 @@ namespace Voussoir
       double tolerance = 0.001;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<RodModes>
       registered_rod("modes of a rod", "With and without added mass.");
 
@@ -271,6 +273,7 @@ namespace Voussoir
       double dam_mass = 0.;
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<FoundationModes>
       registered_foundation("modes and foundation", "Rigid, massless, massed.");
 
@@ -305,6 +308,7 @@ namespace Voussoir
       std::vector<double> expected;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<DampingFromModes>
       registered_damping("damping from modes", "Its ratio at two modes.");
   } // namespace

@@ -83,6 +83,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<TiedModes>
       registered_tied("tied modes", "Against those of the uncut body.");
 
@@ -146,6 +147,7 @@ namespace Voussoir
       double              tolerance = 1e-3;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<OpenedModes>
       registered_opened("opened modes", "Of a rod whose cut opens or closes.");
   } // namespace

@@ -390,6 +390,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<GroundMotionCheck>
       registered("ground motion", "Records, signals, spectra, deconvolution.");
   } // namespace

@@ -3,6 +3,7 @@
 
 #include <voussoir/materials/isotropic_elasticity.h>
 #include <voussoir/materials/material_of.h>
+#include <voussoir/materials/spectral.h>
 
 #include "check.h"
 
@@ -85,28 +86,30 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        look_at_verdicts(verdicts);
+        look_at_verdicts(verdicts, communicator);
         look_at_extremes(verdicts);
         look_at_entries(verdicts, communicator);
+        look_at_spectra(verdicts);
         look_at_materials(file, verdicts, communicator);
       }
 
     private:
       static void
-      look_at_verdicts(Verdicts &verdicts)
+      look_at_verdicts(Verdicts &verdicts, const MPI_Comm communicator)
       {
+        Verdicts   tried(communicator);
         const auto expect = [&](const std::string           &name,
                                 const std::function<void()> &action) {
           verdicts.is_true(name, is_wrong(printed(action)));
         };
-        expect("near: the value", [&] { verdicts.near("", nan, 1., 1.); });
-        expect("near: the reference", [&] { verdicts.near("", 1., nan, 1.); });
-        expect("near: both", [&] { verdicts.near("", nan, nan, 1.); });
-        expect("near: the tolerance", [&] { verdicts.near("", 1., 1., nan); });
-        expect("below: the value", [&] { verdicts.below("", nan, 1.); });
-        expect("below: the limit", [&] { verdicts.below("", 0., nan); });
-        expect("above: the value", [&] { verdicts.above("", nan, -1.); });
-        expect("above: the limit", [&] { verdicts.above("", 0., nan); });
+        expect("near: the value", [&] { tried.near("", nan, 1., 1.); });
+        expect("near: the reference", [&] { tried.near("", 1., nan, 1.); });
+        expect("near: both", [&] { tried.near("", nan, nan, 1.); });
+        expect("near: the tolerance", [&] { tried.near("", 1., 1., nan); });
+        expect("below: the value", [&] { tried.below("", nan, 1.); });
+        expect("below: the limit", [&] { tried.below("", 0., nan); });
+        expect("above: the value", [&] { tried.above("", nan, -1.); });
+        expect("above: the limit", [&] { tried.above("", 0., nan); });
       }
 
       static void
@@ -133,6 +136,32 @@ namespace Voussoir
         verdicts.is_true("keep_smallest of numbers", smallest == -2.);
         verdicts.is_true("positive_part of numbers",
                          positive_part(2.) == 2. && positive_part(-2.) == 0.);
+      }
+
+      /** Pressures that differ by round-off in their directions. */
+      static void
+      look_at_spectra(Verdicts &verdicts)
+      {
+        double worst = 0.;
+        for (const double pressure : {1., -1.1, 1.2e6, -3.7e7, 1e-9})
+          for (unsigned int changes = 0; changes < 27; ++changes)
+            {
+              SymmetricTensor3<double> tensor;
+              for (unsigned int d = 0, rest = changes; d < 3; ++d, rest /= 3)
+                {
+                  const double towards[] = {pressure, 0., 2. * pressure};
+                  tensor[d][d] = std::nextafter(pressure, towards[rest % 3]);
+                }
+              const auto found = spectrum(tensor);
+              for (unsigned int k = 0; k < 3; ++k)
+                {
+                  keep_largest(worst,
+                               std::abs(found.values[k] / pressure - 1.));
+                  keep_largest(worst,
+                               std::abs(found.directions[k].norm() - 1.));
+                }
+            }
+        verdicts.below("spectrum of a pressure to round-off", worst, 1e-14);
       }
 
       static void
@@ -177,8 +206,9 @@ namespace Voussoir
           "No number beyond a strain.",
           [] { return std::make_unique<MaterialOf<NotANumber>>(); }};
         const std::string text = printed([&] {
+          Verdicts of_the_law(communicator);
           Registry<Check>::create("materials", "")
-            ->run(file, verdicts, communicator);
+            ->run(file, of_the_law, communicator);
         });
         entries                = known;
         std::istringstream lines(text);
@@ -197,6 +227,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<NotANumberCheck>
       registered("not a number", "What the verdicts say of NaN.");
   } // namespace

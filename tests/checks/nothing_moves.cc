@@ -50,6 +50,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<NothingMoves>
       registered("nothing moves", "A case without earthquake and load.");
   } // namespace

@@ -109,6 +109,7 @@ namespace Voussoir
       Tensor<1, 3> surface_factor;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Oblique>
       registered("oblique wave", "Oblique P, SV and SH in a half-space.");
   } // namespace

@@ -37,7 +37,7 @@ namespace Voussoir
                 u.local_element(3 * node + d) =
                   std::sin(3. * p[0] + d) * std::cos(2. * p[1]) + p[2] * p[2];
               }
-        simulation->model.internal_force.apply(wide, u);
+        simulation->run.equation.internal_force.apply(wide, u);
         Vector       narrow = reference(*simulation, u);
         const double size   = largest_entry(narrow);
         narrow -= wide;
@@ -56,7 +56,7 @@ namespace Voussoir
         for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
           if (simulation->model.mass.inverse.local_element(i) == 0.)
             u.local_element(i) = 0.; // hanging: the operator interpolates
-        simulation->model.internal_force.apply(wide, u);
+        simulation->run.equation.internal_force.apply(wide, u);
         double inside = 0.;
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
              ++node)
@@ -102,7 +102,7 @@ namespace Voussoir
               const unsigned int number   = simulation.model.material_of(cell);
               const Material    &material = *simulation.model.materials[number];
               const double       factor =
-                simulation.model.internal_force.factors_of(number).stress;
+                simulation.run.equation.internal_force.factor_of(number);
               values.reinit(cell);
               values[displacement].get_function_symmetric_gradients(source,
                                                                     strains);
@@ -127,6 +127,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: other program
     const Registry<Check>::Add<Operator>
       registered("operator", "Vectorised operator against a plain one.");
   } // namespace

@@ -1,5 +1,5 @@
-#include "check.h"
 #include "histories.h"
+#include "layered_ground.h"
 
 namespace Voussoir
 {
@@ -10,7 +10,9 @@ namespace Voussoir
     /**
      * Where a motion is given: one for the free surface comes out there, after
      * twice the travel time of an S wave (see `incident_for_surface`), in
-     * layers with damping; one for an outcrop is twice the incident wave.
+     * layers with damping; one for an outcrop is twice the incident wave. Both
+     * use the same column: that it is right, the surface over the outcrop shows
+     * against plane waves in closed form.
      */
     class Outcrop : public Check
     {
@@ -23,6 +25,13 @@ namespace Voussoir
           uniform,
           "One undamped material: the surface then moves as the "
           "outcrop, later by the travel time.");
+        prm.add_parameter("Thicknesses",
+                          thicknesses,
+                          "Of the layers, in the order of the materials [m].");
+        prm.add_parameter(
+          "Frequencies",
+          frequencies,
+          "Where to compare the surface with the outcrop [Hz].");
       }
 
       void
@@ -64,6 +73,21 @@ namespace Voussoir
           surface(file.with({"Ground motion/Given at=outcrop"}),
                   delay,
                   communicator);
+        const LayeredGround ground(*make_case(file), thicknesses);
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            std::vector<double> wanted;
+            for (const double time : outcrop.times)
+              wanted.push_back(given[d]->displacement(time));
+            ground.compare({"xyz"[d]},
+                           d == 2,
+                           outcrop.times,
+                           outcrop.component(0, d),
+                           wanted,
+                           frequencies,
+                           0.02,
+                           verdicts);
+          }
         const auto incident =
           surface(file.with({"Ground motion/Given at=incident wave",
                              "Ground motion/Overload factor=0.5"}),
@@ -145,9 +169,11 @@ namespace Voussoir
         return run_and_record(*simulation, {{"surface", upper}});
       }
 
-      bool uniform = false;
+      bool                uniform = false;
+      std::vector<double> thicknesses, frequencies;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Outcrop>
       registered("outcrop", "Motions given at the surface or an outcrop.");
   } // namespace

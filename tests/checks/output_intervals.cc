@@ -121,6 +121,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<EqualIntervals>
       registered("equal intervals", "Of the lines of histories.csv.");
 
@@ -225,6 +226,7 @@ namespace Voussoir
       std::vector<double> frequencies;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<FilteredAcceleration>
       registered_filter("filtered acceleration", "Of a sine.");
   } // namespace

@@ -133,6 +133,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: other program
     const Registry<Check>::Add<StressEnvelopes>
       registered("stress envelopes", "Envelopes of principal stress.");
 
@@ -209,12 +210,15 @@ namespace Voussoir
             char          comma;
             std::getline(in, heading);
             in >> period >> comma >> value;
-            verdicts.is_true("heading: " + heading, true);
+            verdicts.same_text("heading",
+                               heading,
+                               "period [s],base x [m/s2],top x [m/s2]");
             verdicts.near("spectral value at 0.02 s [m/s2]", value, 1., 1e-3);
           }
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Spectrum>
       registered_spectrum("recorded spectrum", "Response spectrum of a sine.");
   } // namespace

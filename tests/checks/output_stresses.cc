@@ -208,6 +208,7 @@ namespace Voussoir
       double            young = 0., nu = 0.;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<OutputStresses>
       registered("output stresses",
                  "Face stresses and section forces of known stress fields.");
@@ -259,6 +260,7 @@ namespace Voussoir
       double stress = 0.;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<StressesAtRest>
       registered_at_rest("stresses at rest",
                          "Face stresses and section forces of static stages.");

@@ -31,6 +31,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<InfiniteNumbers>
       registered("infinite numbers", "In tables of comma-separated values.");
   } // namespace

@@ -161,6 +161,7 @@ namespace Voussoir
       double            young = 0., step = 0.;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<OverStress>
       registered("over-stress",
                  "Times and areas above the strength in closed form.");

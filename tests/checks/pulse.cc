@@ -84,6 +84,7 @@ namespace Voussoir
       double      tolerance = 0.02;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Pulse>
       registered("pulse", "A plane wave in irregular cells.");
   } // namespace

@@ -88,8 +88,7 @@ namespace Voussoir
           if (cell->is_locally_owned())
             places.push_back({cell, Point<3>(0.5, 0.5, 0.5)});
         StressPoints centres(simulation->run.observed, places);
-        const auto  &stress =
-          centres.evaluate(simulation->run.state.displacement);
+        const auto  &stress = centres.evaluate(simulation->run.state);
         for (unsigned int i = 0; i < places.size(); ++i)
           result.stress[Grid::global_key(places[i].cell)] =
             eigenvalues(stress[i])[0];
@@ -100,6 +99,7 @@ namespace Voussoir
       double      tolerance = 1e-9, stress_tolerance = 0.;
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<Ranks>
       registered("ranks", "Any number of ranks gives the same motion.");
   } // namespace

@@ -110,6 +110,7 @@ namespace Voussoir
       double              tolerance = 0.02;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Reflection>
       registered("reflection", "Reflection by the springs of the boundary.");
   } // namespace

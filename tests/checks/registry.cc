@@ -38,6 +38,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<RegistryCheck>
       registered("registry", "Registration of classes by name.");
   } // namespace

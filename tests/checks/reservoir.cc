@@ -313,14 +313,19 @@ namespace Voussoir
     };
 
 
+    // Reference: closed form
     const Registry<Check>::Add<ReservoirPressure>
       pressure("reservoir pressure", "Slow motion of a rigid wall.");
+    // Reference: closed form
     const Registry<Check>::Add<ReservoirResonance>
       resonance("reservoir resonance", "The lowest frequency of a tank.");
+    // Reference: closed form
     const Registry<Check>::Add<ReservoirReflection>
       reflection("reservoir reflection", "At the end and at the bottom.");
+    // Reference: closed form
     const Registry<Check>::Add<ReservoirEnergy>
       energy("reservoir energy", "Energy of the water by itself.");
+    // Reference: ourselves
     const Registry<Check>::Add<ReservoirRanks>
       ranks("reservoir ranks", "Any number of ranks computes the same.");
   } // namespace

@@ -28,7 +28,7 @@ namespace Voussoir
                               {materials[0]->density},
                               {0.},
                               [](const Grid::Cell &) { return 0U; });
-        InternalForce internal_force(tank.discretization, {materials[0]}, {{}});
+        InternalForce internal_force(tank.discretization, {materials[0]}, {1.});
 
         StepLimits limits;
         limits.stiffening   = [](const double) { return 0.; };
@@ -80,11 +80,10 @@ namespace Voussoir
                   Utilities::MPI::sum(water.loss, communicator);
                 const double total =
                   0.5 * (momentum * state.velocity) +
-                  internal_force.stored_energy(state.displacement,
-                                               state.material_memory,
-                                               initial_state,
-                                               state.displacement,
-                                               before) +
+                  0.5 * internal_force.elastic_work(state.displacement,
+                                                    before,
+                                                    {},
+                                                    false) +
                   stored + water.work_ahead(state.velocity);
                 if (step == 0)
                   initial = total;
@@ -101,6 +100,7 @@ namespace Voussoir
     };
 
 
+    // Reference: closed form
     const Registry<Check>::Add<ReservoirCoupling>
       registered("reservoir coupling", "Energy of an elastic dam and water.");
   } // namespace

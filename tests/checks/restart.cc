@@ -369,6 +369,7 @@ namespace Voussoir
       {
         for (const std::string table : {"/histories.csv",
                                         "/energy.csv",
+                                        "/support_forces.csv",
                                         "/section_forces.csv",
                                         "/over_stress.csv",
                                         "/response_spectra.csv"})
@@ -415,6 +416,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<Restart>
       registered("restart", "Interrupted and continued runs.");
   } // namespace

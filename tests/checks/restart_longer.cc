@@ -114,6 +114,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<RestartLonger>
       registered("restart longer", "Runs that go on to a later end time.");
   } // namespace

@@ -58,10 +58,13 @@ namespace Voussoir
           MPI_Barrier(communicator);
           one.claim(log);
           other.claim(log);
-          verdicts.is_true("one has " + one.path(), true);
-          verdicts.is_true("the other has " + other.path(), true);
-          verdicts.is_true("--overwrite meanwhile: " + refusal(overwrite),
-                           true);
+          verdicts.same_text("one has", one.path(), "results");
+          verdicts.same_text("the other has", other.path(), "results-2");
+          verdicts.same_text(
+            "--overwrite meanwhile",
+            refusal(overwrite),
+            "refused: The output folder \"results\" is that of a run which is "
+            "still going on; choose another \"Folder\" in section \"Output\".");
         }
 
         on_first([] {
@@ -90,30 +93,31 @@ namespace Voussoir
             {
               message = "refused";
             }
-          verdicts.is_true("a bad case with --overwrite: " + message, true);
+          verdicts.same_text("a bad case with --overwrite", message, "refused");
           verdicts.is_true("all results are there still",
                            text_of("results/histories.csv") == "text\n" &&
                              fs::exists("results/checkpoint"));
         }
         MPI_Barrier(communicator);
-        verdicts.is_true("--overwrite after its end: " + refusal(overwrite),
-                         true);
+        verdicts.same_text("--overwrite after its end",
+                           refusal(overwrite),
+                           "claimed");
         for (const std::string name : {"histories.csv",
                                        "fields.pvd",
                                        "fields.txt",
                                        "fields/fields-00000001.vtu",
-                                       "checkpoint",
-                                       "notes.txt",
+                                       "checkpoint"})
+          verdicts.is_true(name + " is removed",
+                           !fs::exists("results/" + name));
+        for (const std::string name : {"notes.txt",
                                        "a/parameters.prm",
                                        "a/histories.csv",
                                        "a/fields/fields-00000001.vtu"})
-          verdicts.is_true(name + (fs::exists("results/" + name) ?
-                                     " stays" :
-                                     " is removed"),
-                           true);
+          verdicts.is_true(name + " stays", fs::exists("results/" + name));
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<ResultFolders>
       registered("result folders", "Who may write to which folder.");
   } // namespace

@@ -67,6 +67,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<RigidBase>
       registered("rigid base", "Inertial input against a moving base.");
   } // namespace

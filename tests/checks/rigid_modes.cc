@@ -66,7 +66,7 @@ namespace Voussoir
           {
             u    = 0.;
             u[j] = 1.;
-            simulation->model.internal_force.apply(force, u);
+            simulation->run.equation.internal_force.apply(force, u);
             for (unsigned int i = 0; i < n; ++i)
               {
                 matrix(i, j) = force[i];
@@ -88,6 +88,7 @@ namespace Voussoir
       double ratio = 0.2;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<RigidModes>
       registered("rigid modes", "No other motion without energy.");
   } // namespace

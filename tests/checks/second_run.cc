@@ -78,6 +78,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<SecondRun>
       registered("second run", "Two runs on one model are the same.");
   } // namespace

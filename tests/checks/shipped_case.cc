@@ -103,6 +103,7 @@ namespace Voussoir
       std::string name, changes, results, events;
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<ShippedCase>
       registered("shipped case", "A case of prm/ shows what it promises.");
   } // namespace

@@ -83,6 +83,7 @@ namespace Voussoir
       unsigned int n_limits = 0;
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<ShippedStudy>
       registered("shipped study", "A study of prm/ shows what it promises.");
   } // namespace

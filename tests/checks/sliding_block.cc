@@ -65,6 +65,7 @@ namespace Voussoir
                               back_friction = 0.4, cohesion = 0.1;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<SlidingBlockModes>
       registered("sliding block", "Ways in which a block can slide.");
   } // namespace

@@ -183,6 +183,7 @@ namespace Voussoir
       Verdicts *verdict = nullptr;
     };
 
+    // Reference: published
     const Registry<Check>::Add<SpectrumMatchCheck>
       registered("spectrum match", "Records fitted to a target spectrum.");
   } // namespace

@@ -56,6 +56,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<DepthPressure>
       registered("depth pressure", "Levels that cut cells anywhere.");
   } // namespace

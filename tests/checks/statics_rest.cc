@@ -43,6 +43,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<Rest>
       registered("rest", "A run without an earthquake after a static stage.");
   } // namespace

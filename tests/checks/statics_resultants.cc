@@ -80,6 +80,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<KoynaResultants>
       registered("Koyna resultants", "Resultants of loads and reactions.");
   } // namespace

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "limit_files.h"
 #include "with_files.h"
 
 namespace Voussoir
@@ -186,6 +187,105 @@ namespace Voussoir
     };
 
 
+    /**
+     * Searches for the limit at which a run is "stopped", of which a mistake in
+     * the file and a full disk are none, and for another limit by a run that is
+     * stopped before it.
+     */
+    class FailedLimit : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const ParameterFile slope = study_file(file, "study_slope", "no_limit"),
+                            block =
+                              study_file(file, "study_shaken_block", "no_limit")
+                                .with({"Study/Limit/Criterion=stopped"});
+        const std::string mistake =
+          end_of(block.with({"Loads/weight/Face sets=nowhere"}), communicator);
+        verdicts.is_true("a mistake in the file: failed",
+                         holds(mistake, "failed: ") &&
+                           holds(mistake, "nowhere") && !has_limits());
+        const std::string disk =
+          end_of(block.with(
+                   {"Output/Observers=interfaces, histories, full disk",
+                    "Output/histories/Points=top: 1 1 1",
+                    "Output/histories/Interval=1e-4",
+                    "Output/full disk/From=0.1",
+                    "Output/full disk/To=9",
+                    "Output/full disk/Size=60000"}),
+                 communicator);
+        verdicts.is_true("a full disk: failed",
+                         holds(disk, "failed: ") && holds(disk, "written") &&
+                           !has_limits());
+        const std::string other =
+          end_of(slope.with({"Study/Limit/Criterion=interfaces/surfaces/plane/"
+                             "largest slip [mm] > 1e6",
+                             "Study/Limit/To=3"}),
+                 communicator);
+        verdicts.is_true("stopped before another criterion was met: said",
+                         holds(other, "stopped: ") &&
+                           holds(other, "nobody knows") && !has_limits());
+
+        const std::string one_of_two =
+          end_of(slope.with(
+                   {"Study/Limit/Entry=",
+                    "Study/Vary=Interfaces/plane/Friction coefficient = 0.5, "
+                    "0.8 & Loads/weight/Cell sets = block, nowhere"}),
+                 communicator);
+        verdicts.is_true(
+          "one of two runs fails: an error, and the other's line",
+          holds(one_of_two, "1 run ") && lines_of("no_limit/study.csv") == 3);
+      }
+
+    private:
+      /** How a study ends. */
+      static std::string
+      end_of(const ParameterFile &file, const MPI_Comm communicator)
+      {
+        remove("no_limit", communicator);
+        std::string end = "done";
+        try
+          {
+            results_of(file, communicator);
+          }
+        catch (const UserError &error)
+          {
+            end = error.what();
+          }
+        limit_files(RLIM_INFINITY);
+        return end;
+      }
+
+      static bool
+      holds(const std::string &text, const std::string &part)
+      {
+        return text.find(part) != std::string::npos;
+      }
+
+      static bool
+      has_limits()
+      {
+        std::ifstream in("no_limit/study.json");
+        return in && nlohmann::json::parse(in).contains("limits");
+      }
+
+      static unsigned int
+      lines_of(const std::string &name)
+      {
+        std::ifstream in(name);
+        std::string   line;
+        unsigned int  n = 0;
+        while (std::getline(in, line))
+          ++n;
+        return n;
+      }
+    };
+
+
     /** Mean and spread, in closed form, and of the settlements rho g H^2 / 2 E
      *  of columns that are 2000, 2400 and 3100 kg/m3 heavy. */
     class StudyStatistics : public Check
@@ -251,12 +351,75 @@ namespace Voussoir
       }
     };
 
+    /**
+     * A strength reduction by F: cohesion c / F, of an angle of friction
+     * atan(tan(phi) / F); what it leaves is said.
+     */
+    class StudyOfStrengths : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        remove("strengths", communicator);
+        const auto found =
+          results_of(study_file(file, "study_strengths", "strengths"),
+                     communicator);
+        for (const nlohmann::json &run : found.at("runs"))
+          {
+            const std::string divisor =
+              run.at("values").at("strength reduction").get<std::string>();
+            const double        F = std::stod(divisor);
+            const ParameterFile as_run(run.at("folder").get<std::string>() +
+                                       "/parameters.prm");
+            const auto          value = [&](const std::string &entry) {
+              return std::stod(as_run.given("Materials/rock/" + entry));
+            };
+            verdicts.near("F = " + divisor + ": cohesion [Pa]",
+                          value("Cohesion"),
+                          1.2e6 / F,
+                          1e-5);
+            verdicts.near("  tangent of the friction angle",
+                          std::tan(value("Friction angle") * numbers::PI /
+                                   180.),
+                          std::tan(40. * numbers::PI / 180.) / F,
+                          1e-5);
+            verdicts.near("  tension cut-off [Pa], left as it is",
+                          value("Tension cut-off"),
+                          6e5,
+                          1e-12);
+          }
+        const nlohmann::json &said = found.at("strength reduction");
+        verdicts.is_true("two are said to be divided",
+                         said.at("divides") ==
+                           nlohmann::json({"Materials/rock/Cohesion",
+                                           "Materials/rock/Friction angle"}));
+        verdicts.is_true("the rest is said to be left",
+                         said.at("leaves as they are") ==
+                           nlohmann::json(
+                             {"Materials/rock/Tension cut-off = 600000"}));
+      }
+    };
+
+    // Reference: closed form
+    const Registry<Check>::Add<StudyOfStrengths>
+      strengths("study of strengths", "What a reduction divides and leaves.");
+    // Reference: ourselves
     const Registry<Check>::Add<FailingRun> failing("study with a failing run",
                                                    "One run that slides away.");
+    // Reference: ourselves
+    const Registry<Check>::Add<FailedLimit>
+      failed_limit("study of failed runs",
+                   "Runs that fail meet no criterion of a limit.");
+    // Reference: closed form
     const Registry<Check>::Add<StudyStatistics>
       statistics("study statistics", "Mean and spread over varied entries.");
+    // Reference: closed form
     const Registry<Check>::Add<StudyLimit>
       limit("study limit", "A limit that is known in closed form.");
+    // Reference: closed form
     const Registry<Check>::Add<StudyOfColumns>
       columns("study of columns", "Crossed values, and a study resumed.");
   } // namespace

@@ -219,6 +219,7 @@ namespace Voussoir
              pressure = 1.38e6;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<ThickCylinder>
       registered("thick cylinder", "Plastic radius around a gallery.");
   } // namespace

@@ -157,6 +157,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<WaterOnTurnedDam>
       registered("water on turned dam", "A river of any direction.");
   } // namespace

@@ -130,6 +130,7 @@ namespace Voussoir
       double residual = 0.01, uniformity = 1e-10;
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<VerticalWave>
       registered("vertical wave", "Surface motion, uniformity, rest after.");
   } // namespace

@@ -53,6 +53,7 @@ namespace Voussoir
       std::string mistakes;
     };
 
+    // Reference: ourselves
     const Registry<Check>::Add<Warnings>
       registered("warnings", "Values that are hardly meant so are said.");
   } // namespace

@@ -50,6 +50,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<WideCrack>
       registered("wide crack", "The warning of what cracks have cut off.");
   } // namespace

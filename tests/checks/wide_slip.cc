@@ -61,6 +61,7 @@ namespace Voussoir
       }
     };
 
+    // Reference: closed form
     const Registry<Check>::Add<WideSlip>
       registered("wide slip", "The warning of what has slid out of place.");
   } // namespace

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Largest load of the notched beam of tests/checks/notched_beam.cc, found in
+"""Largest load, and energy lost, of the notched beam of tests/checks/notched_beam.cc, found in
 another way: the fictitious crack of Hillerborg, Modeer and Petersson (1976).
 
 Half of the beam is elastic (plane strain, bilinear elements of the usual kind,
 scipy's sparse solver). Over the notch the nodes of the plane of symmetry are
 held up to a tip; below it they open by w/2 under the stress ft (1 - w/wc),
 wc = 2 Gf/ft. With the tip at each node in turn the pressed-down displacement is
-the one at which the stress at the tip is ft. Prints load [kN/m] by the number
-of elements over the height.
+the one at which the stress at the tip is ft. Prints load [kN/m] and energy
+[J/m] under a press of 0.4 mm by the number of elements over the height.
 """
 import numpy as np
 import scipy.sparse
@@ -38,7 +38,10 @@ def element_stiffness(a, b):
     return stiffness
 
 
-def largest_load(rows):
+def ligament_and_load(rows):
+    """Load [N/m] and pull of the plane of symmetry by node above the notch [N/m],
+    each of half the beam, under unit displacements of the press and of those
+    nodes; and the nodes' share of the height [m]."""
     h = HEIGHT / rows
     columns = round(HALF_LENGTH / h)
     node = lambda i, j: j * (columns + 1) + i
@@ -56,6 +59,8 @@ def largest_load(rows):
         (np.concatenate(data), (np.concatenate(at_row), np.concatenate(at_column))), (size, size)
     )
     held = [2 * node(i, 0) + 1 for i in range(columns + 1) if i * h < SUPPORT + 1e-9]
+    # the press holds what it pushes along the beam, too
+    held += [2 * node(i, rows) for i in range(columns) if i * h > HALF_LENGTH - HALF_LOAD - 1e-9]
     pressed = [2 * node(i, rows) + 1 for i in range(columns + 1) if i * h > HALF_LENGTH - HALF_LOAD - 1e-9]
     first = round(NOTCH / h)
     ligament = [2 * node(columns, j) for j in range(first, rows + 1)]
@@ -75,9 +80,14 @@ def largest_load(rows):
     area = np.full(len(ligament), h)
     area[[0, -1]] *= 0.5
 
+    return load, pull, area
+
+
+def largest_load(rows):
+    load, pull, area = ligament_and_load(rows)
     opening = 2 * ENERGY / STRENGTH
     best = 0.0
-    for tip in range(1, len(ligament) - 1):
+    for tip in range(1, len(area) - 1):
         # unknown: press, and displacement -w/2 of the nodes below the tip
         n = tip
         system = np.zeros((n + 1, n + 1))
@@ -99,6 +109,29 @@ def largest_load(rows):
     return best
 
 
+
+def energy(rows, press):
+    """Lost where the ligament opens, once the press has come down [J/m]: unloading
+    goes to the origin, so that a node of opening w has lost Gf min(w/wc, 1)."""
+    load, pull, area = ligament_and_load(rows)
+    opening = 2 * ENERGY / STRENGTH
+    n_open, n_free = 1, 0  # from below
+    while True:
+        softening = np.zeros(n_open)
+        softening[n_free:] = 2 * STRENGTH / opening
+        held = np.where(np.arange(n_open) < n_free, 0.0, STRENGTH)
+        system = pull[:n_open, 1 : n_open + 1] - np.diag(area[:n_open] * softening)
+        moved = np.linalg.solve(system, area[:n_open] * held - pull[:n_open, 0] * press)
+        tip = pull[n_open, 0] * press + pull[n_open, 1 : n_open + 1] @ moved
+        widths = -2 * moved
+        if (widths[n_free:] > opening).any():
+            n_free += 1
+        elif tip > area[n_open] * STRENGTH and n_open < len(area) - 2:
+            n_open += 1
+        else:
+            return ENERGY * area[:n_open] @ np.minimum(widths / opening, 1)
+
+
 if __name__ == "__main__":
     for rows in (24, 48, 96, 144):
-        print(f"{rows}: {1e-3 * largest_load(rows):.2f} kN/m")
+        print(f"{rows}: {1e-3 * largest_load(rows):.2f} kN/m, {energy(rows, 0.4e-3):.2f} J/m")

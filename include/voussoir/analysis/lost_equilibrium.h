@@ -8,7 +8,7 @@ namespace Voussoir
 {
   /** A static stage under whose loads a block slides or falls, or cracks or
    *  plastic flow do not end. */
-  class LostEquilibrium : public UserError
+  class LostEquilibrium : public RunStopped
   {
   public:
     /**

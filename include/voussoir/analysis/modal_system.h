@@ -63,9 +63,20 @@ namespace Voussoir
     std::vector<Motion>
     start(const unsigned int number) const;
 
-    /** Unit motion in one direction of all that is not held. */
+    /** M r: the forces on all that is not held under unit acceleration of all
+     *  in one direction. What is held moves, too, as the ground does, and
+     * pushes the water. */
     Motion
-    rigid_motion(const unsigned int direction) const;
+    rigid_momentum(const unsigned int direction) const;
+
+    /** M^-1 of such forces, by conjugate gradients; exact without cells of
+     *  water. */
+    Motion
+    divided_by_mass(const Motion &momentum) const;
+
+    /** Sum over all ranks. */
+    double
+    product(const Motion &a, const Motion &b) const;
 
     /** The forces on the solid among all forces. */
     Vector

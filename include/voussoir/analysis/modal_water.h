@@ -51,11 +51,21 @@ namespace Voussoir
                  const Vector &motion,
                  const double *water_motion) const;
 
+    /** That of a floor which meets no solid and moves by one in this
+     *  direction, as a rigid base moves it. */
+    void
+    add_momentum_of_floor(Vector            &momentum,
+                          double            *water_momentum,
+                          const unsigned int direction) const;
+
     /** Zero where the pressure is. */
     void
     clear_surface(double *water_motion) const;
 
   private:
+    void
+    add_momentum_of_flux(Vector &momentum, double *water_momentum) const;
+
     const std::vector<unsigned int> surface; // owned unknowns
     const PressureSolver            solver;
     std::vector<double>             weight; // sqrt(k Q) [sqrt(N/m m3/Pa)]

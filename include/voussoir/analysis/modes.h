@@ -63,7 +63,8 @@ namespace Voussoir
     double mass;      // phi^T (M + M_a) phi [kg]
     double residual;  // |K phi - omega^2 (M + M_a) phi| / |K phi|
 
-    /** phi^T (M + M_a) r / mass, with r = 1 in one direction. */
+    /** phi^T (M + M_a) r / mass, with r = 1 in one direction, at what is held
+     * as well: held walls of a canyon push the water. */
     dealii::Tensor<1, 3> participation;
 
     /** participation^2 mass, by direction [kg]. */
@@ -74,8 +75,8 @@ namespace Voussoir
   {
     std::vector<Mode> list; // from the lowest frequency upwards
 
-    /** Mass that can move in each direction, with the water that moves along:
-     *  what the effective masses of all modes add up to [kg]. */
+    /** Mass that can move in each direction, with the water that pushes it:
+     * what the effective masses of all modes add up to [kg]. */
     dealii::Tensor<1, 3> moving_mass;
 
     /** [Hz] */

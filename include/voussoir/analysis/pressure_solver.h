@@ -31,14 +31,17 @@ namespace Voussoir
     make_constraints() const;
 
     void
-    assemble(dealii::TrilinosWrappers::SparseMatrix &matrix) const;
+    assemble();
 
     void
     apply(Vector &flux, const Vector &pressure) const;
 
     const AcousticSpace            &space;
     const std::vector<unsigned int> held;
-    std::optional<Multigrid>        multigrid;
+
+    // empty, unless it is the only level of the multigrid, which refers to it
+    dealii::TrilinosWrappers::SparseMatrix matrix;
+    std::optional<Multigrid>               multigrid;
   };
 } // namespace Voussoir
 

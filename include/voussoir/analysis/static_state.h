@@ -57,20 +57,18 @@ namespace Voussoir
 
   /**
    * The state under the loads that are there before the earthquake: stages one
-   * after the other, each with the loads it names. The force that it returns
-   * holds the state in the dynamic model, reactions of supports that are held
-   * here only included, so that without an earthquake nothing moves. Forces of
-   * contact are no part of it, as the run finds them by itself.
+   * after the other, each with the loads it names. The run takes it by
+   * hand_over.
    *
    * Each stage is solved at once with elastic materials first, by multigrid,
    * with interfaces in Newton steps. Where materials crack or yield under its
    * loads, these and the temperature grow in increments, as cracks and plastic
    * flow depend on the path, and equilibrium is searched with the materials
-   * (see EquilibriumSearch). Where that fails, it is found by damped motion,
-   * which at the end of a stage also looks whether a state with interfaces is
-   * at rest. An increment is halved while the return mapping of the materials
-   * differs between one step and two. An interface is grouted at the end of the
-   * stage that names its load.
+   * (see EquilibriumSearch). Where that fails, it is found by dynamic
+   * relaxation, which at the end of a stage also looks whether a state with
+   * interfaces is at rest. An increment is halved while the return mapping of
+   * the materials differs between one step and two. An interface is grouted at
+   * the end of the stage that names its load.
    *
    * Throws LostEquilibrium if no equilibrium is found.
    *
@@ -82,6 +80,20 @@ namespace Voussoir
                     const NamedLoads       &loads,
                     Log                    &log,
                     nlohmann::json         &summary);
+
+  /**
+   * Gives a static state the force that holds it in the dynamic model, and the
+   * materials' memory the moduli of that: reactions of supports that are held
+   * in the static stages only are part of the force, so that without an
+   * earthquake nothing moves. Forces of contact are not, as the run finds them
+   * by itself. Without static stages nothing is done.
+   *
+   * @param internal_force that of the run
+   */
+  void
+  hand_over(InitialState        &state,
+            const InternalForce &internal_force,
+            const NodalTerms    &terms);
 } // namespace Voussoir
 
 #endif

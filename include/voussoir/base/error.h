@@ -16,6 +16,16 @@ namespace Voussoir
   public:
     using std::runtime_error::runtime_error;
   };
+
+  /**
+   * A run or a static stage that comes to no equilibrium, or whose energy grows
+   * from nothing: what became of the case, which a study may ask for.
+   */
+  class RunStopped : public UserError
+  {
+  public:
+    using UserError::UserError;
+  };
 } // namespace Voussoir
 
 #endif

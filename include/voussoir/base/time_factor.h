@@ -13,6 +13,18 @@ namespace Voussoir
   class TimeFactor
   {
   public:
+    /** @param expression default; empty: there need be none */
+    explicit TimeFactor(const std::string &expression = "1")
+      : expression(expression)
+    {}
+
+    /** Whether there is one. */
+    bool
+    given() const
+    {
+      return !expression.empty();
+    }
+
     /** Declares the entry. */
     void
     declare(dealii::ParameterHandler &prm,
@@ -27,7 +39,7 @@ namespace Voussoir
     operator()(const double time) const;
 
   private:
-    std::string                                expression = "1";
+    std::string                                expression;
     std::unique_ptr<dealii::FunctionParser<1>> function;
   };
 } // namespace Voussoir

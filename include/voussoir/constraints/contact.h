@@ -28,6 +28,13 @@ namespace Voussoir
     Contact(const Discretization       &discretization,
             const InterfacesParameters &interfaces);
 
+    /** Lets friction follow the pressure as fast as waves of this speed [m/s]
+     *  in the cells there allow (see ContactPoint::delay); returns the largest
+     *  delay [s]. */
+    double
+    set_delay(const Discretization                            &discretization,
+              const std::function<double(const Grid::Cell &)> &wave_speed);
+
     void
     prepare_step(const InverseMass &inverse_mass,
                  const double       time_step) override;
@@ -63,10 +70,20 @@ namespace Voussoir
     void
     load(const nlohmann::json &saved);
 
-    /** Lets the history begin where the points are now: on the way to the
-     *  static state they swing, which opens joints that end closed. */
+    /** From here on the points swing on their way to a static state. */
+    void
+    begin_approach();
+
+    /** Takes those swings out of the history, which opened joints that end
+     *  closed: what stays is that from before and the way from there to where
+     *  the points are now. */
     void
     forget_approach();
+
+    /** Lets the water into the interfaces whose uplift comes with one of these
+     *  loads. */
+    void
+    let_water_in(const std::vector<std::string> &loads);
 
     /** Joins the interfaces that are grouted after one of these loads; returns
      *  whether there are any. Called on all ranks.
@@ -130,11 +147,15 @@ namespace Voussoir
   private:
     friend class StaticContact; // finds the same forces in its own way
 
-    static constexpr unsigned int memory_width = 13;
+    static constexpr unsigned int memory_width = 14;
     using PointMemory = std::array<double, memory_width>;
 
     void
     find_uplift(const Discretization &discretization);
+
+    /** Gives the points of an interface its uplift if its water is there. */
+    void
+    set_uplift(const unsigned int interface);
 
     /** Lets the sides of an interface meet from now on; gap and slip begin at
      *  the displacement of the nodes of the clusters. */
@@ -149,9 +170,19 @@ namespace Voussoir
     std::vector<dealii::Point<3>>                point_positions;
     std::vector<dealii::types::global_dof_index> first_node, global_nodes;
     std::vector<std::uint64_t>                   point_keys;
+    std::vector<bool>                            forces_unique; // each point
     std::vector<double>                          uplift; // of each point [Pa]
+    std::vector<bool>                            has_water; // each interface
     std::vector<PointMemory>                     point_memory;
     MPI_Comm                                     communicator;
+
+    struct Slid
+    {
+      InterfaceHistory     history;
+      dealii::Tensor<1, 2> stick_point;  // [m]
+      double               largest_slip; // [m]
+    };
+    std::vector<Slid> before_approach; // of each point
 
     // at the nodes of the clusters
     std::vector<dealii::Tensor<1, 3>> displacement, force;

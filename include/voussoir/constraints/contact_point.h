@@ -24,12 +24,30 @@ namespace Voussoir
     double opening  = 0.;    // largest so far, an intact bond has none [m]
     bool   locked   = false; // no slip (shear keys)
 
+    // friction follows the pressure with a delay (see ContactPoint): what it
+    // bears under that of before [N], and its part of that of now
+    double lasting = 0., at_once = 1.;
+
     /** Normal force at which it opens [N]; an opened bond has its tension open
      *  only. */
     double
     opening_force() const
     {
       return opening > 0. ? 0. : -tension;
+    }
+
+    /** Largest shear force of a closed point without pressure, less its bond
+     *  [N], and how this grows with the pressure. */
+    double
+    without_pressure() const
+    {
+      return cohesion + lasting;
+    }
+
+    double
+    with_pressure() const
+    {
+      return at_once * friction;
     }
 
     /** Largest shear force under this normal force [N]. */

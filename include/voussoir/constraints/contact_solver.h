@@ -40,6 +40,17 @@ namespace Voussoir
     double               area   = 0.; // [m2]
     double               uplift = 0.; // pressure inside [Pa]
 
+    /**
+     * Friction follows the pressure p by its mean q, dq/dt = (p - q)/T, over
+     * some times T in which waves pass a cell. Under a law without this delay
+     * sliding of elastic bodies is ill-posed: waves along the interface grow
+     * the faster the shorter they are (Renardy 1992; Ranjith and Rice 2001),
+     * and the shortest ones of the mesh shake the sliding body on. Zero where
+     * as many points as nodes meet: there a pressure may be exchanged for
+     * shear, and what hangs on this choice must not be remembered.
+     */
+    double delay = 0.; // T [s]
+
     // gap and slip where its nodes have not moved, in the frame [m]
     dealii::Tensor<1, 3> initial_gap;
 
@@ -49,6 +60,10 @@ namespace Voussoir
     InterfaceHistory     history;
     double               bar_extension = 0.; // plastic [m]
     double               largest_slip  = 0.; // distance from the start [m]
+    double               mean_pressure = 0.; // q, as a force [N]
+
+    // part of a change of the pressure that q follows in a step
+    double at_once = 1.;
 
     // these follow from the motion
     dealii::Tensor<1, 3> gap;      // opening and slip now [m]
@@ -127,6 +142,10 @@ namespace Voussoir
      *  set. */
     void
     update_limits(ContactPoint &point) const;
+
+    /** Sets q to the pressure of now. */
+    void
+    catch_up_with_pressure(ContactPoint &point) const;
 
     /** Lets the bars at a point flow that its gap has stretched too far. */
     void

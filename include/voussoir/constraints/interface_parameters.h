@@ -16,6 +16,7 @@ namespace Voussoir
     double      upstream_level = 0., downstream_level = -1e6; // [m]
     double      drain_position = 0., drain_factor = 1.;
     double      density = 1000.; // [kg/m3]
+    std::string comes_with;      // load of a static stage
 
     void
     declare(dealii::ParameterHandler &prm);

@@ -43,7 +43,8 @@ namespace Voussoir
     {}
 
     /** Inverse of the mass that the update divides by, of an owned node: a
-     *  momentum p changes its velocity by H p; zero where held. */
+     *  momentum p changes its velocity by H p; zero where held, and for others
+     *  than those that prescribe it where the motion is prescribed. */
     using InverseMass =
       std::function<dealii::Tensor<2, 3>(const unsigned int node)>;
 
@@ -62,11 +63,12 @@ namespace Voussoir
     virtual const std::vector<unsigned int> &
     nodes() const = 0;
 
-    /** Whether its nodes follow it whatever else acts on them. */
-    virtual bool
-    prescribes() const
+    /** The components x, y, z in which its nodes follow it whatever else acts
+     * on them. */
+    virtual std::array<bool, 3>
+    prescribed_components() const
     {
-      return false;
+      return {{false, false, false}};
     }
 
     /** Corrects @p state at the end of a step of length @p time_step [s]; its

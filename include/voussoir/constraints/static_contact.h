@@ -73,7 +73,8 @@ namespace Voussoir
     Change
     update();
 
-    /** The slip of the next stage counts from here. */
+    /** The points keep how far they opened and slipped in this stage, and the
+     *  slip of the next one counts from here. */
     void
     finish_stage();
 
@@ -85,6 +86,10 @@ namespace Voussoir
     void
     find_gaps(const Vector &displacement);
 
+    /** That of point @p k if this stage ended now. */
+    InterfaceHistory
+    history_at(const unsigned int k) const;
+
     /** Adds the forces at the nodes of the clusters. */
     void
     add_forces(Vector &force) const;
@@ -92,9 +97,10 @@ namespace Voussoir
     Contact                          &contact;
     std::vector<double>               spring; // of each point [N/m]
     std::vector<dealii::Tensor<1, 3>> multiplier;
-    std::vector<dealii::Tensor<2, 3>> tangent; // in global axes
-    std::vector<double>               path;    // slip before this stage [m]
-    std::vector<ContactPoint>         before;  // this stage
+    std::vector<double>               cohesion; // its multiplier [N]
+    std::vector<double>               closing;  // see closing_force [N]
+    std::vector<dealii::Tensor<2, 3>> tangent;  // in global axes
+    std::vector<ContactPoint>         before;   // this stage
 
     // at the nodes of the clusters and at the owned ones
     mutable std::vector<dealii::Tensor<1, 3>> at_nodes, forces, at_owned;

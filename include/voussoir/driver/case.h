@@ -67,7 +67,7 @@ namespace Voussoir
   {
     std::string folder;
     std::string observers           = "histories, envelopes, fields";
-    double      energy_interval     = 0.02;
+    double      energy_interval     = 0.;
     double      energy_limit        = 0.1;
     double      checkpoint_interval = 10.;
     double      checkpoint_time     = 0.;
@@ -156,6 +156,11 @@ namespace Voussoir
   private:
     void
     declare();
+
+    /** Lets the uplift of interfaces come with the first load of water, where
+     *  the file does not say with which. */
+    void
+    find_water_of_uplift();
 
     void
     check() const;

@@ -52,7 +52,8 @@ namespace Voussoir
     const Discretization discretization;
     const LumpedMass     mass;
 
-    /** Of the run: the moduli hold at the reference frequency of damping. */
+    /** With the moduli as given; a run and the static stages take it with their
+     *  own factors. */
     const InternalForce internal_force;
 
     NodalTerms              terms; // springs, dashpots, added mass

@@ -25,6 +25,13 @@ namespace Voussoir
   RestState
   find_rest(const Model &model, Log &log);
 
+  /** The same state with the moduli of a run, whose internal force this is; see
+   *  hand_over of the static state. */
+  RestState
+  handed_over(RestState          &&found,
+              const Model         &model,
+              const InternalForce &internal_force);
+
   /** Refuses natural modes that the model cannot have. */
   void
   check_modes(const Model &model);

@@ -82,10 +82,6 @@ namespace Voussoir
     void
     write_ground_motion() const;
 
-    /** Steps with a line of the energy balance. */
-    Schedule
-    energy_schedule() const;
-
     void
     observe();
 
@@ -148,7 +144,7 @@ namespace Voussoir
     abort(const std::string &reason);
 
     Checkpoint          checkpoint;
-    State               last_good; // displacement, velocity and time alone
+    State               last_good; // without the memory of materials
     dealii::TimerOutput timer;
     dealii::Timer       clock, since_checkpoint, since_look, since_stop_file;
     unsigned long long  first_step = 0;

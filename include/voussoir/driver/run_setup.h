@@ -30,19 +30,24 @@ namespace Voussoir
 
     /** What observers see of a run, whose parts are given by the caller. */
     ObservedModel
-    observed(const std::string    &folder,
-             const InitialState   &initial,
-             const MaterialMemory &memory,
-             const Contact        *contact,
-             Log                  &log) const;
+    observed(const std::string       &folder,
+             const InitialState      &initial,
+             const MaterialMemory    &memory,
+             const Contact           *contact,
+             Log                     &log,
+             const CentralDifference *scheme = nullptr) const;
 
     /** What summary.json says of the model, whatever becomes of the run. Called
      *  on all ranks. */
     nlohmann::json
     summary(const MPI_Comm communicator) const;
 
-    const Model                       &model;
-    Damping                            damping;
+    const Model &model;
+    Damping      damping;
+
+    /** Of the run: the moduli hold at the reference frequency of damping. */
+    const InternalForce internal_force;
+
     const TimeStep                     time_step;
     Earthquake                         earthquake;
     const std::unique_ptr<WaterMotion> water; // compressible, or null

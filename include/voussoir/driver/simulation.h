@@ -25,11 +25,17 @@ namespace Voussoir
     Model        model;
 
   private:
+    std::unique_ptr<RunSetup> checked; // before the modes are known
+    RestState                 found;   // of the static stages
+
+  public:
+    const Modes modes;
+
+  private:
     std::unique_ptr<RunSetup> setup; // until the run has it
 
   public:
-    const RestState rest;
-    const Modes     modes;
+    const RestState rest; // with the moduli of the run
     Run             run;
   };
 } // namespace Voussoir

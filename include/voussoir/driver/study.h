@@ -60,8 +60,11 @@ namespace Voussoir
     const Outcome &
     outcome_of(const StudyValues &values);
 
+    /** @param may_go_on from a checkpoint that the folder has */
     nlohmann::json
-    do_run(Case &parameters, const std::string &folder) const;
+    do_run(Case              &parameters,
+           const std::string &folder,
+           const bool         may_go_on) const;
 
     /** Whether the criterion is met in the run with this value. */
     bool
@@ -94,13 +97,17 @@ namespace Voussoir
     std::size_t
     n_expected() const;
 
-    const ParameterFile  file;
-    const RunOptions     options;
-    const MPI_Comm       communicator; // of the study
-    MPI_Comm             group;        // of one run
-    unsigned int         n_groups = 1, my_group = 0;
-    StudyParameters      parameters;
-    std::string          folder;
+    const ParameterFile file;
+    const RunOptions    options;
+    const MPI_Comm      communicator; // of the study
+    MPI_Comm            group;        // of one run
+    unsigned int        n_groups = 1, my_group = 0;
+    StudyParameters     parameters;
+    std::string         folder;
+
+    /** Strengths that the strength reduction leaves, "Entry = value". */
+    std::vector<std::string> strengths_kept;
+
     std::vector<Outcome> outcomes;
     std::vector<Limit>   limits;
     unsigned int         n_done          = 0; // runs that were computed now

@@ -36,6 +36,10 @@ namespace Voussoir
     bool
     seeks_limit() const;
 
+    /** Whether strengths are divided in some of the runs. */
+    bool
+    reduces_strengths() const;
+
     /** Refuses lists of no values or of unequal length, and criteria that are
      *  none. */
     void

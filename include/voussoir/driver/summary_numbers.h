@@ -40,15 +40,16 @@ namespace Voussoir
   number_text(const double value);
 
   /** Whether something has happened in a run: "PATH > VALUE" or "PATH < VALUE"
-   *  of a number of the summary, or "stopped", for a run that ended early. */
+   *  of a number of the summary, or "stopped", see RunStopped. */
   class Criterion
   {
   public:
     /** Throws UserError, which names the place, if it is none of these. */
     Criterion(const std::string &text, const std::string &place);
 
-    /** The number, if it is about one, and whether it meets the criterion.
-     *  Throws UserError if a run that went to its end does not have it. */
+    /** The number, if it is about one, and whether it meets the criterion. A
+     *  run that was stopped meets what happened before. Throws UserError if a
+     *  run that went to its end does not have the number. */
     std::pair<std::optional<double>, bool>
     look(const nlohmann::json &summary) const;
 
@@ -60,9 +61,14 @@ namespace Voussoir
     double                       limit = 0.;
   };
 
-  /** Whether the run ended before its time, by an error or a wrong run. */
+  /** Whether the run was stopped, see RunStopped. */
   bool
-  ended_early(const nlohmann::json &summary);
+  was_stopped(const nlohmann::json &summary);
+
+  /** Whether the run has no result, by a mistake in its file or because its
+   *  results could not be written. */
+  bool
+  has_failed(const nlohmann::json &summary);
 } // namespace Voussoir
 
 #endif

@@ -15,11 +15,13 @@ namespace Voussoir
      * Throws UserError if the step that the case gives is above the limit.
      * Where materials have a memory the damping gets its mesh viscosity.
      *
+     * @param internal_force that of the run, which the damping goes with
      * @param kept step of a checkpoint, which is taken instead [s]
      * @param interval of a record, of which the step becomes a whole part if it
      *   grows shorter by a tenth at most [s]; 0: none
      */
     TimeStep(const Model                 &model,
+             const InternalForce         &internal_force,
              Damping                     &damping,
              const std::optional<double> &kept,
              const double                 interval,

@@ -1,8 +1,8 @@
 #ifndef voussoir_fem_cell_kernel_h
 #define voussoir_fem_cell_kernel_h
 
+#include <voussoir/fem/leap_frog.h>
 #include <voussoir/fem/point_history.h>
-#include <voussoir/fem/stiffness_factors.h>
 
 namespace Voussoir
 {
@@ -19,6 +19,67 @@ namespace Voussoir
   {
     double length;                 // [s]
     double closing_viscosity = 0.; // c of DampedResponse [s]
+    double branches          = 0.; // sum of the D_i of Maxwell damping [1]
+    double relaxation        = 1.; // of the energy of the slowest branch [1]
+  };
+
+
+  /**
+   * What the energy of a damped motion depends on, after the step from the
+   * velocity v- to v+ : the displacement u since the static state, and the
+   * damping memory w that the step had.
+   */
+  struct DampedMotion
+  {
+    const Vector              &displacement;    // [m]
+    const Vector              &velocity;        // v+ [m/s]
+    const Vector              &velocity_before; // v- [m/s]
+    const std::vector<Vector> &memory;          // w_i of the branches [m]
+    const Damping             &damping;
+    const double               time_step; // dt [s]
+  };
+
+
+  /**
+   * Energy of the elastic points, half a step before the displacement [J]. The
+   * step does on branch i, with w_i+ = a w_i + b v+, the work
+   *   dt s w_i^T K (v- + v+)/2 ,
+   * which with the energy E_i = dt s w_i^T K w_i+ / (2 b) of its spring loses
+   * exactly
+   *   dt s (1 - a) w_i^T K (w_i + w_i-) / (2 b) .
+   */
+  struct ElasticEnergy
+  {
+    double strain    = 0.; // u^T K (u - dt v+) / 2
+    double memory    = 0.; // in the springs of the branches
+    double next_loss = 0.; // of the branches in the step that comes
+    double last_loss = 0.; // by viscosity in the step that was
+
+    ElasticEnergy &
+    operator+=(const ElasticEnergy &other)
+    {
+      strain += other.strain;
+      memory += other.memory;
+      next_loss += other.next_loss;
+      last_loss += other.last_loss;
+      return *this;
+    }
+  };
+
+
+  /** Energy of the points that have left the elastic range [J]. */
+  struct InelasticEnergy
+  {
+    double stored  = 0.; // half a step before the displacement
+    double damping = 0.; // of what damping has taken, not lost
+
+    InelasticEnergy &
+    operator+=(const InelasticEnergy &other)
+    {
+      stored += other.stored;
+      damping += other.damping;
+      return *this;
+    }
   };
 
   /**
@@ -37,11 +98,11 @@ namespace Voussoir
      * the damping factor s of this material.
      */
     virtual void
-    add_force(const CellRange        &cells,
-              const StiffnessFactors &factors,
-              Vector                 &force,
-              const Vector           &displacement,
-              const Vector           *damping_memory) const = 0;
+    add_force(const CellRange &cells,
+              const double     stress_factor,
+              Vector          &force,
+              const Vector    &displacement,
+              const Vector    *damping_memory) const = 0;
 
     /** Numbers that each integration point remembers; 0 for a linear law. */
     virtual unsigned int
@@ -56,14 +117,14 @@ namespace Voussoir
      *   contains
      */
     virtual void
-    add_response(const CellRange        &cells,
-                 const StiffnessFactors &factors,
-                 Vector                 &force,
-                 const Vector           &displacement,
-                 const Vector           *damping_memory,
-                 const Vector           &undamped,
-                 PointHistory           &history,
-                 const PointStep        &step) const = 0;
+    add_response(const CellRange &cells,
+                 const double     stress_factor,
+                 Vector          &force,
+                 const Vector    &displacement,
+                 const Vector    *damping_memory,
+                 const Vector    &undamped,
+                 PointHistory    &history,
+                 const PointStep &step) const = 0;
 
     /** Lets the history know the temperature T [K] of each node in the static
      *  state: the strain offset e_0 = - alpha T I. */
@@ -85,27 +146,36 @@ namespace Voussoir
      * see DampedResponse.
      */
     virtual void
-    set_static_state(const CellRange        &cells,
-                     const StiffnessFactors &factors,
-                     PointHistory           &history,
-                     const Vector           &displacement,
-                     const Vector           &temperature) const = 0;
+    set_static_state(const CellRange &cells,
+                     const double     stress_factor,
+                     PointHistory    &history,
+                     const Vector    &displacement,
+                     const Vector    &temperature) const = 0;
+
+    /** Energy of the points that are elastic; by @p history, which comes to
+     *  know their imbalance, null: all. */
+    virtual ElasticEnergy
+    elastic_energy(const CellRange    &cells,
+                   const double        stress_factor,
+                   const DampedMotion &motion,
+                   PointHistory       *history) const = 0;
 
     /**
-     * Energy stored since the static state at the points that have left the
-     * elastic range [J], less what the forces of that state do, half a step
-     * before the displacement.
+     * Energy since the static state of the points that have left the elastic
+     * range, less what the forces of that state do.
      *
+     * @param branches         sum of the D_i of Maxwell damping [1]
      * @param u_static         displacement of the static state, or empty
      * @param history_at_start memory of that state; null if there is none
      */
-    virtual double
-    inelastic_energy(const CellRange        &cells,
-                     const StiffnessFactors &factors,
-                     const PointHistory     &history,
-                     const Vector           &displacement,
-                     const PointHistory     *history_at_start,
-                     const Vector           &u_static) const = 0;
+    virtual InelasticEnergy
+    inelastic_energy(const CellRange    &cells,
+                     const double        stress_factor,
+                     const double        branches,
+                     const PointHistory &history,
+                     const Vector       &displacement,
+                     const PointHistory *history_at_start,
+                     const Vector       &u_static) const = 0;
 
     /**
      * Adds the force that a free expansion needs to be held back [N],
@@ -113,10 +183,10 @@ namespace Voussoir
      * with the temperature T [K] of each node in all three components.
      */
     virtual void
-    add_thermal_force(const CellRange        &cells,
-                      const StiffnessFactors &factors,
-                      Vector                 &force,
-                      const Vector           &temperature) const = 0;
+    add_thermal_force(const CellRange &cells,
+                      const double     stress_factor,
+                      Vector          &force,
+                      const Vector    &temperature) const = 0;
 
     /**
      * Integral of k D epsilon(u) : epsilon(v) over the points that are elastic
@@ -125,11 +195,11 @@ namespace Voussoir
      * @param history memory of the material; null: all of it is elastic
      */
     virtual double
-    work(const CellRange        &cells,
-         const StiffnessFactors &factors,
-         const Vector           &u,
-         const Vector           &v,
-         const PointHistory     *history) const = 0;
+    work(const CellRange    &cells,
+         const double        stress_factor,
+         const Vector       &u,
+         const Vector       &v,
+         const PointHistory *history) const = 0;
 
     /**
      * Largest eigenvalue of M^-1 K of each cell by itself [1/s2].
@@ -139,7 +209,7 @@ namespace Voussoir
      */
     virtual Lanes
     element_eigenvalues(const CellRange                    &batch,
-                        const StiffnessFactors             &factors,
+                        const double                        stress_factor,
                         const dealii::AlignedVector<Lanes> &masses) const = 0;
 
     /** Factor s on the damping memory, relative to the damping model. */

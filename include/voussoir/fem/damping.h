@@ -1,8 +1,6 @@
 #ifndef voussoir_fem_damping_h
 #define voussoir_fem_damping_h
 
-#include <voussoir/fem/stiffness_factors.h>
-
 #include <deal.II/base/parameter_handler.h>
 
 #include <ostream>
@@ -18,7 +16,7 @@ namespace Voussoir
     double                    lowest_frequency  = 1.;
     double                    highest_frequency = 20.;
     unsigned int              branches          = 3;
-    double                    reference         = 3.;
+    std::string               reference         = "first mode";
     double                    mesh_viscosity    = 0.06;
     std::vector<unsigned int> modes;
 
@@ -28,6 +26,14 @@ namespace Voussoir
     /** @p n_modes: how many modes the case computes */
     void
     check(const unsigned int n_modes) const;
+
+    /** Whether the moduli are to hold at the first natural frequency. */
+    bool
+    follows_first_mode() const;
+
+    /** Whether the damping of a case with modes is known only with them. */
+    bool
+    depends_on_modes() const;
   };
 
   /**
@@ -44,9 +50,19 @@ namespace Voussoir
     explicit Damping(const DampingParameters &parameters);
 
     /** Gives Rayleigh damping its ratio at the natural frequencies [Hz] of the
-     *  two modes that the parameters name, if they do. */
+     *  two modes that the parameters name, and Maxwell damping the first one as
+     *  its reference, if the parameters want that. */
     void
     adapt_to_modes(const std::vector<double> &natural_frequencies);
+
+    /** Frequency at which the given moduli hold [Hz]; 0: at rest. */
+    double
+    reference_frequency() const;
+
+    /** What the moduli are in free vibration at a frequency [Hz], over the
+     * given ones, for a material of factor s. */
+    double
+    modulus(const double frequency, const double factor = 1.) const;
 
     /** Mass-proportional coefficient alpha [1/s]. */
     double mass_coefficient = 0.;
@@ -66,6 +82,10 @@ namespace Voussoir
      *  stable step is @p undamped_limit [s]. */
     void
     add_mesh_viscosity(const double undamped_limit);
+
+    /** Sum of the D_i. */
+    double
+    branch_stiffness() const;
 
     /** Vectors of damping memory that a state has. */
     unsigned int
@@ -87,19 +107,20 @@ namespace Voussoir
     modulus_ratio(const double frequency, const double factor = 1.) const;
 
     /** Factor on the stiffness that makes the given moduli hold at the
-     *  reference frequency. */
+     * reference frequency: as storage modulus or, if this is that of a mode, so
+     * that the free vibration in the mode has it. */
     double
     stiffness_scale(const double factor) const;
-
-    /** What the model makes of the moduli of a material of factor s. */
-    StiffnessFactors
-    stiffness_factors(const double factor) const;
 
     /** Prints the achieved damping ratio over the frequency. */
     void
     print(std::ostream &out) const;
 
   private:
+    /** What the Maxwell branches bring to the damping ratio. */
+    double
+    ratio_of_branches(const double frequency, const double factor) const;
+
     void
     fit_maxwell();
 
@@ -107,6 +128,8 @@ namespace Voussoir
     fit_rayleigh(const double first_frequency, const double second_frequency);
 
     DampingParameters parameters;
+    double            reference = 0.;    // [Hz]
+    bool              adapted   = false; // to the first mode
   };
 } // namespace Voussoir
 

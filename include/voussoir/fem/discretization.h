@@ -40,11 +40,20 @@ namespace Voussoir
     relative_cost(const bool has_memory) const;
   };
 
-  /** A face set on which some displacement components are held at zero. */
+  /** A face set on which displacement components are held at zero: all, the one
+   *  at right angles to the face (roller, plane of symmetry), or the two in it
+   *  (plane of antisymmetry). */
   struct Support
   {
+    enum class Held
+    {
+      all,
+      normal,
+      tangential
+    };
+
     std::string set;
-    bool        normal_only; // roller
+    Held        held;
   };
 
   /**

@@ -9,7 +9,7 @@ namespace Voussoir
    * What the loads before the earthquake have done. Displacements in a run are
    * totals, which begin with these; stresses begin with
    *   k D : (epsilon(u) - alpha T I)
-   * for the static factor k of the material (see Material::strain_of_law).
+   * for the static factor k of the material (see Material::elastic_strain).
    */
   struct InitialState
   {
@@ -24,7 +24,12 @@ namespace Voussoir
      *  three components [K]. */
     Vector temperature;
 
-    /** Loads and reactions of the static stage, which stay as they are [N]. */
+    /** What the supports of the static stages bring in them [N]; next to
+     *  nothing where nodes are free. */
+    Vector reaction;
+
+    /** Loads and reactions of the static stage, which stay as they are, as the
+     *  moduli of the run have them [N]; see hand_over. */
     Vector force;
 
     /** Forces of contact in the static state, which are no part of `force` as

@@ -10,7 +10,10 @@ namespace Voussoir
 {
   /**
    * The internal force of all materials, with the moduli of one stage, in one
-   * matrix-free sweep, with vector updates fused into it: the hot loop. It
+   * matrix-free sweep, with vector updates fused into it: the hot loop. A
+   * factor k on the stress of each material makes these moduli: under damping
+   * the given ones hold with it at the reference frequency, in the static state
+   * it is the static factor. It
    * keeps nothing: what points remember is passed to what reads or advances it.
    */
   class InternalForce
@@ -18,19 +21,19 @@ namespace Voussoir
   public:
     /**
      * @param kernels one per material index of the discretization
-     * @param factors of each material
+     * @param factors k of each material
      */
     InternalForce(const Discretization                  &discretization,
                   const std::vector<const CellKernel *> &kernels,
-                  const std::vector<StiffnessFactors>   &factors);
+                  const std::vector<double>             &factors);
 
     /** That of the same materials in another stage. */
     InternalForce
-    with(const std::vector<StiffnessFactors> &other_factors) const;
+    with(const std::vector<double> &other_factors) const;
 
-    /** The factors of a material. */
-    const StiffnessFactors &
-    factors_of(const unsigned int material) const;
+    /** k of a material. */
+    double
+    factor_of(const unsigned int material) const;
 
     /** Whether all materials have the same damping factor, so that u + s w can
      *  be formed once per node instead of once per cell. */
@@ -101,15 +104,18 @@ namespace Voussoir
                      const Vector   &temperature,
                      MaterialMemory &memory) const;
 
-    /** Energy stored in the materials by the motion since the static state @p
-     *  initial [J]; @p moved and @p moved_before are that motion at the last
-     *  two steps. */
-    double
-    stored_energy(const Vector         &displacement,
-                  const MaterialMemory &memory,
-                  const InitialState   &initial,
-                  const Vector         &moved,
-                  const Vector         &moved_before) const;
+    /** Energy of the elastic points in the part of this rank [J], whose
+     *  imbalance the memory comes to know. */
+    ElasticEnergy
+    elastic_energy(const DampedMotion &motion, MaterialMemory &memory) const;
+
+    /** Energy since the static state @p initial of the points that have left
+     *  the elastic range, in the part of this rank [J]. */
+    InelasticEnergy
+    inelastic_energy(const Vector         &displacement,
+                     const MaterialMemory &memory,
+                     const InitialState   &initial,
+                     const Damping        &damping) const;
 
     /** force += what holds back the free expansion at this temperature (in all
      *  three components of each node) [N]. */
@@ -141,16 +147,20 @@ namespace Voussoir
     void
     for_each_history(MaterialMemory &memory, const Work &work) const;
 
-    /** Sum over all ranks of what @p evaluate gives for the runs of batches of
-     *  one material. */
-    double
+    void
+    make_static_strains(MaterialMemory &memory) const;
+
+    /** Sum of what @p evaluate gives for the runs of batches of one material,
+     *  in the part of this rank. */
+    template <typename Sum>
+    Sum
     sum(const std::vector<const Vector *> &read,
-        const std::function<double(const unsigned int, const CellRange &)>
+        const std::function<Sum(const unsigned int, const CellRange &)>
           &evaluate) const;
 
     const Discretization           &discretization;
     std::vector<const CellKernel *> kernels;
-    std::vector<StiffnessFactors>   factors;
+    std::vector<double>             factors;
   };
 } // namespace Voussoir
 

@@ -23,22 +23,35 @@ namespace Voussoir
     SymmetricTensor3<Lanes> seen;        // by the law, e [1]
     SymmetricTensor3<Lanes> plastic;     // e_p [1]
     SymmetricTensor3<Lanes> stress;      // of the law [Pa]
-    Lanes                   share  = 1.; // b [1]
+    SymmetricTensor3<Lanes> filter;      // B w [1]
+    Lanes                   share  = 1.; // r [1]
     Lanes                   impact = 0.; // across a crack that closes [Pa]
+    Lanes                   filter_imbalance = 0.; // of its branches [J/m3]
+
+    /** The stress of the equation of motion [Pa]. */
+    SymmetricTensor3<Lanes>
+    total_stress() const
+    {
+      return stress +
+             impact * dealii::symmetrize(dealii::outer_product(normal, normal));
+    }
   };
 
 
   /** Energy that has been lost at the points since the start, of this rank [J]:
-   *  by the law in cracks and plastic flow, and by cracks that close. */
+   *  by the law in cracks and plastic flow, by cracks that close, and what
+   *  damping has taken, and stores in part, at points beyond the elastic range.
+   */
   struct PointLosses
   {
-    double material = 0., closing = 0.;
+    double material = 0., closing = 0., damping = 0.;
 
     PointLosses &
     operator+=(const PointLosses &other)
     {
       material += other.material;
       closing += other.closing;
+      damping += other.damping;
       return *this;
     }
   };
@@ -170,10 +183,32 @@ namespace Voussoir
     Place
     place_of(const Discretization::Cell &cell) const;
 
+    /** Energy of the Maxwell branches above the least for their sum [J/m3],
+     *  which the energy balance leaves at elastic points for the time when they
+     *  leave the elastic range. */
+    Lanes &
+    imbalance(const unsigned int batch, const unsigned int q)
+    {
+      return imbalances[index(batch, q)];
+    }
+
     /** Width of the crack band of one point of one cell [m]; zero if it is
      *  elastic. */
     double
     band(const Place &place, const unsigned int q) const;
+
+    /** Total stress of one point of one cell at its last step [Pa], if it has
+     *  left the elastic range. */
+    dealii::SymmetricTensor<2, 3>
+    stress(const Place &place, const unsigned int q) const;
+
+    /** Strain e that the law of such a point has seen [1], less the elastic one
+     * of its stress, C^-1 : sigma. */
+    dealii::SymmetricTensor<2, 3>
+    inelastic_strain(const Place       &place,
+                     const unsigned int q,
+                     const double       young_modulus,
+                     const double       poisson_ratio) const;
 
     /** The numbers of one point of one cell. */
     std::vector<double>
@@ -220,6 +255,7 @@ namespace Voussoir
     std::shared_ptr<const Points>  points;
     std::shared_ptr<StaticStrains> static_strains;
     dealii::AlignedVector<Lanes>   numbers;
+    dealii::AlignedVector<Lanes>   imbalances;
 
     // place among the points that have left the elastic range, from one; or 0
     std::vector<unsigned int>          active;

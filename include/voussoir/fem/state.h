@@ -15,7 +15,6 @@ namespace Voussoir
     double work_of_forces      = 0.; // also of the ground on added mass
     double work_of_base        = 0.; // inertia under a moving rigid base
     double work_of_projections = 0.; // contact, prescribed motion
-    double work_on_cells       = 0.; // what they store and lose
     double loss_in_dashpots    = 0.; // of the absorbing boundary
     double loss_by_mass        = 0.; // mass-proportional damping
   };

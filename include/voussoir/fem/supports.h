@@ -8,7 +8,7 @@ namespace Voussoir
   /** The entries of the section "Boundaries" that hold faces. */
   struct SupportParameters
   {
-    std::string fixed, roller;
+    std::string fixed, roller, antisymmetric;
 
     void
     declare(dealii::ParameterHandler &prm);

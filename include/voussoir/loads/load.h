@@ -47,6 +47,14 @@ namespace Voussoir
       return false;
     }
 
+    /** Whether it only makes sense outside of the static stages, because it
+     *  changes with time. */
+    virtual bool
+    over_time() const
+    {
+      return false;
+    }
+
     /** Adds its steady nodal forces, of held nodes too [N]. */
     virtual void
     add_steady_force(Vector &) const

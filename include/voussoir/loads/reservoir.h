@@ -4,7 +4,10 @@
 #include <voussoir/base/log.h>
 #include <voussoir/fem/acoustic_space.h>
 #include <voussoir/fem/nodal_terms.h>
+#include <voussoir/loads/reservoir_end.h>
 #include <voussoir/loads/reservoir_parameters.h>
+
+#include <memory>
 
 namespace Voussoir
 {
@@ -14,7 +17,8 @@ namespace Voussoir
    * I = integral of p dt,
    *   1/(rho c^2) M dp/dt + C p = -1/rho K I - sum A.v ,  dI/dt = p,
    * with the wall's velocity v and the nodal area vectors A out of the water;
-   * C holds the radiating end, 1/(rho c) per area, and the absorbing bottom.
+   * C holds the radiating end, 1/(rho c) per area, and the absorbing bottom;
+   * the end acts on what is not its free field (EndMotion).
    * The solid feels the forces A p. WaterMotion marches it.
    */
   class Reservoir
@@ -60,8 +64,15 @@ namespace Voussoir
     };
     std::vector<WallNode> wall_nodes;
 
+    /** The same for the floor of the water where it meets no solid; it moves
+     *  with a rigid base. */
+    std::vector<WallNode> floor_nodes;
+
     /** Owned unknowns that lose energy. */
     std::vector<unsigned int> lossy_nodes;
+
+    /** The radiating end, or null. */
+    std::unique_ptr<const ReservoirEnd> end;
 
     /** A zero vector whose ghosts are the unknowns that the pairs name. */
     Vector
@@ -88,6 +99,9 @@ namespace Voussoir
   private:
     void
     couple(const Discretization &solid, NodalTerms &terms);
+
+    void
+    find_floor(const std::vector<std::string> &open_sets);
 
     double
     find_stable_step() const;

@@ -23,6 +23,7 @@ namespace Voussoir
     double      sound_speed       = 1440.; // [m/s]
     std::string surface           = "water surface";
     std::string end               = "reservoir end";
+    std::string far_reservoir     = "channel";
     std::string dam               = "upstream face";
     double      bottom_reflection = 1.;
 

@@ -1,9 +1,12 @@
 #ifndef voussoir_loads_water_motion_h
 #define voussoir_loads_water_motion_h
 
+#include <voussoir/loads/end_motion.h>
 #include <voussoir/loads/nodal_load.h>
 #include <voussoir/loads/reservoir.h>
 #include <voussoir/loads/rigid_base.h>
+
+#include <optional>
 
 namespace Voussoir
 {
@@ -15,7 +18,8 @@ namespace Voussoir
    *   I+ = I- + dt p_n
    *   1/(rho c^2) M (p_(n+1) - p_n)/dt + C (p_(n+1) + p_n)/2
    *     = -1/rho K I+ - sum A.v+ ,
-   * with the symbols of Reservoir. The pressure is what the motion adds to the
+   * with the symbols of Reservoir, and at the radiating end with what EndMotion
+   * adds to the flux. The pressure is what the motion adds to the
    * hydrostatic one.
    */
   class WaterMotion : public NodalLoad
@@ -28,12 +32,16 @@ namespace Voussoir
 
     const Reservoir &reservoir;
 
-    /** Pressure p_n [Pa], impulse I_(n-1/2) [Pa s]; a checkpoint holds these
-     *  and the loss. */
+    /** Pressure p_n [Pa], impulse I_(n-1/2) [Pa s]; a checkpoint holds these,
+     *  the motion at the end and the loss. */
     Vector pressure, impulse;
 
-    /** This rank's sums since the start: loss by radiation and at the bottom,
-     *  work on the solid's own motion and on that of a rigid base [J]. */
+    /** What leaves through the radiating end, if there is one. */
+    std::optional<EndMotion> end;
+
+    /** This rank's sums since the start: loss by radiation, of which the free
+     *  field may bring some back, and at the bottom, work on the solid's own
+     * motion and on that of a rigid base [J]. */
     double loss = 0., work_on_solid = 0., work_on_base = 0.;
 
     /** Adds the forces of p_n. */
@@ -65,7 +73,8 @@ namespace Voussoir
   private:
     const RigidBase    &base;
     const double        time_step;
-    std::vector<double> last_wall_pressure, last_lossy_pressure;
+    std::vector<double> last_wall_pressure, last_floor_pressure,
+      last_lossy_pressure, last_end_pressure;
 
     // p <- keep p - push (K I / rho + flux)
     Vector keep, push;

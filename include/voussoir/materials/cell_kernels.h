@@ -111,20 +111,21 @@ namespace Voussoir
     /** CellKernel::add_response. */
     template <typename Law>
     void
-    add_response(const Law              &law,
-                 const CellRange        &cells,
-                 const StiffnessFactors &factors,
-                 Vector                 &force,
-                 const Vector           &displacement,
-                 const Vector           *damping_memory,
-                 const double            damping_factor,
-                 const Vector           &undamped,
-                 PointHistory           &history,
-                 const PointStep        &step)
+    add_response(const Law       &law,
+                 const CellRange &cells,
+                 const double     stress_factor,
+                 Vector          &force,
+                 const Vector    &displacement,
+                 const Vector    *damping_memory,
+                 const double     damping_factor,
+                 const Vector    &undamped,
+                 PointHistory    &history,
+                 const PointStep &step)
     {
-      const DampedResponse<Law> response(law, factors);
-      const double              stress_factor = factors.stress;
-      const auto               &matrix_free   = cells.matrix_free;
+      const DampedResponse<Law> response(law,
+                                         stress_factor,
+                                         damping_factor * step.branches);
+      const auto               &matrix_free = cells.matrix_free;
       const bool                damped =
         damping_memory != nullptr || &undamped != &displacement;
       with_cells(cells, [&](auto &&cell) {
@@ -177,10 +178,8 @@ namespace Voussoir
 
 
     /** CellKernel::set_thermal_strain. */
-    template <typename Law>
-    void
-    set_thermal_strain(const Law &,
-                       const CellRange &cells,
+    inline void
+    set_thermal_strain(const CellRange &cells,
                        const double     expansion,
                        PointHistory    &history,
                        const Vector    &temperature)
@@ -208,7 +207,7 @@ namespace Voussoir
               const double     static_factor,
               PointHistory    &history)
     {
-      const DampedResponse<Law> response(law, {});
+      const DampedResponse<Law> response(law, 1.);
       for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
         for (unsigned int q = 0; q < history.n_points(); ++q)
           if (history.is_active(batch, q))
@@ -219,16 +218,16 @@ namespace Voussoir
     /** CellKernel::set_static_state. */
     template <typename Law>
     void
-    set_static_state(const Law              &law,
-                     const CellRange        &cells,
-                     const StiffnessFactors &factors,
-                     const double            static_factor,
-                     const double            expansion,
-                     PointHistory           &history,
-                     const Vector           &displacement,
-                     const Vector           &temperature)
+    set_static_state(const Law       &law,
+                     const CellRange &cells,
+                     const double     stress_factor,
+                     const double     static_factor,
+                     const double     expansion,
+                     PointHistory    &history,
+                     const Vector    &displacement,
+                     const Vector    &temperature)
     {
-      const DampedResponse<Law> response(law, factors);
+      const DampedResponse<Law> response(law, stress_factor);
       with_cells(cells, [&](auto &&cell) {
         std::decay_t<decltype(cell)> warmth(cells.matrix_free);
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
@@ -252,20 +251,140 @@ namespace Voussoir
     }
 
 
+    /** Zero where the point is not elastic. */
+    inline Lanes
+    where_elastic(const PointHistory *history,
+                  const unsigned int  batch,
+                  const unsigned int  q,
+                  const Lanes        &value)
+    {
+      if (history == nullptr || !history->is_active(batch, q))
+        return value;
+      return dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
+        history->active_point(batch, q).band, Lanes(0.), value, Lanes(0.));
+    }
+
+
+    /** CellKernel::elastic_energy. */
+    template <typename Law>
+    ElasticEnergy
+    elastic_energy(const Law          &law,
+                   const CellRange    &cells,
+                   const double        stress_factor,
+                   const double        damping_factor,
+                   const DampedMotion &motion,
+                   PointHistory       *history)
+    {
+      const auto       &matrix_free = cells.matrix_free;
+      const double      dt          = motion.time_step;
+      const Damping    &damping     = motion.damping;
+      const MaxwellStep maxwell(damping, dt);
+      const double      branches = damping.branch_stiffness();
+      const double      viscosity =
+        damping_factor * damping.stiffness_coefficient + damping.mesh_viscosity;
+      ElasticEnergy total;
+      with_cells(cells, [&](auto &&cell) {
+        std::decay_t<decltype(cell)> moving(matrix_free); // at v+
+        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+          {
+            cell.reinit(batch);
+            moving.reinit(batch);
+            // x^T K x and x^T K v+
+            const auto products = [&](auto &field) {
+              std::array<Lanes, 2> sums{{Lanes(0.), Lanes(0.)}};
+              for (const unsigned int q : cell.quadrature_point_indices())
+                {
+                  const auto  strain = field.get_symmetric_gradient(q);
+                  const auto  stress = stress_factor * law.stress(strain);
+                  const Lanes weight =
+                    where_elastic(history, batch, q, cell.JxW(q));
+                  sums[0] += weight * (stress * strain);
+                  sums[1] +=
+                    weight * (stress * moving.get_symmetric_gradient(q));
+                }
+              if constexpr (is_one_point<decltype(cell)>)
+                {
+                  stabilise(field, law, stress_factor);
+                  sums[0] += field.stabilisation_work(field);
+                  sums[1] += field.stabilisation_work(moving);
+                }
+              return std::array<double, 2>{
+                {sum_of_cells(matrix_free, batch, sums[0]),
+                 sum_of_cells(matrix_free, batch, sums[1])}};
+            };
+            const auto products_of = [&](const Vector &vector) {
+              cell.read_dof_values(vector);
+              cell.evaluate(dealii::EvaluationFlags::gradients);
+              return products(cell);
+            };
+
+            // k/2 s (sum w_i : D : w_i / D_i - w : D : w / sum D_i)
+            std::vector<SymmetricTensor3<Lanes>> filter(
+              history == nullptr ? 0 : cell.quadrature_point_indices().size());
+            const auto add_branch = [&](const unsigned int i) {
+              for (const unsigned int q : cell.quadrature_point_indices())
+                {
+                  const auto  strain = cell.get_symmetric_gradient(q);
+                  const Lanes energy = 0.5 * stress_factor * damping_factor /
+                                       damping.coefficients[i] *
+                                       (law.stress(strain) * strain);
+                  Lanes &imbalance = history->imbalance(batch, q);
+                  imbalance += energy;
+                  filter[q] += strain;
+                }
+            };
+
+            moving.read_dof_values(motion.velocity);
+            moving.evaluate(dealii::EvaluationFlags::gradients);
+            const auto [uu, uv] = products_of(motion.displacement);
+            total.strain += 0.5 * (uu - dt * uv);
+            if (viscosity > 0.)
+              {
+                const auto [bb, bv] = products_of(motion.velocity_before);
+                total.last_loss += 0.5 * dt * viscosity * (bb + bv);
+              }
+            const double vv = maxwell.gain.empty() ? 0. : products(moving)[0];
+            for (unsigned int q = 0; q < filter.size(); ++q)
+              history->imbalance(batch, q) = 0.;
+            for (unsigned int i = 0; i < maxwell.gain.size(); ++i)
+              if (const double a = maxwell.decay[i], b = maxwell.gain[i];
+                  b > 0.)
+                {
+                  const auto [ww, wv] = products_of(motion.memory[i]);
+                  const double factor = damping_factor * dt / (2. * b),
+                               across = a * ww + b * wv, // w_i^T K w_i+
+                    next              = a * across + b * (a * wv + b * vv);
+                  if (history != nullptr)
+                    add_branch(i);
+                  total.memory += factor * across;
+                  total.next_loss += factor * (1. - a) * (next + across);
+                }
+            if (branches > 0.)
+              for (unsigned int q = 0; q < filter.size(); ++q)
+                history->imbalance(batch, q) -=
+                  0.5 * stress_factor * damping_factor / branches *
+                  (law.stress(filter[q]) * filter[q]);
+          }
+      });
+      return total;
+    }
+
+
     /** CellKernel::inelastic_energy. */
     template <typename Law>
-    double
-    inelastic_energy(const Law              &law,
-                     const CellRange        &cells,
-                     const StiffnessFactors &factors,
-                     const PointHistory     &history,
-                     const Vector           &displacement,
-                     const PointHistory     *history_at_start,
-                     const Vector           &u_static)
+    InelasticEnergy
+    inelastic_energy(const Law          &law,
+                     const CellRange    &cells,
+                     const double        stress_factor,
+                     const double        branches,
+                     const PointHistory &history,
+                     const Vector       &displacement,
+                     const PointHistory *history_at_start,
+                     const Vector       &u_static)
     {
-      const DampedResponse<Law> response(law, factors);
+      const DampedResponse<Law> response(law, stress_factor, branches);
       const bool                from_static_state = u_static.size() > 0;
-      double                    total             = 0.;
+      InelasticEnergy           total;
       with_cells(cells, [&](auto &&cell) {
         std::decay_t<decltype(cell)> cell_static(cells.matrix_free);
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
@@ -286,22 +405,25 @@ namespace Voussoir
                 cell_static.gather_evaluate(u_static,
                                             dealii::EvaluationFlags::gradients);
               }
-            Lanes sum = 0.;
+            Lanes stored = 0., of_damping = 0.;
             for (const unsigned int q : points)
               if (history.is_active(batch, q))
                 {
                   SymmetricTensor3<Lanes> static_strain;
                   if (from_static_state)
                     static_strain = cell_static.get_symmetric_gradient(q);
-                  sum += response.stored_energy(cell.get_symmetric_gradient(q),
-                                                static_strain,
-                                                batch,
-                                                q,
-                                                history,
-                                                history_at_start) *
-                         cell.JxW(q);
+                  const auto energy =
+                    response.energy(cell.get_symmetric_gradient(q),
+                                    static_strain,
+                                    batch,
+                                    q,
+                                    history,
+                                    history_at_start);
+                  stored += energy.stored * cell.JxW(q);
+                  of_damping += energy.of_damping * cell.JxW(q);
                 }
-            total += sum_of_cells(cells.matrix_free, batch, sum);
+            total.stored += sum_of_cells(cells.matrix_free, batch, stored);
+            total.damping += sum_of_cells(cells.matrix_free, batch, of_damping);
           }
       });
       return total;
@@ -371,18 +493,10 @@ namespace Voussoir
             Lanes sum = 0.;
             for (const unsigned int q : cell_u.quadrature_point_indices())
               {
-                Lanes part = stress_factor *
-                             law.stress(cell_u.get_symmetric_gradient(q)) *
-                             other->get_symmetric_gradient(q) * cell_u.JxW(q);
-                if (Law::n_history > 0 && history != nullptr &&
-                    history->is_active(batch, q))
-                  part = dealii::compare_and_apply_mask<
-                    dealii::SIMDComparison::equal>(
-                    history->active_point(batch, q).band,
-                    Lanes(0.),
-                    part,
-                    Lanes(0.));
-                sum += part;
+                const Lanes part =
+                  stress_factor * law.stress(cell_u.get_symmetric_gradient(q)) *
+                  other->get_symmetric_gradient(q) * cell_u.JxW(q);
+                sum += where_elastic(history, batch, q, part);
               }
             if constexpr (is_one_point<decltype(cell_u)>)
               {

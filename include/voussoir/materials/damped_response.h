@@ -5,6 +5,8 @@
 #include <voussoir/materials/crack_directions.h>
 #include <voussoir/materials/law.h>
 
+#include <limits>
+
 namespace Voussoir
 {
   /**
@@ -14,24 +16,27 @@ namespace Voussoir
    *   w    damping memory [m]: filters that follow u, times the damping factor,
    *        and the viscosity of what the mesh does not carry
    *   D    elastic stiffness of the law [Pa]
-   *   k    factor on the stress, StiffnessFactors::stress
-   *   m    factor on the strain, StiffnessFactors::strain
+   *   k    factor on the stress that makes the moduli hold at the reference
+   *        frequency
    *   e_0  strain offset [1]: what the static factor and temperature do
    *   e_s  elastic strain of the static state [1], which damping leaves out
    *   e_p  plastic strain of the law [1]
-   *   b    share that damage has left of damping [1]
+   *   r    share that damage has left of the stiffness, before this step [1]
    *
    * the law sees the strain that makes the whole stress of an elastic point,
    *
-   *   e = m B u + e_0 + b [ (k - m) (B u - e_p - e_s) + k B w ] ,
+   *   e = B u + e_0 + (k_r - 1) (B u - e_p - e_s) + r^4 k_r B w ,
+   *   1/k_r = 1 - r + r/k ,
    *
    * so that it fails at its strength at any rate, and the stress is
    *
-   *   sigma(e) - D : (e_0 - (k - m) e_s) + s n n ,
+   *   sigma(e) - D : (e_0 - (k - 1) e_s) + s n n ,
    *
-   * which as long as the law is elastic is k D : B (u + w). In a crack damping
-   * must not pull: b is the fourth power of what damage has left of the
-   * stiffness, before this step.
+   * which as long as the law is elastic, and r = 1, is k D : B (u + w). What
+   * makes k D of D is a spring in series with the law, whose compliance
+   * (1/k - 1) D^-1 damage leaves alone: it gives back what it has stored as a
+   * crack relieves it, and the law takes its own energy, no more or less. In a
+   * crack damping must not pull, hence the power of r.
    *
    * A crack that closes is an impact: the two stiffnesses of a unilateral crack
    * make energy of the oscillations between them, at any time step. While it is
@@ -40,22 +45,41 @@ namespace Voussoir
    *   s = c d(n . D : B u . n)/dt ,
    * never in a crack that stays open.
    *
-   * Central differences integrate the stress by the trapezoidal rule. With the
-   * energy sigma : e_e / 2 of the elastic strain e_e, a step from a to b hence
-   * loses exactly
-   *   (sigma_a : e_e,b - sigma_b : e_e,a)/2 + (sigma_a + sigma_b) : de_p/2 ,
-   * of which the law itself counts its dissipation; the rest is what closing
-   * takes beside s, or makes. The difference of B u and e is damping's.
+   * Central differences integrate the stress by the trapezoidal rule, so that a
+   * step from a to b does three works, each of which has its own account:
+   * - (sigma_a + sigma_b) : de/2 on the law. Of it, with the stored energy
+   *   sigma : e_e / 2 of the elastic strain e_e, it loses exactly
+   *     (sigma_a : e_e,b - sigma_b : e_e,a)/2 + (sigma_a + sigma_b) : de_p/2 .
+   *   What the law itself says that it has lost goes into the balance instead,
+   *   which hence shows a law that tells less or more. Where no internal
+   *   variable has changed the law is elastic and loses nothing: what is left
+   *   then is the error of the rule where cracks open and close, which belongs
+   *   to closing.
+   * - (s_a + s_b) n . B du . n / 2 on the viscosity of closing, all of it lost.
+   * - (sigma_a + sigma_b) : (B du - de)/2 on damping. Of it damping stores,
+   *   with all since the static state,
+   *     (1/k_r - 1) sigma : e_e / 2
+   *     + r^4 [ k (1 + 1/(s sum D_i)) w : D : w / 2 - sigma : w + j ] .
+   *   Here j is the imbalance of the branches, the energy that they store above
+   *   the least one for their sum w, k w : D : w / (2 s sum D_i): with that of
+   *   the last energy balance a point leaves the elastic range, and it relaxes
+   *   like the slowest branch. As long as the law is elastic, this and its own
+   *   energy are those of the springs of an elastic point: nothing jumps where
+   *   it leaves the elastic range.
    */
   template <typename Law>
   class DampedResponse
   {
   public:
-    DampedResponse(const Law &law, const StiffnessFactors &factors)
+    /** @param stress_factor k
+     *  @param branches s sum D_i of Maxwell damping [1]; 0 if there is none, or
+     *   where only static states are asked for */
+    DampedResponse(const Law   &law,
+                   const double stress_factor,
+                   const double branches = 0.)
       : law(law)
-      , k(factors.stress)
-      , m(factors.strain)
-      , difference(k - m)
+      , k(stress_factor)
+      , memory_factor(k + (branches > 0. ? k / branches : 0.))
     {}
 
     /** Strain by which the law's elastic stress is above the stress. */
@@ -65,7 +89,7 @@ namespace Voussoir
                    const PointHistory &history) const
     {
       return history.strain_offset(batch, q) -
-             difference * history.static_strain(batch, q);
+             (k - 1.) * history.static_strain(batch, q);
     }
 
     /**
@@ -102,10 +126,10 @@ namespace Voussoir
         }
       const SymmetricTensor3<Lanes> filter = filtered - own_strain;
       now.strain                           = own_strain;
-      now.seen                             = m * own_strain + offset +
-                 last.share *
-                   (difference * (own_strain - last.plastic - elastic_static) +
-                    k * filter);
+      now.seen                             = own_strain + offset +
+                 (modulus(last.share) - 1.) *
+                   (own_strain - last.plastic - elastic_static) +
+                 modulus(last.share) * fourth_power(last.share) * filter;
 
       find_bands(history.bands(batch), now);
       Lanes     *values = history.values(batch, q);
@@ -113,10 +137,9 @@ namespace Voussoir
         law.respond(now.seen,
                     values,
                     PointSituation<Lanes>{now.band, step.length});
-      const auto square = response.damping_share * response.damping_share;
-      now.share         = square * square;
-      now.plastic       = now.seen - response.elastic_strain;
-      now.stress        = response.stress;
+      now.share   = response.damping_share;
+      now.plastic = now.seen - response.elastic_strain;
+      now.stress  = response.stress;
 
       // the law's numbers stay zero while it is elastic
       Lanes begins = 0.;
@@ -140,20 +163,54 @@ namespace Voussoir
                             now,
                             step);
 
+      now.filter           = filter;
+      now.filter_imbalance = last.filter_imbalance * step.relaxation;
+
       const Lanes lost    = response.dissipation;
-      Lanes       closing = 0.;
+      Lanes       closing = 0., taken_by_damping = 0.;
       if (was_active)
-        closing =
-          0.5 * (last.stress * response.elastic_strain -
-                 now.stress * (last.seen - last.plastic) +
-                 (last.stress + now.stress) * (now.plastic - last.plastic) +
-                 (last.impact + now.impact) *
-                   (now.normal * (change * now.normal))) -
-          lost;
+        {
+          closing = 0.5 * (last.impact + now.impact) *
+                    (now.normal * (change * now.normal));
+          const Lanes largest_energy =
+            std::abs(now.stress * response.elastic_strain) +
+            std::numeric_limits<double>::min();
+          const Lanes switched =
+            0.5 * (last.stress * response.elastic_strain -
+                   now.stress * (last.seen - last.plastic));
+          closing +=
+            dealii::compare_and_apply_mask<dealii::SIMDComparison::less_than>(
+              change_of_memory(last, now) + std::abs(lost) / largest_energy,
+              Lanes(round_off),
+              switched,
+              Lanes(0.));
+          taken_by_damping = 0.5 * ((last.stress + now.stress) *
+                                    (change - (now.seen - last.seen)));
+        }
+      if (any_above(begins, 0.))
+        {
+          // as an elastic point brings it
+          const SymmetricTensor3<Lanes> seen_then = elastic_static + offset;
+          const SymmetricTensor3<Lanes> elastic =
+            k * (own_strain - now.plastic - elastic_static + filter);
+          const Lanes imbalance = history.imbalance(batch, q);
+          now.filter_imbalance =
+            dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
+              begins, Lanes(1.), imbalance, now.filter_imbalance);
+          const Lanes brought =
+            filter_energy(filter, law.stress(elastic), imbalance, Lanes(1.)) +
+            0.5 * (1. / k - 1.) * (law.stress(elastic) * elastic) +
+            law.stress(seen_then) *
+              (own_strain - now.seen - elastic_static + seen_then);
+          taken_by_damping =
+            dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
+              begins, Lanes(1.), brought, taken_by_damping);
+        }
       for (unsigned int lane = 0; lane < n_cells; ++lane)
         if (now.band[lane] > 0.)
           {
             history.losses.material += weight[lane] * lost[lane];
+            history.losses.damping += weight[lane] * taken_by_damping[lane];
             // the first step begins somewhere below the limit
             if (begins[lane] == 0.)
               history.losses.closing += weight[lane] * closing[lane];
@@ -163,7 +220,7 @@ namespace Voussoir
         history.active_point(batch, q) = now;
       else if (any_above(begins, 0.))
         history.activate(batch, q, now);
-      return total(now) - law.stress(of_law_alone);
+      return now.total_stress() - law.stress(of_law_alone);
     }
 
     /**
@@ -205,7 +262,7 @@ namespace Voussoir
 
     /**
      * Sets e_0 and e_s of a point, with the static factor a of an elastic one,
-     *   e_0 = (a - m) B u_s - a alpha T I ,   e_s = B u_s - e_p .
+     *   e_0 = (a - 1) B u_s - a alpha T I ,   e_s = B u_s - e_p .
      *
      * @param strain      B u_s
      * @param temperature T in all components [K]
@@ -221,7 +278,7 @@ namespace Voussoir
                      PointHistory                      &history) const
     {
       auto &offset = history.strain_offset(batch, q);
-      offset       = (static_factor - m) * strain;
+      offset       = (static_factor - 1.) * strain;
       for (unsigned int d = 0; d < 3; ++d)
         offset[d][d] -= static_factor * expansion * temperature[d];
       auto &elastic = history.static_strain(batch, q);
@@ -233,7 +290,7 @@ namespace Voussoir
         {
           auto       &of_point = offset.access_raw_entry(i);
           auto       &seen     = point.seen.access_raw_entry(i);
-          const Lanes own      = m * strain.access_raw_entry(i);
+          const Lanes own      = strain.access_raw_entry(i);
           using Comparison     = dealii::SIMDComparison;
           of_point = dealii::compare_and_apply_mask<Comparison::equal>(
             point.band, Lanes(0.), of_point, seen - own);
@@ -246,33 +303,39 @@ namespace Voussoir
         law.respond(point.seen,
                     copy.data(),
                     PointSituation<Lanes>{band_of(point, history, batch), 0.});
-      point.stress      = response.stress;
-      point.plastic     = point.seen - response.elastic_strain;
-      const auto square = response.damping_share * response.damping_share;
-      point.share       = square * square;
-      point.impact      = 0.;
+      point.stress           = response.stress;
+      point.plastic          = point.seen - response.elastic_strain;
+      point.share            = response.damping_share;
+      point.impact           = 0.;
+      point.filter           = SymmetricTensor3<Lanes>();
+      point.filter_imbalance = 0.;
       elastic -= point.plastic;
     }
 
+    /** Energies of a point [J/m3]; see InelasticEnergy. */
+    struct Energy
+    {
+      Lanes stored, of_damping;
+    };
+
     /**
-     * Energy stored since the static state at a point that has left the elastic
-     * range, less what the forces of that state do, half a step before the
-     * displacement [J/m3]; zero in lanes that are elastic.
+     * Energy since the static state of a point that has left the elastic range,
+     * less what the forces of that state do; zero in lanes that are elastic.
      *
      * @param strain        B u
      * @param static_strain B u_s, or zero
      * @param at_start      memory of that state; null: elastic
      */
-    Lanes
-    stored_energy(const SymmetricTensor3<Lanes> &strain,
-                  const SymmetricTensor3<Lanes> &static_strain,
-                  const unsigned int             batch,
-                  const unsigned int             q,
-                  const PointHistory            &history,
-                  const PointHistory            *at_start) const
+    Energy
+    energy(const SymmetricTensor3<Lanes> &strain,
+           const SymmetricTensor3<Lanes> &static_strain,
+           const unsigned int             batch,
+           const unsigned int             q,
+           const PointHistory            &history,
+           const PointHistory            *at_start) const
     {
       const ActivePoint      &point     = history.active_point(batch, q);
-      SymmetricTensor3<Lanes> seen_then = m * static_strain;
+      SymmetricTensor3<Lanes> seen_then = static_strain;
       if (history.has_static_strains())
         seen_then += history.strain_offset(batch, q);
       SymmetricTensor3<Lanes> elastic_then = seen_then,
@@ -291,25 +354,66 @@ namespace Voussoir
                     then.plastic.access_raw_entry(i)[lane];
                 }
         }
-      // what the law stores over e is over B u as much more as e is less
       const Lanes of_law =
         0.5 * (point.stress * (point.seen - point.plastic)) -
         stress_then * (0.5 * elastic_then + point.seen - seen_then);
-      const Lanes energy =
-        of_law / (m + difference * point.share) +
-        0.5 * ((total(point) - stress_then) * (strain - point.strain));
-      return dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
-        point.band, Lanes(0.), Lanes(0.), energy);
+      const Lanes damping_energy = (1. / modulus(point.share) - 1.) * of_law +
+                                   filter_energy(point.filter,
+                                                 point.stress - stress_then,
+                                                 point.filter_imbalance,
+                                                 point.share);
+      const Lanes stored =
+        of_law + damping_energy +
+        0.5 * ((point.total_stress() - stress_then) * (strain - point.strain));
+      const Lanes of_damping =
+        damping_energy +
+        stress_then * (point.strain - point.seen - static_strain + seen_then);
+      using dealii::compare_and_apply_mask;
+      using Comparison = dealii::SIMDComparison;
+      const Lanes zero = 0.;
+      return {compare_and_apply_mask<Comparison::equal>(
+                point.band, zero, zero, stored),
+              compare_and_apply_mask<Comparison::equal>(
+                point.band, zero, zero, of_damping)};
     }
 
   private:
-    static SymmetricTensor3<Lanes>
-    total(const ActivePoint &point)
+    static Lanes
+    fourth_power(const Lanes &x)
     {
-      return point.stress +
-             point.impact *
-               dealii::symmetrize(
-                 dealii::outer_product(point.normal, point.normal));
+      const Lanes square = x * x;
+      return square * square;
+    }
+
+    /** k_r [1]. */
+    Lanes
+    modulus(const Lanes &share) const
+    {
+      return k / (k + share * (1. - k));
+    }
+
+    /** What the filter w adds to the energy stored [J/m3], at a stress sigma
+     *  since the static state. */
+    Lanes
+    filter_energy(const SymmetricTensor3<Lanes> &filter,
+                  const SymmetricTensor3<Lanes> &stress,
+                  const Lanes                   &imbalance,
+                  const Lanes                   &share) const
+    {
+      return fourth_power(share) *
+             (0.5 * memory_factor * (law.stress(filter) * filter) -
+              stress * filter + imbalance);
+    }
+
+    /** How much damage and plastic strain have changed, over themselves. */
+    static Lanes
+    change_of_memory(const ActivePoint &last, const ActivePoint &now)
+    {
+      const Lanes tiny    = std::numeric_limits<double>::min();
+      const auto  flow    = now.plastic - last.plastic;
+      const Lanes of_flow = (flow * flow) / (now.seen * now.seen + tiny);
+      return std::abs(now.share - last.share) / (last.share + tiny) +
+             std::sqrt(of_flow);
     }
 
     /** Bands, of any normal where the point is elastic. */
@@ -370,8 +474,10 @@ namespace Voussoir
         zero);
     }
 
+    static constexpr double round_off = 1e-9;
+
     const Law   &law;
-    const double k, m, difference;
+    const double k, memory_factor;
   };
 } // namespace Voussoir
 

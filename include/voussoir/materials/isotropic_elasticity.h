@@ -5,6 +5,23 @@
 
 namespace Voussoir
 {
+  /**
+   * What the damage d of the static state, at the modulus a E, becomes at E
+   * where stress and inelastic strain stay: the effective strain is
+   * a (1 - d + d/a) times what it was, and the damage
+   *   d' = (d/a) / (1 - d + d/a) .
+   */
+  struct DamageHandedOver
+  {
+    DamageHandedOver(const double damage, const double static_factor)
+      : damage(damage / static_factor / (1. - damage + damage / static_factor))
+      , strain_factor(static_factor * (1. - damage + damage / static_factor))
+    {}
+
+    double damage, strain_factor;
+  };
+
+
   /** Hooke's law, sigma = lambda tr(epsilon) I + 2 G epsilon: what isotropic
    *  laws begin with. */
   struct IsotropicElasticity : LawDefaults
@@ -58,6 +75,16 @@ namespace Voussoir
       for (unsigned int d = 0; d < 3; ++d)
         result[d][d] -= part;
       return result;
+    }
+
+    /** The strain of the same stress and inelastic strain as this one has in
+     *  the static state. */
+    SymmetricTensor3<double>
+    strain_handed_over(const SymmetricTensor3<double> &strain,
+                       const SymmetricTensor3<double> &stress,
+                       const double                    static_factor) const
+    {
+      return strain + (1. - 1. / static_factor) * this->strain(stress);
     }
   };
 } // namespace Voussoir

@@ -71,9 +71,10 @@ namespace Voussoir
     virtual const Material &
     at_rest() const = 0;
 
-    /** Factors of that material in the static state. */
-    StiffnessFactors
-    static_factors() const;
+    /** Factor on its stress there: the static factor, unless its modulus has
+     *  it already. */
+    double
+    factor_at_rest() const;
 
     /** Elastic stress at a point by itself [Pa]. */
     virtual SymmetricTensor3<double>
@@ -91,14 +92,25 @@ namespace Voussoir
     load_level(const SymmetricTensor3<double> &elastic_stress,
                const double                    element_length) const = 0;
 
+    /** Of as many points as there are lanes. */
+    virtual Lanes
+    load_level(const SymmetricTensor3<Lanes> &elastic_stress,
+               const Lanes                   &element_length) const = 0;
+
     /**
-     * Strain e of the law from the total strain, of which @p initial_strain and
-     * the change of temperature [K] were there before the earthquake.
+     * Strain whose elastic stress D : e is that of the equation of motion,
+     *   e = k (B (u + s w) - e_i) + a (e_i - alpha T I) .
+     *
+     * @param filtered       B (u + s w), see CellKernel::add_force
+     * @param initial_strain e_i, which was there before the earthquake
+     * @param temperature    T, its change before the earthquake [K]
+     * @param stress_factor  k, see InternalForce
      */
     SymmetricTensor3<double>
-    strain_of_law(const SymmetricTensor3<double> &strain,
-                  const SymmetricTensor3<double> &initial_strain,
-                  const double                    temperature) const;
+    elastic_strain(const SymmetricTensor3<double> &filtered,
+                   const SymmetricTensor3<double> &initial_strain,
+                   const double                    temperature,
+                   const double                    stress_factor) const;
 
     /** Whether the law has no directions of its own. */
     virtual bool

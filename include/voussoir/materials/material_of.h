@@ -86,6 +86,16 @@ namespace Voussoir
         return 0.;
     }
 
+    Lanes
+    load_level(const SymmetricTensor3<Lanes> &elastic_stress,
+               const Lanes                   &element_length) const override
+    {
+      if constexpr (Law::n_history > 0)
+        return law.load_level(elastic_stress, element_length);
+      else
+        return 0.;
+    }
+
     std::vector<double>
     outputs(const double *history, const double element_length) const override
     {
@@ -115,15 +125,15 @@ namespace Voussoir
     }
 
     void
-    add_force(const CellRange        &cells,
-              const StiffnessFactors &factors,
-              Vector                 &force,
-              const Vector           &displacement,
-              const Vector           *damping_memory) const override
+    add_force(const CellRange &cells,
+              const double     stress_factor,
+              Vector          &force,
+              const Vector    &displacement,
+              const Vector    *damping_memory) const override
     {
       CellKernels::add_force(law,
                              cells,
-                             factors.stress,
+                             stress_factor,
                              force,
                              displacement,
                              damping_memory,
@@ -133,19 +143,19 @@ namespace Voussoir
     // only laws with memory are asked for the next five
 
     void
-    add_response(const CellRange        &cells,
-                 const StiffnessFactors &factors,
-                 Vector                 &force,
-                 const Vector           &displacement,
-                 const Vector           *damping_memory,
-                 const Vector           &undamped,
-                 PointHistory           &history,
-                 const PointStep        &step) const override
+    add_response(const CellRange &cells,
+                 const double     stress_factor,
+                 Vector          &force,
+                 const Vector    &displacement,
+                 const Vector    *damping_memory,
+                 const Vector    &undamped,
+                 PointHistory    &history,
+                 const PointStep &step) const override
     {
       if constexpr (has_memory)
         CellKernels::add_response(law,
                                   cells,
-                                  factors,
+                                  stress_factor,
                                   force,
                                   displacement,
                                   damping_memory,
@@ -161,8 +171,7 @@ namespace Voussoir
                        const Vector    &temperature) const override
     {
       if constexpr (has_memory)
-        CellKernels::set_thermal_strain(
-          law, cells, expansion, history, temperature);
+        CellKernels::set_thermal_strain(cells, expansion, history, temperature);
     }
 
     void
@@ -174,16 +183,16 @@ namespace Voussoir
     }
 
     void
-    set_static_state(const CellRange        &cells,
-                     const StiffnessFactors &factors,
-                     PointHistory           &history,
-                     const Vector           &displacement,
-                     const Vector           &temperature) const override
+    set_static_state(const CellRange &cells,
+                     const double     stress_factor,
+                     PointHistory    &history,
+                     const Vector    &displacement,
+                     const Vector    &temperature) const override
     {
       if constexpr (has_memory)
         CellKernels::set_static_state(law,
                                       cells,
-                                      factors,
+                                      stress_factor,
                                       static_factor,
                                       expansion,
                                       history,
@@ -191,55 +200,67 @@ namespace Voussoir
                                       temperature);
     }
 
-    double
-    inelastic_energy(const CellRange        &cells,
-                     const StiffnessFactors &factors,
-                     const PointHistory     &history,
-                     const Vector           &displacement,
-                     const PointHistory     *history_at_start,
-                     const Vector           &u_static) const override
+    ElasticEnergy
+    elastic_energy(const CellRange    &cells,
+                   const double        stress_factor,
+                   const DampedMotion &motion,
+                   PointHistory       *history) const override
+    {
+      return CellKernels::elastic_energy(
+        law, cells, stress_factor, damping, motion, history);
+    }
+
+    InelasticEnergy
+    inelastic_energy(const CellRange    &cells,
+                     const double        stress_factor,
+                     const double        branches,
+                     const PointHistory &history,
+                     const Vector       &displacement,
+                     const PointHistory *history_at_start,
+                     const Vector       &u_static) const override
     {
       if constexpr (has_memory)
         return CellKernels::inelastic_energy(law,
                                              cells,
-                                             factors,
+                                             stress_factor,
+                                             damping * branches,
                                              history,
                                              displacement,
                                              history_at_start,
                                              u_static);
       else
-        return 0.;
+        return {};
     }
 
     void
-    add_thermal_force(const CellRange        &cells,
-                      const StiffnessFactors &factors,
-                      Vector                 &force,
-                      const Vector           &temperature) const override
+    add_thermal_force(const CellRange &cells,
+                      const double     stress_factor,
+                      Vector          &force,
+                      const Vector    &temperature) const override
     {
       CellKernels::add_thermal_force(
-        law, cells, factors.stress, expansion, force, temperature);
+        law, cells, stress_factor, expansion, force, temperature);
     }
 
     double
-    work(const CellRange        &cells,
-         const StiffnessFactors &factors,
-         const Vector           &u,
-         const Vector           &v,
-         const PointHistory     *history) const override
+    work(const CellRange    &cells,
+         const double        stress_factor,
+         const Vector       &u,
+         const Vector       &v,
+         const PointHistory *history) const override
     {
-      return CellKernels::work(law, cells, factors.stress, u, v, history);
+      return CellKernels::work(law, cells, stress_factor, u, v, history);
     }
 
     Lanes
     element_eigenvalues(
       const CellRange                    &batch,
-      const StiffnessFactors             &factors,
+      const double                        stress_factor,
       const dealii::AlignedVector<Lanes> &masses) const override
     {
       return CellKernels::element_eigenvalues(law,
                                               batch,
-                                              factors.stress,
+                                              stress_factor,
                                               masses);
     }
 

@@ -51,6 +51,10 @@ namespace Voussoir
     SymmetricTensor3<Number> b    = tensor;
     for (unsigned int d = 0; d < 3; ++d)
       b[d][d] -= mean;
+    // of a pressure to round-off, the deviator is round-off and not traceless
+    const Number rest = (1. / 3.) * trace(b);
+    for (unsigned int d = 0; d < 3; ++d)
+      b[d][d] -= rest;
     const Number radius = std::sqrt(Number((1. / 6.) * (b * b)));
     b *= 1. / std::max(radius, Number(1e-150));
     const Number half   = 0.5 * determinant(b);

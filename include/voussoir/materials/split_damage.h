@@ -43,12 +43,8 @@ namespace Voussoir
         compression.of_static_state(young_modulus, strength_increase);
     }
 
-    /**
-     * Stress and inelastic strain e - C^-1 : sigma stay, and so do the openings
-     * of cracks. With the static factor a, the effective stress of each part is
-     * then 1 - d + d/a times what it was, and its damage
-     *   d' = (d/a) / (1 - d + d/a) .
-     */
+    /** Stress and inelastic strain e - C^-1 : sigma stay, and so do the
+     *  openings of cracks. */
     SymmetricTensor3<double>
     hand_over(const SymmetricTensor3<double> &strain,
               const PointResponse<double>    &response,
@@ -61,11 +57,10 @@ namespace Voussoir
           double *numbers = history + n_of_curve * sign;
           if (numbers[0] == 0.)
             continue;
-          const double d      = damage_of(history, sign),
-                       growth = 1. - d + d / static_factor;
-          CurveMemory memory{};
-          curve(sign).hand_over(d / static_factor / growth,
-                                numbers[2] * static_factor * growth,
+          const DamageHandedOver now(damage_of(history, sign), static_factor);
+          CurveMemory            memory{};
+          curve(sign).hand_over(now.damage,
+                                numbers[2] * now.strain_factor,
                                 element_length,
                                 memory);
           numbers[0] = memory.largest;
@@ -73,7 +68,7 @@ namespace Voussoir
           numbers[2] = memory.last;
           numbers[3] = memory.damage;
         }
-      return strain + (1. - 1. / static_factor) * this->strain(response.stress);
+      return strain_handed_over(strain, response.stress, static_factor);
     }
 
     std::string

@@ -11,7 +11,7 @@ namespace Voussoir
   {
     inline const std::string tension_damage     = "tension damage",
                              compression_damage = "compression damage",
-                             crack_opening      = "crack opening [mm]";
+                             largest_opening    = "largest crack opening [mm]";
   }
 
 

@@ -1,6 +1,7 @@
 #ifndef voussoir_output_energy_h
 #define voussoir_output_energy_h
 
+#include <voussoir/output/observer.h>
 #include <voussoir/output/table.h>
 #include <voussoir/time/central_difference.h>
 
@@ -12,11 +13,10 @@ namespace Voussoir
    * Where the energy is and where it went, all in J and half a step before the
    * time of the state. With kinetic energy v^T M v / 2 of the half step and
    * strain energy u_n^T K u_(n-1) / 2 the balance of the undamped scheme is
-   * exact, not only to the order of the time step: the work on the cells is
-   * summed in every step, and what they have not stored nor lost otherwise is
-   * lost in damping. It must not fall: what does not obey its law makes energy
-   * there. After a static stage u is the displacement since then: what the
-   * static loads do is left out on both sides.
+   * exact, not only to the order of the time step. Every loss is a sum of its
+   * own, none is what is left of the others: what no account explains is the
+   * energy-balance error. After a static stage u is the displacement since
+   * then: what the static loads do is left out on both sides.
    */
   struct EnergyTerms
   {
@@ -36,24 +36,40 @@ namespace Voussoir
       return kinetic + strain + memory;
     }
 
+    double
+    lost() const
+    {
+      return damping + boundary + material + closing;
+    }
+
     /** What is unaccounted for. */
     double
     error(const double initial) const
     {
-      return input + constraints + initial - stored() - damping - material -
-             closing - boundary;
+      return input + constraints + initial - stored() - lost();
     }
   };
 
   /**
    * The energy balance: evaluated at intervals, written to energy.csv, and the
    * alarm when something goes wrong.
+   *
+   * The losses of Maxwell branches and of viscosity in elastic cells are known
+   * exactly for one step, at the price of some products with the stiffness, and
+   * are summed over the steps between two evaluations by the trapezoidal rule:
+   * exactly if the balance is evaluated after every step.
    */
   class EnergyBalance
   {
   public:
-    /** @param equation of the motion; must live as long as this */
-    EnergyBalance(const EquationOfMotion &equation, const double time_step);
+    /**
+     * @param equation  of the motion; must live as long as this
+     * @param time_step [s]
+     * @param interval  between two lines of energy.csv [s]; 0: 50 steps
+     */
+    EnergyBalance(const EquationOfMotion &equation,
+                  const double            time_step,
+                  const double            interval);
 
     /** Writes to energy.csv in this folder from now on. @p restarted: continue
      *  the file of a run that was interrupted at @p start_time [s]. */
@@ -63,15 +79,26 @@ namespace Voussoir
          const bool         restarted,
          Log               &log);
 
-    /** Evaluates the balance at the state. */
+    /** Whether the balance is to be evaluated after a step: at its lines, and
+     *  often enough for the sums of what damping loses. */
+    bool
+    is_due(const unsigned long long step) const;
+
+    /** Keeps the velocity before a step after which the balance is due. */
+    void
+    before_step(const State &state);
+
+    /** Evaluates the balance at the state, and writes its line if it is time
+     *  or this is the @p end of the run. The points of the state come to know
+     *  the imbalance of their branches. */
     const EnergyTerms &
-    evaluate(const State &state);
+    evaluate(State &state, const bool end = false);
 
     const EnergyTerms &
     latest() const;
 
-    /** Energy from nowhere [J]: what no account explains, what damping has
-     * given back, and what cracks made when they closed. */
+    /** Energy-balance error [J]: what no account explains, what damping has
+     *  given back, and what cracks made when they closed. */
     double
     made() const;
 
@@ -85,8 +112,8 @@ namespace Voussoir
     double
     error_of_losses() const;
 
-    /** Why the run must stop: not finite, growing without bound, or more energy
-     *  from nowhere than this share of what came in; else an empty text. */
+    /** Why the run must stop: not finite, growing without bound, or an error
+     *  above this share of what came in; else an empty text. */
     std::string
     alarm(const double limit) const;
 
@@ -101,21 +128,33 @@ namespace Voussoir
     load(const nlohmann::json &saved);
 
   private:
-    /** Energy in the Maxwell branches at points that are elastic [J]. */
+    /** What the elastic cells have lost until now, with what they lose in the
+     *  next step and in the last one [J]. */
     double
-    energy_of_branches(const State &state);
+    loss_in_cells(const unsigned long long step,
+                  const double             next_loss,
+                  const double             last_loss);
 
     const EquationOfMotion equation;
     const double           time_step;
+    const bool             viscous;
+    const unsigned int     most_steps; // from one evaluation to the next
+    const Schedule         lines;
 
     EnergyTerms terms_now;
     double      initial = 0., came_in = 0., largest_error = 0.;
-    double      initial_in_cells = 0., most_damping = 0.; // [J]
-    double      static_work = 0.; // of the loads of the static state [J]
-    bool        first       = true;
+    double      most_damping = 0.; // [J]
+    double      static_work  = 0.; // of the loads of the static state [J]
+    bool        first        = true;
     Vector      moved, moved_before; // at the step and the one before
-    Vector      force_at_rest;       // on the cells beside F_0; empty: none
+    Vector      velocity_before;     // v- of the step after `kept_step`
     TimeTable   table;
+
+    // loss of the elastic cells until an evaluation that was due, and in the
+    // steps beside it; see ElasticEnergy [J]
+    double             known_loss = 0., next_loss = 0., last_loss = 0.;
+    unsigned int       steps_between = 1; // to the next one
+    unsigned long long loss_step = 0, due_step = 0, kept_step = 0;
   };
 } // namespace Voussoir
 

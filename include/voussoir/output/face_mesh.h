@@ -66,9 +66,10 @@ namespace Voussoir
     std::vector<Quadrilateral>
     quadrilaterals() const;
 
-    /** Total stress at each node [Pa]; all ranks must call this together. */
+    /** Stress of the equation of motion at each node [Pa]; all ranks must call
+     * this together. */
     const std::vector<dealii::SymmetricTensor<2, 3>> &
-    stress(const Vector &displacement);
+    stress(const State &state);
 
     /** Numbers of the nodes for a checkpoint, by the name of the set.
      *

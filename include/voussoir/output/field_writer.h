@@ -27,8 +27,8 @@ namespace Voussoir
    * `ResultNames`), and what cells remember, as a mean over their points.
    *
    * @param fields    of the nodes
-   * @param stress_of displacement whose principal stresses are written [MPa];
-   *   null for none
+   * @param stress_of state whose principal stresses are written [MPa], see
+   *   LawStress; null for none
    * @param name      of the file in the output folder, without its ending
    * @param time      [s]
    * @return its name in the output folder; empty if it cannot be written
@@ -36,7 +36,7 @@ namespace Voussoir
   std::string
   write_fields(const ObservedModel           &model,
                const std::vector<NodalField> &fields,
-               const Vector                  *stress_of,
+               const State                   *stress_of,
                const std::string             &name,
                const double                   time,
                const std::vector<CellField>  &cell_fields = {});

@@ -18,10 +18,12 @@ namespace Voussoir
       shear_x,      // resultant, in global directions [N]
       shear_y,
       shear_z,
-      resistance,      // cohesion and friction of what may slip [N]
-      shear_of_points, // of what may slip, sum of sizes [N]
-      locked_area,     // which keys hold [m2]
-      force_x,         // resultant of pressure and shear [N]
+      resistance, // cohesion and friction of what may slip [N]
+      driving_x,  // shear of what may slip, resultant [N]
+      driving_y,
+      driving_z,
+      locked_area, // which keys hold [m2]
+      force_x,     // resultant of pressure and shear [N]
       force_y,
       force_z,
       cohesion, // with the bond [N]

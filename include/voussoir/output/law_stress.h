@@ -7,10 +7,11 @@
 
 namespace Voussoir
 {
-  /** Stress of a material's law at a point of a cell for output, with the
-   *  memory of the nearest integration point, which is left as it is. Where the
-   *  strain of the point is beyond the limit, although none was at the nearest
-   *  one, it is that of a crack which opens there. */
+  /** Stress of the equation of motion at a point of a cell, for output. Where
+   *  the nearest integration point has left the elastic range, it is the one of
+   *  that point, as its law had it in the last step; elsewhere the elastic
+   *  stress there, which a law with memory caps where it is beyond its limit,
+   * as that of a crack which opens there. */
   class LawStress
   {
   public:
@@ -19,14 +20,16 @@ namespace Voussoir
               const Discretization::Cell &cell,
               const dealii::Point<3>     &unit);
 
-    /**
-     * Total stress [Pa] under the total strain, of which @p initial_strain and
-     * the change of temperature [K] were there before the earthquake.
-     */
+    /** Total stress [Pa].
+     *  @param elastic_strain that of Material::elastic_strain */
     dealii::SymmetricTensor<2, 3>
-    operator()(const dealii::SymmetricTensor<2, 3> &strain,
-               const dealii::SymmetricTensor<2, 3> &initial_strain,
-               const double                         temperature) const;
+    operator()(const dealii::SymmetricTensor<2, 3> &elastic_strain) const;
+
+    /** Material::elastic_strain. */
+    dealii::SymmetricTensor<2, 3>
+    elastic_strain(const dealii::SymmetricTensor<2, 3> &filtered,
+                   const dealii::SymmetricTensor<2, 3> &initial_strain,
+                   const double                         temperature) const;
 
     /** Whether it is this one, that of an elastic point. */
     bool
@@ -39,9 +42,22 @@ namespace Voussoir
     const Material &
     law() const;
 
+    /** k of the stress, see InternalForce. */
+    double
+    stress_factor() const;
+
+    /** Whether the nearest integration point has left the elastic range. */
+    bool
+    is_active() const;
+
+    /** Width of the widest crack band of the cell [m]; 0 for an elastic law. */
+    double
+    widest_band() const;
+
   private:
     const Material     *material;
     const PointHistory *history; // or null
+    double              k;
     PointHistory::Place place{0, 0};
     unsigned int        q = 0;
   };
@@ -62,9 +78,14 @@ namespace Voussoir
     set_initial(const SymmetricTensor3<Lanes> &strain,
                 const Lanes                   &temperature);
 
-    /** Total stress [Pa] under the total strain. */
+    /** Total stress [Pa] under the strain B (u + s w), see
+     *  FilteredDisplacement. */
     SymmetricTensor3<Lanes>
-    operator()(const SymmetricTensor3<Lanes> &strain) const;
+    operator()(const SymmetricTensor3<Lanes> &filtered) const;
+
+    /** Damping factors s. */
+    const Lanes &
+    damping_factors() const;
 
   private:
     std::array<std::optional<LawStress>, Lanes::size()> laws;
@@ -72,10 +93,16 @@ namespace Voussoir
     // of the laws where they are isotropic and elastic [Pa]
     Lanes lame_lambda = 0., shear_modulus = 0.;
 
-    // what the strain of the laws is more than the total one
+    Lanes stress_factor = 0., damping_factor = 0.;
+
+    // what their elastic strain is more than k B (u + s w)
     SymmetricTensor3<Lanes> offset;
 
     bool all_are_elastic = true; // under any strain
+
+    // of all lanes if it is the same isotropic one; and their widest bands [m]
+    const Material *common = nullptr;
+    Lanes           bands  = 1.;
   };
 } // namespace Voussoir
 

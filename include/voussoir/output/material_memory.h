@@ -8,17 +8,37 @@
 namespace Voussoir
 {
   /**
-   * What the memories of all materials tell (damage, plastic strain), by name:
-   * the mean of the integration points of each active cell; zero in cells whose
-   * material has no such thing.
+   * What the memories of all materials tell (damage, plastic strain, crack
+   * openings), by name: the mean of the integration points of each active cell;
+   * zero in cells whose material has no such thing.
    */
   std::map<std::string, dealii::Vector<float>>
   memory_of_cells(const ObservedModel &model);
 
-  /** The crack that is widest against its cell. */
+  /** Whether a material tells of the opening of its cracks. */
+  bool
+  tells_of_cracks(const Material &material);
+
+  /** How far the crack of an integration point is open [m]. */
+  struct CrackOpening
+  {
+    double now     = 0.; // band width times the inelastic strain across it
+    double largest = 0.; // ever, as its law remembers it
+  };
+
+  /** Visits the points of this rank's cells that have left the elastic range,
+   * of all materials that tell of cracks, with the width of their band [m]. */
+  void
+  for_each_crack(const ObservedModel                                    &model,
+                 const std::function<void(const Discretization::Cell &,
+                                          const unsigned int  point,
+                                          const double        band,
+                                          const CrackOpening &opening)> &visit);
+
+  /** The crack that is open widest against its cell. */
   struct WidestCrack
   {
-    double opening = 0.; // [m]
+    double opening = 0.; // now [m]
     double share   = 0.; // of the width of the cell across it
   };
 

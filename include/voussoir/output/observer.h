@@ -4,7 +4,8 @@
 #include <voussoir/base/keyed_values.h>
 #include <voussoir/base/log.h>
 #include <voussoir/base/registry.h>
-#include <voussoir/fem/initial_state.h>
+#include <voussoir/fem/damping.h>
+#include <voussoir/fem/internal_force.h>
 #include <voussoir/fem/state.h>
 #include <voussoir/loads/rigid_base.h>
 #include <voussoir/materials/material.h>
@@ -14,7 +15,9 @@
 
 namespace Voussoir
 {
+  class CentralDifference;
   class Contact;
+  class Projection;
   class WaterMotion;
 
   /** What observers may see of a case besides its state. */
@@ -23,6 +26,8 @@ namespace Voussoir
     const Discretization                           &discretization;
     const std::vector<const Material *>            &materials;
     std::function<unsigned int(const Grid::Cell &)> material_of_cell;
+    const InternalForce                            &internal_force;
+    const Damping                                  &damping;
     const MaterialMemory                           &material_memory;
     const InitialState                             &initial;
     const WaterMotion                              *water;   // or null
@@ -32,6 +37,14 @@ namespace Voussoir
     double                                          end_time;  // [s]
     double carried_frequency; // highest that the mesh carries well [Hz]
 
+    /** Between two looks that miss no more than 1.2 % of an extreme of what
+     *  oscillates as fast as the mesh carries [s]: 20 in a period. */
+    double
+    resolving_interval() const
+    {
+      return 0.05 / carried_frequency;
+    }
+
     /** The ground, to which the state is relative where it moves. */
     const RigidBase &base;
 
@@ -39,6 +52,12 @@ namespace Voussoir
 
     /** Takes note of results that cannot be written. */
     Log &log;
+
+    /** Constraints of the case, interfaces not among them. */
+    const std::vector<Projection *> &constraints;
+
+    /** What marches the state; null before there is a run. */
+    const CentralDifference *scheme = nullptr;
   };
 
   /**

@@ -1,6 +1,7 @@
 #ifndef voussoir_output_stress_points_h
 #define voussoir_output_stress_points_h
 
+#include <voussoir/output/filtered_displacement.h>
 #include <voussoir/output/law_stress.h>
 
 namespace Voussoir
@@ -29,9 +30,10 @@ namespace Voussoir
                  const std::vector<unsigned int> &point_of_place,
                  const unsigned int               n_points);
 
-    /** Total stress at each point [Pa]; all ranks must call this together. */
+    /** Stress of the equation of motion at each point [Pa]; all ranks must call
+     *  this together. */
     const std::vector<dealii::SymmetricTensor<2, 3>> &
-    evaluate(const Vector &displacement);
+    evaluate(const State &state);
 
   private:
     /** Of a node, for as many samples as there are lanes, each with a node of
@@ -51,6 +53,8 @@ namespace Voussoir
 
     SymmetricTensor3<Lanes>
     strain(const unsigned int group, const Vector &displacement) const;
+
+    std::unique_ptr<FilteredDisplacement> filtered;
 
     std::vector<Weight>       weights;
     std::vector<Group>        groups;

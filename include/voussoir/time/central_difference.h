@@ -49,9 +49,21 @@ namespace Voussoir
     void
     step(State &state);
 
+    /** What supports and prescribed motions brought at an owned node at the
+     *  beginning of the last step, beyond the static state: besides what
+     *  accelerates the mass of a held node itself, which is not known here
+     *  [N]. */
+    dealii::Tensor<1, 3>
+    support_force(const State &state, const unsigned int node) const;
+
     const double time_step; // [s]
 
   private:
+    /** What a change of velocity of an owned node takes, divided by that [kg];
+     *  zero where held. */
+    dealii::Tensor<2, 3>
+    mass_at(const unsigned int node) const;
+
     void
     tell_projections();
 
@@ -65,13 +77,6 @@ namespace Voussoir
                   const dealii::Tensor<1, 3> &base,
                   const unsigned int          begin,
                   const unsigned int          end);
-
-    /** Half of the work that the force on the cells does on a range of entries
-     *  with this velocity [J]. */
-    double
-    half_work(const State       &state,
-              const unsigned int begin,
-              const unsigned int end) const;
 
     /** Lets the projections correct the motion, and the accounts know it. */
     void
@@ -89,6 +94,7 @@ namespace Voussoir
     const MaxwellStep      maxwell;
     NodalUpdate            nodal_update;
     const double           mass_coefficient, stiffness_coefficient;
+    const PointStep        point_step;
     const bool             uniform; // damping factors
 
     // nodes of the projections, slots of those with nodal terms, and their

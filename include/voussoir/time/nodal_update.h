@@ -26,10 +26,17 @@ namespace Voussoir
                 const double      mass_coefficient,
                 const LeapFrog   &leap_frog);
 
-    /** The inverse of what the update divides by at an owned node [1/kg], zero
-     *  where held, or null if it has no terms. */
+    /** What the update divides by at an owned node [kg], without rows and
+     *  columns where held, or null if it has no terms. */
     std::optional<dealii::Tensor<2, 3>>
-    inverse_at(const unsigned int node) const;
+    mass_at(const unsigned int node) const;
+
+    /** What must act on the held components of a node, besides what the cells
+     *  need, so that they stay as they are in the step that ends with the
+     *  velocity @p next [N]. */
+    dealii::Tensor<1, 3>
+    holding_force(const unsigned int          slot,
+                  const dealii::Tensor<1, 3> &next) const;
 
     /** Keeps what the correction needs of the state before the step.
      *  @param base acceleration of a rigid base, which the added mass feels

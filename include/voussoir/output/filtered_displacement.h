@@ -1,0 +1,66 @@
+#ifndef voussoir_output_filtered_displacement_h
+#define voussoir_output_filtered_displacement_h
+
+#include <voussoir/fem/leap_frog.h>
+#include <voussoir/output/observer.h>
+
+namespace Voussoir
+{
+  /**
+   * What the elastic stress of the equation of motion goes by,
+   *   sigma = k D : B (u + s w) ,
+   * with the displacement u [m], the damping memory w [m] and the damping
+   * factor s of each material, at the time of a state. The branches of w, of
+   * which the state has those of the step before, are carried on to it; the
+   * velocity of stiffness-proportional damping and of the mesh viscosity is
+   * that of the half step before, as in the step.
+   */
+  class FilteredDisplacement
+  {
+  public:
+    /** At all nodes, in vectors of the discretization. */
+    explicit FilteredDisplacement(const ObservedModel &model);
+
+    /** @param needed entries, of whole nodes; other entries are left at zero */
+    FilteredDisplacement(const ObservedModel    &model,
+                         const dealii::IndexSet &needed);
+
+    /** All ranks must call this together. */
+    void
+    update(const State &state);
+
+    /** u, and s w where all materials have the same s; with ghosts. */
+    const Vector &
+    displacement() const;
+
+    /** w with ghosts where they have not; else null. */
+    const Vector *
+    memory() const;
+
+    /** Local number of an entry that is needed. */
+    unsigned int
+    entry(const dealii::types::global_dof_index global) const;
+
+    /** The needed entries of another vector, with ghosts. */
+    Vector
+    entries_of(const Vector &vector) const;
+
+  private:
+    FilteredDisplacement(const ObservedModel &model, Vector &&layout);
+
+    /** Takes in the owned entries of these. */
+    void
+    add_range(const unsigned int begin, const unsigned int end);
+
+    // owned entries that are needed, in parts that stay in the cache
+    std::vector<std::pair<unsigned int, unsigned int>> ranges;
+
+    const Damping    &damping;
+    const MaxwellStep maxwell;
+    const bool        uniform; // damping factors
+    const double      factor;  // s if they are
+    Vector            u, w;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,318 @@
+#include <voussoir/base/mpi.h>
+#include <voussoir/base/parameter_file.h>
+#include <voussoir/constraints/contact.h>
+#include <voussoir/fem/named_sets.h>
+#include <voussoir/fem/nodal_values.h>
+#include <voussoir/output/observer.h>
+#include <voussoir/output/table.h>
+#include <voussoir/time/central_difference.h>
+
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    const std::string place =
+      "\"Face sets\" in section \"Output/support forces\"";
+
+    /**
+     * Forces of supports and prescribed motions on the model, by face set. At a
+     * held node it is what its equation of motion lacks,
+     *   R = M a_base + f(u) - F(t) ,
+     * and what the static stages brought there; at a prescribed node the
+     * impulse of a step over its length.
+     */
+    class SupportForces : public Observer
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter(
+          "Face sets",
+          face_sets,
+          "Faces that a support of section \"Boundaries\" or a prescribed "
+          "motion holds, for each of which support_forces.csv has the force "
+          "that holds it, on the model, x, y, z [MN]; static state, loads and "
+          "inertia of its nodes included. An edge of several sets counts for "
+          "the first of them.");
+        prm.add_parameter("Interval",
+                          interval,
+                          "Time between two lines of support_forces.csv [s].",
+                          Patterns::Double(1e-6));
+      }
+
+      double
+      record_interval() const override
+      {
+        return interval;
+      }
+
+      void
+      check(const ObservedModel &model) const override
+      {
+        nodes_of_sets(model);
+      }
+
+      void
+      prepare(const ObservedModel &model,
+              const double         start_time,
+              const bool           restarted) override
+      {
+        communicator = model.discretization.grid.communicator();
+        schedule     = Schedule(interval, model.time_step);
+        looks        = Schedule(std::min(interval, model.resolving_interval()),
+                         model.time_step);
+        time_step    = model.time_step;
+        scheme       = model.scheme;
+        base         = &model.base;
+        supports.clear();
+        forces.clear();
+        times.clear();
+        has_step                        = false;
+        const auto                nodes = nodes_of_sets(model);
+        const std::vector<double> mass  = driven_mass(model);
+        std::vector<std::string>  columns;
+        for (const auto &[name, list] : nodes)
+          {
+            Support support{name, list, {}, {}};
+            for (const unsigned int node : list)
+              for (unsigned int d = 0; d < 3; ++d)
+                if (is_held(model.discretization, node, d))
+                  {
+                    support.held_mass[d] += mass[node];
+                    if (model.initial.reaction.size() > 0)
+                      support.at_rest[d] +=
+                        model.initial.reaction.local_element(3 * node + d);
+                  }
+            supports.push_back(support);
+            for (unsigned int d = 0; d < 3; ++d)
+              columns.push_back(name + ' ' + "xyz"[d] + " [MN]");
+          }
+        largest.assign(columns.size(), -std::numeric_limits<double>::max());
+        smallest.assign(columns.size(), std::numeric_limits<double>::max());
+        table.open(model.log,
+                   model.folder + "/support_forces.csv",
+                   columns,
+                   model.time_step,
+                   start_time,
+                   restarted);
+      }
+
+      void
+      observe(const State &state) override
+      {
+        // forces belong to the beginning of the step that ends with the state
+        const bool is_first = !has_step;
+        has_step            = true;
+        if (is_first)
+          return;
+        const bool has_line = schedule.due(state.step - 1);
+        if (!has_line && !looks.due(state.step - 1))
+          return;
+        const double       time         = state.time - time_step;
+        const Tensor<1, 3> acceleration = base->acceleration(time);
+        for (const Support &support : supports)
+          {
+            Tensor<1, 3> sum = support.at_rest;
+            for (unsigned int d = 0; d < 3; ++d)
+              sum[d] += support.held_mass[d] * acceleration[d];
+            for (const unsigned int node : support.nodes)
+              sum += scheme->support_force(state, node);
+            for (unsigned int d = 0; d < 3; ++d)
+              forces.push_back(1e-6 * sum[d]);
+          }
+        times.emplace_back(time, has_line);
+        if (times.size() >= 100)
+          flush();
+      }
+
+      void
+      finish(const State &, nlohmann::json &summary) override
+      {
+        flush();
+        if (supports.empty() || largest[0] < smallest[0])
+          return;
+        auto &result = summary["support forces"];
+        for (unsigned int i = 0; i < supports.size(); ++i)
+          for (unsigned int d = 0; d < 3; ++d)
+            {
+              const std::string axis(1, "xyz"[d]);
+              auto             &support             = result[supports[i].name];
+              support["largest " + axis + " [MN]"]  = largest[3 * i + d];
+              support["smallest " + axis + " [MN]"] = smallest[3 * i + d];
+            }
+      }
+
+      nlohmann::json
+      save() override
+      {
+        flush();
+        return {{"largest", largest}, {"smallest", smallest}};
+      }
+
+      void
+      load(const nlohmann::json &saved) override
+      {
+        if (saved.at("largest").size() != largest.size())
+          return;
+        saved.at("largest").get_to(largest);
+        saved.at("smallest").get_to(smallest);
+      }
+
+    private:
+      struct Support
+      {
+        std::string               name;
+        std::vector<unsigned int> nodes;     // of this rank
+        Tensor<1, 3>              at_rest;   // of the static stages [N]
+        Tensor<1, 3>              held_mass; // that a rigid base drives [kg]
+      };
+
+      static bool
+      is_held(const Discretization &discretization,
+              const unsigned int    node,
+              const unsigned int    d)
+      {
+        return discretization.constraints.is_constrained(
+          discretization.owned_dofs.nth_index_in_set(3 * node + d));
+      }
+
+      /** The owned nodes of each set, each node once. */
+      std::vector<std::pair<std::string, std::vector<unsigned int>>>
+      nodes_of_sets(const ObservedModel &model) const
+      {
+        const Discretization &discretization = model.discretization;
+        const MPI_Comm        communicator = discretization.grid.communicator();
+        const auto           &scalar       = discretization.fe.base_element(0);
+        std::set<unsigned int> prescribed, of_interfaces, taken;
+        for (const Projection *constraint : model.constraints)
+          prescribed.insert(constraint->nodes().begin(),
+                            constraint->nodes().end());
+        if (model.contact != nullptr)
+          of_interfaces.insert(model.contact->nodes().begin(),
+                               model.contact->nodes().end());
+        std::vector<std::pair<std::string, std::vector<unsigned int>>> result;
+        const auto sets = split_list(face_sets);
+        if (sets.empty())
+          throw UserError(place + " is empty; name a face set.");
+        for (const std::string &set : sets)
+          {
+            std::set<types::global_dof_index> face_nodes;
+            for_each_face(discretization,
+                          {set},
+                          place,
+                          [&](const auto &cell, const unsigned int face) {
+                            const auto cell_nodes = discretization.cell_nodes(
+                              discretization.dof_cell(cell));
+                            for (unsigned int j = 0; j < cell_nodes.size(); ++j)
+                              if (scalar.has_support_on_face(j, face))
+                                face_nodes.insert(cell_nodes[j]);
+                          });
+            bool                      is_free = false, meets_interface = false;
+            std::vector<unsigned int> nodes;
+            for (const unsigned int node :
+                 owned_carriers(discretization, face_nodes))
+              {
+                is_free = is_free || !(prescribed.count(node) > 0 ||
+                                       is_held(discretization, node, 0) ||
+                                       is_held(discretization, node, 1) ||
+                                       is_held(discretization, node, 2));
+                meets_interface =
+                  meets_interface || of_interfaces.count(node) > 0;
+                if (taken.insert(node).second)
+                  nodes.push_back(node);
+              }
+            if (Utilities::MPI::logical_or(is_free, communicator))
+              throw UserError(
+                place + " names \"" + set +
+                "\", on which neither a support of section "
+                "\"Boundaries\" nor a prescribed motion holds all "
+                "nodes; name faces that are held.");
+            if (Utilities::MPI::logical_or(meets_interface, communicator))
+              throw UserError(place + " names \"" + set +
+                              "\", whose nodes an interface touches, the "
+                              "forces of which cannot be told apart there; "
+                              "name faces away from interfaces.");
+            result.emplace_back(set, nodes);
+          }
+        return result;
+      }
+
+      /** Of each owned node, as if none were held; what a rigid base does not
+       *  move as inertia has none [kg]. */
+      std::vector<double>
+      driven_mass(const ObservedModel &model) const
+      {
+        const Discretization &discretization = model.discretization;
+        std::vector<double>   mass(discretization.n_owned_nodes(), 0.);
+        if (!model.base.moves())
+          return mass;
+        NodalVolumes nodal_volumes(discretization);
+        std::vector<std::pair<types::global_dof_index, double>> records;
+        for (const auto &cell :
+             discretization.dof_handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              const Material &material =
+                *model.materials[model.material_of_cell(cell)];
+              if (material.inertia_factor < 1.)
+                continue;
+              const auto &volumes = nodal_volumes.of(cell);
+              const auto  nodes   = discretization.cell_nodes(cell);
+              for (unsigned int j = 0; j < nodes.size(); ++j)
+                for (const auto &share : discretization.carriers(nodes[j]))
+                  records.emplace_back(share.node,
+                                       share.weight * material.density *
+                                         volumes[j]);
+            }
+        for (const auto &[node, part] : discretization.send_to_owners(records))
+          mass[node] += part;
+        return mass;
+      }
+
+      void
+      flush()
+      {
+        const auto        sums  = sum_over_ranks(forces, communicator);
+        const std::size_t width = largest.size();
+        for (std::size_t i = 0; i < times.size(); ++i)
+          {
+            const std::vector<double> values(sums.begin() + i * width,
+                                             sums.begin() + (i + 1) * width);
+            for (std::size_t k = 0; k < width; ++k)
+              {
+                largest[k]  = std::max(largest[k], values[k]);
+                smallest[k] = std::min(smallest[k], values[k]);
+              }
+            if (times[i].second)
+              table.write(times[i].first, values);
+          }
+        table.flush();
+        forces.clear();
+        times.clear();
+      }
+
+      std::string face_sets;
+      double      interval = 0.01;
+
+      MPI_Comm                 communicator = MPI_COMM_NULL;
+      const CentralDifference *scheme       = nullptr;
+      const RigidBase         *base         = nullptr;
+      Schedule                 schedule, looks; // of lines, of extremes
+      double                   time_step = 0.;  // [s]
+      bool                     has_step  = false;
+      std::vector<Support>     supports;
+      TimeTable                table;
+      std::vector<double>      largest, smallest, forces;
+      std::vector<std::pair<double, bool>> times; // whether of a line
+    };
+
+    const Registry<Observer>::Add<SupportForces>
+      registered("support forces",
+                 "Forces of supports and prescribed motions over time, in "
+                 "support_forces.csv.");
+  } // namespace
+} // namespace Voussoir

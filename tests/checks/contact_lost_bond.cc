@@ -1,0 +1,86 @@
+#include <voussoir/base/text.h>
+
+#include "contact_sums.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * A bar held at both ends, with a bond in its middle, in static stages:
+     * cooled until the bond breaks, warmed until the joint has closed again,
+     * and cooled once more by so little that a whole bond would bear it. By
+     * then the joint is open by L alpha T and bears nothing.
+     */
+    class LostBond : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Laws", laws, "Of the joint.");
+        prm.add_parameter("Length", length, "Of the bar [m].");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto entry = [&](const std::string &name) {
+          return std::stod(file.given("Materials/stone/" + name));
+        };
+        const double expansion = entry("Thermal expansion"),
+                     modulus   = entry("Young's modulus");
+        for (const std::string &law : split_list(laws))
+          {
+            const std::vector<std::string> all{"cold", "warm", "cool"};
+            std::string                    stages;
+            std::vector<std::string> changes{"Interfaces/joint/Law=" + law};
+            for (const std::string &stage : all)
+              changes.push_back("Loads/" + stage + "/Active=false");
+            double change = 0.;
+            for (const std::string &stage : all)
+              {
+                stages += (stages.empty() ? "" : "; ") + stage;
+                changes.push_back("Loads/" + stage + "/Active=true");
+                changes.push_back("Static state/Stages=" + stages);
+                change +=
+                  std::stod(file.given("Loads/" + stage + "/Uniform change"));
+                const auto parameters = make_case(file.with(changes));
+                const auto simulation =
+                  make_simulation(*parameters, communicator);
+                const ContactSums sums = contact_sums(*simulation, 0);
+                const std::string name = law + ", " + stage + ": ";
+                if (change > 0.)
+                  verdicts.near(name + "pressure [MPa]",
+                                1e-6 * sums.pressure / sums.area,
+                                1e-6 * modulus * expansion * change,
+                                0.005);
+                else
+                  {
+                    verdicts.near(name + "opening [mm]",
+                                  1e3 * sums.opening,
+                                  -1e3 * expansion * change * length,
+                                  0.005);
+                    verdicts.below(name + "tension [Pa]",
+                                   sums.pressure / sums.area,
+                                   1.);
+                  }
+              }
+          }
+      }
+
+    private:
+      std::string laws   = "brittle bond";
+      double      length = 1.;
+    };
+
+    // Reference: closed form
+    const Registry<Check>::Add<LostBond>
+      registered("contact lost bond",
+                 "A bond that breaks in a static stage stays broken.");
+  } // namespace
+} // namespace Voussoir

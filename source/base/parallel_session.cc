@@ -9,7 +9,7 @@
 
 namespace Voussoir
 {
-  ParallelSession::ParallelSession(int &argc, char **&argv)
+  ParallelSession::ParallelSession(int &, char **&argv)
   {
 #if defined(__SSE__)
     _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
@@ -21,7 +21,12 @@ namespace Voussoir
     // file in the session's folder, which two programs without mpirun at the
     // same time take from each other, and complains on every file opened then.
     setenv("OMPI_MCA_sharedfp", "^sm", 0);
+    // Libraries get the program's name alone: PETSc would take arguments for
+    // its options and complain that it does not use them.
+    int just_the_name = 1;
     mpi =
-      std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(argc, argv, 1);
+      std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(just_the_name,
+                                                                 argv,
+                                                                 1);
   }
 } // namespace Voussoir

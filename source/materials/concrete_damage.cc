@@ -62,7 +62,7 @@ namespace Voussoir
                           strength_increase,
                           "Factor on strengths and energies under an "
                           "earthquake; codes give 1.2 to 1.3.",
-                          Patterns::Double(0.1, 5.));
+                          Patterns::Double(1., 5.));
         prm.add_parameter("Relaxation time",
                           relaxation_time,
                           "Time that damage lags behind by, which strengthens "

@@ -19,7 +19,7 @@ namespace Voussoir
 
     // ... and no more than the trapezoidal rule needs: the loss of the cells
     // may change by so much of itself, or of this share of what came in.
-    constexpr double largest_change = 0.1, share_that_counts = 0.01;
+    constexpr double largest_change = 0.06, share_that_counts = 0.01;
   } // namespace
 
 

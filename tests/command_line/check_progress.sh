@@ -3,6 +3,7 @@
 # usage: check_progress.sh PROGRAM CASE.prm
 program=$1 case=$2 failed=0
 command -v script >/dev/null || { echo "skipped: there is no script"; exit 77; }
+script -qec true /dev/null >/dev/null 2>&1 || { echo "skipped: no terminal can be made here"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
 export TERM=xterm SHELL=/bin/bash

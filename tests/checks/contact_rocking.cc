@@ -63,7 +63,7 @@ namespace Voussoir
         verdicts.is_true("all ways are there", duration.size() == ways);
 
         const double inertia = (width * width + height * height) / 3.;
-        double       gained = -1.;
+        double       gained  = -1.;
         for (unsigned int i = 0; i < duration.size(); ++i)
           {
             verdicts.near("way " + std::to_string(i + 1) + ": its time [ms]",

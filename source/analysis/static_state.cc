@@ -618,24 +618,27 @@ namespace Voussoir
   }
 
 
-  void
+  double
   hand_over(InitialState        &state,
             const InternalForce &internal_force,
             const NodalTerms    &terms)
   {
     if (state.displacement.size() == 0)
-      return;
+      return 0.;
     internal_force.hand_over(state.material_memory);
     internal_force.set_static_state(state.displacement,
                                     state.temperature,
                                     state.material_memory);
     state.force.reinit(state.displacement);
+    state.material_memory.set_losses({});
     internal_force.respond(state.force,
                            state.displacement,
                            state.material_memory);
+    const double loss = state.material_memory.losses().material;
     state.material_memory.set_losses({});
     terms.add_to(state.force, state.displacement, 0.);
     if (state.contact_force.size() > 0)
       state.force -= state.contact_force;
+    return loss;
   }
 } // namespace Voussoir

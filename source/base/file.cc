@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -23,8 +24,8 @@ namespace Voussoir
     class OpenFile
     {
     public:
-      explicit OpenFile(const std::string &name)
-        : number(::open(name.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666))
+      explicit OpenFile(const std::string &name, const int mode = O_CREAT)
+        : number(::open(name.c_str(), O_WRONLY | O_CLOEXEC | mode, 0666))
       {}
 
       OpenFile(const OpenFile &) = delete;
@@ -94,7 +95,7 @@ namespace Voussoir
         const std::string   &text,
         const std::uintmax_t place)
     {
-      OpenFile file(name);
+      OpenFile file(name, place == 0 ? O_CREAT : 0);
       if (!file.is_open())
         return reason_of(errno);
       if (file.cut(place) && file.write(text, place) && file.close())
@@ -103,6 +104,15 @@ namespace Voussoir
       if (file.is_open())
         file.cut(place);
       return reason;
+    }
+
+
+    /** Of a file in its file system; 0 if there is none. */
+    std::uint64_t
+    serial_number_of(const std::string &name)
+    {
+      struct stat now;
+      return ::stat(name.c_str(), &now) == 0 ? now.st_ino : 0;
     }
 
 
@@ -137,7 +147,8 @@ namespace Voussoir
     make_room(const std::string &name, const std::uintmax_t size)
     {
       std::error_code problem;
-      fs::create_directories(fs::absolute(name).parent_path(), problem);
+      // one folder and not those above it, which are there or were removed
+      fs::create_directory(fs::absolute(name).parent_path(), problem);
       if (problem)
         return reason_of(problem.value());
       OpenFile file(name);
@@ -271,8 +282,9 @@ namespace Voussoir
   void
   GrowingFile::open(const std::string &name, const std::uintmax_t keep)
   {
-    file_name = name;
-    written   = keep;
+    file_name     = name;
+    written       = keep;
+    serial_number = keep > 0 ? serial_number_of(name) : 0;
   }
 
 
@@ -280,6 +292,13 @@ namespace Voussoir
   GrowingFile::name() const
   {
     return file_name;
+  }
+
+
+  std::uintmax_t
+  GrowingFile::size() const
+  {
+    return written;
   }
 
 
@@ -293,13 +312,37 @@ namespace Voussoir
   std::string
   GrowingFile::flush()
   {
+    if (written == 0 && waiting.empty())
+      return ""; // there is no file yet
+    if (const std::string reason = loss(); !reason.empty())
+      return reason;
     const std::string reason = put(file_name, waiting, written);
     if (reason.empty())
       {
         written += waiting.size();
         waiting.clear();
+        serial_number = serial_number_of(file_name);
       }
     return reason;
+  }
+
+
+  std::string
+  GrowingFile::loss() const
+  {
+    struct stat now;
+    if (written == 0)
+      return "";
+    if (::stat(file_name.c_str(), &now) != 0)
+      return errno == ENOENT || errno == ENOTDIR ? removed_meanwhile :
+                                                   reason_of(errno);
+    if (!S_ISREG(now.st_mode)) // devices keep nothing
+      return "";
+    if (now.st_ino != serial_number)
+      return "another file was put in its place while the run went on";
+    if (static_cast<std::uintmax_t>(now.st_size) < written)
+      return "it was cut off while the run went on";
+    return "";
   }
 
 

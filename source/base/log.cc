@@ -15,6 +15,9 @@ namespace Voussoir
     using namespace std::chrono_literals;
     constexpr auto bar_interval = 200ms, line_interval = 5000ms;
 
+    const char *const waits_in_memory =
+      "; what it lacks waits in memory until that is possible";
+
     /** Whether what is said comes to a terminal that can overwrite a line. */
     bool
     is_watched()
@@ -55,6 +58,8 @@ namespace Voussoir
   Log::open(const std::string &filename, const bool append)
   {
     missing.clear();
+    sizes.clear();
+    growing.clear();
     if (!speaks)
       return;
     std::error_code none;
@@ -163,8 +168,76 @@ namespace Voussoir
         missing[file] = reason;
         warn('"', file, "\" cannot be written because ", reason, remark);
       }
-    else if (missing.erase(file) > 0)
-      line("All of \"", file, "\" is written now.");
+    else
+      {
+        std::error_code none;
+        if (std::filesystem::is_regular_file(file, none))
+          sizes[file] = std::filesystem::file_size(file, none);
+        if (missing.erase(file) > 0)
+          line("All of \"", file, "\" is written now.");
+      }
+  }
+
+
+  std::shared_ptr<GrowingFile>
+  Log::grow(const std::string &filename, const std::uintmax_t keep)
+  {
+    auto result = std::make_shared<GrowingFile>();
+    if (!speaks)
+      return result;
+    result->open(filename, keep);
+    growing.push_back(result);
+    return result;
+  }
+
+
+  bool
+  Log::write_growing_files()
+  {
+    bool all_written = true;
+    for (const auto &one : growing)
+      if (const auto grown = one.lock())
+        {
+          write(*grown);
+          all_written = all_written && !grown->has_waiting();
+        }
+    return dealii::Utilities::MPI::broadcast(mpi_communicator, all_written);
+  }
+
+
+  void
+  Log::write(GrowingFile &grown)
+  {
+    if (speaks)
+      attempted(grown.name(), grown.flush(), waits_in_memory);
+  }
+
+
+  std::map<std::string, std::uint64_t>
+  Log::sizes_of_growing_files() const
+  {
+    std::map<std::string, std::uint64_t> result;
+    for (const auto &one : growing)
+      if (const auto grown = one.lock())
+        result[grown->name()] = grown->size();
+    return dealii::Utilities::MPI::broadcast(mpi_communicator, result);
+  }
+
+
+  void
+  Log::look_for_lost_files()
+  {
+    const auto written = sizes; // warnings change that of log.txt
+    for (const auto &[file, size] : written)
+      {
+        std::error_code problem;
+        const auto      now = std::filesystem::file_size(file, problem);
+        if (missing.count(file) == 0 &&
+            (problem || (now != size && file != this->file.name())))
+          attempted(file,
+                    problem ? removed_meanwhile :
+                              "it was changed while the run went on");
+      }
   }
 
 

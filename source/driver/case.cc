@@ -32,6 +32,11 @@ namespace Voussoir
     void
     check_names(const std::vector<std::string> &names, const std::string &place)
     {
+      constexpr std::size_t most_names = 1000;
+      if (names.size() > most_names)
+        throw UserError(place + " lists " + std::to_string(names.size()) +
+                        " names; at most " + std::to_string(most_names) +
+                        " are taken.");
       for (auto name = names.begin(); name != names.end(); ++name)
         {
           if (std::find(names.begin(), name, *name) != name)

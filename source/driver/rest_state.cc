@@ -36,10 +36,21 @@ namespace Voussoir
   RestState
   handed_over(RestState          &&found,
               const Model         &model,
-              const InternalForce &internal_force)
+              const InternalForce &internal_force,
+              Log                 &log)
   {
-    RestState rest(std::move(found));
-    hand_over(rest.initial, internal_force, model.terms);
+    RestState    rest(std::move(found));
+    const double dissipated = dealii::Utilities::MPI::sum(
+      hand_over(rest.initial, internal_force, model.terms), log.communicator());
+    double at_rest = 0.;
+    if (rest.summary.contains("stages"))
+      at_rest = rest.summary["stages"].back().at("dissipated by materials [J]");
+    if (dissipated > 0.01 * std::max(at_rest, 1.))
+      log.warn("as the earthquake begins, materials dissipate ",
+               dissipated,
+               " J at once, beside ",
+               at_rest,
+               " J in the static state: their laws do not bear its stress");
     return rest;
   }
 

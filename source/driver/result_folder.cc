@@ -228,6 +228,7 @@ namespace Voussoir
     on_first_rank(log.communicator(), [&] { check_writable(chosen); });
     header = read_state_header(from, log.communicator());
     check_identity(parameters, header.at("identity"), from);
+    on_first_rank(log.communicator(), [&] { check_sizes(); });
     const double reached = header.at("time");
     if (reached < parameters.time.end_time)
       return;
@@ -236,6 +237,24 @@ namespace Voussoir
          << " s, but \"End time\" in section \"Time\" is "
          << parameters.time.end_time << " s; set a later one.";
     throw UserError(text.str());
+  }
+
+
+  void
+  ResultFolder::check_sizes() const
+  {
+    for (const auto &[name, size] : header.at("sizes of files").items())
+      {
+        const std::string file = chosen + "/" + name;
+        std::error_code   problem;
+        const auto        now = fs::file_size(file, problem);
+        if (problem || now < size.get<std::uintmax_t>())
+          throw UserError(
+            "The file \"" + file + "\" " +
+            (problem ? "is missing" : "has been cut off") +
+            " since the checkpoint \"" + from +
+            "\" was written; put it back, or start the case afresh.");
+      }
   }
 
 
@@ -278,6 +297,7 @@ namespace Voussoir
     claimed = true;
     log.line("Results go to ", chosen);
     log.open(chosen + "/log.txt", options.restart);
+    log.attempted(chosen + "/parameters.prm", "");
   }
 
 

@@ -101,6 +101,16 @@ namespace Voussoir
   }
 
 
+  nlohmann::json
+  Run::sizes_of_files() const
+  {
+    nlohmann::json sizes = nlohmann::json::object();
+    for (const auto &[name, size] : log.sizes_of_growing_files())
+      sizes[name.substr(folder.path().size() + 1)] = size;
+    return sizes;
+  }
+
+
   bool
   Run::write_checkpoint()
   {
@@ -122,6 +132,9 @@ namespace Voussoir
       Utilities::MPI::all_gather(log.communicator(), sums);
     try
       {
+        // a run that goes on from here does not write their lines again
+        if (!log.write_growing_files())
+          throw UserError("some of the results cannot be written.");
         checkpoint.write(state.step,
                          {{"version", version()},
                           {"identity", identity_of(model.parameters)},
@@ -133,6 +146,7 @@ namespace Voussoir
                           {"energy", energy.save()},
                           {"contact",
                            contact ? contact->save() : nlohmann::json()},
+                          {"sizes of files", sizes_of_files()},
                           {"warnings", log.warnings()}},
                          content);
       }

@@ -217,6 +217,8 @@ namespace Voussoir
         TimerOutput::Scope scope(timer, "output");
         for (const auto &observer : model.parameters.observers)
           observer.second->finish(state, result);
+        log.write_growing_files();
+        log.look_for_lost_files();
         write_summary(folder.path(),
                       result,
                       log.warnings().empty() ? "no objection" :

@@ -213,7 +213,7 @@ namespace Voussoir
                                rest_of(*checked, folder, log))
     , modes(options.validate ? Modes() : modes_of(model, found, folder, log))
     , setup(adapted_setup(std::move(checked), modes, folder, log))
-    , rest(handed_over(std::move(found), model, setup->internal_force))
+    , rest(handed_over(std::move(found), model, setup->internal_force, log))
     , run(rest, modes, folder, std::move(setup), log)
   {}
 

@@ -40,9 +40,12 @@ namespace Voussoir
     std::vector<Line>
     read_lines(const std::string &file)
     {
-      std::ifstream   stream(file);
+      // a pipe would be waited for
       std::error_code error;
-      if (!std::filesystem::is_regular_file(file, error) || !stream)
+      std::ifstream   stream;
+      if (std::filesystem::is_regular_file(file, error))
+        stream.open(file);
+      if (!stream.is_open())
         refuse(file,
                "there is no such file to read; give its path relative to the "
                "folder of the parameter file, or absolute");

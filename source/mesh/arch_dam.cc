@@ -43,7 +43,7 @@ namespace Voussoir
                           "Number of contraction joints, at equal distances "
                           "along the crest; beside a wedge those of its bank "
                           "move a little.",
-                          Patterns::Integer(0));
+                          Patterns::Integer(0, 99));
         prm.add_parameter("Cell size",
                           cell_size,
                           "Length of the dam's cells along the crest [m]; "
@@ -53,7 +53,7 @@ namespace Voussoir
                           n_thickness,
                           "Number of cells from the downstream to the upstream "
                           "face.",
-                          Patterns::Integer(1));
+                          Patterns::Integer(1, 200));
         prm.add_parameter("Rock extent",
                           rock_extent,
                           "Rock below and on all sides of the dam over its "

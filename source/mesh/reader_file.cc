@@ -20,9 +20,12 @@ namespace Voussoir
   MeshFile::MeshFile(const std::string &filename)
     : name(filename)
   {
+    // a pipe would be waited for
     std::error_code error;
-    std::ifstream   in(filename, std::ios::binary);
+    std::ifstream   in;
     if (std::filesystem::is_regular_file(filename, error))
+      in.open(filename, std::ios::binary);
+    if (in.is_open())
       content.assign(std::istreambuf_iterator<char>(in), {});
     if (!in || content.empty())
       throw UserError("The mesh file \"" + filename +

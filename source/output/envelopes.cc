@@ -419,10 +419,13 @@ namespace Voussoir
       {
         prm.add_parameter("Interval",
                           interval,
-                          "Time between two looks at the motion [s]; the "
-                          "acceleration is the mean over it, which leaves out "
-                          "what is above 0.44 over this time, and that of "
-                          "single steps at the looks.",
+                          "Time over which the mean acceleration is taken, "
+                          "which leaves out what is above 0.44 over it, and "
+                          "between two looks at that of a single step [s]. At "
+                          "displacement and velocity a look is taken each "
+                          "twentieth of the shortest period that the mesh "
+                          "carries with eight nodes per wavelength, if that is "
+                          "shorter.",
                           Patterns::Double(1e-6));
         prm.add_parameter("Stress",
                           wants_stress,
@@ -456,6 +459,7 @@ namespace Voussoir
       {
         model    = std::make_unique<ObservedModel>(observed);
         schedule = Schedule(interval, model->time_step);
+        looks = Schedule(model->looking_interval(interval), model->time_step);
         // the three components of a node hold three numbers each
         largest       = model->discretization.create_vector();
         accelerations = previous = last_look = largest;
@@ -471,14 +475,21 @@ namespace Voussoir
                                    steps_per_look * stress->share_of_cells() *
                                      model->time_step);
             stress_schedule = Schedule(looked_at, model->time_step);
+            if (stress_interval > 0.)
+              model->warn_of_coarse_looks(
+                stress_interval,
+                "\"Stress interval\" in section \"Output/envelopes\"");
           }
       }
 
       void
       observe(const State &state) override
       {
-        if (state.step > last_step && schedule.due(state.step))
-          update(state);
+        const bool has_mean = schedule.due(state.step);
+        if (state.step > last_step && (has_mean || looks.due(state.step)))
+          look_at_motion(state);
+        if (state.step > last_step && has_mean)
+          look_at_acceleration(state);
         // the acceleration needs the velocity of two steps in a row
         if (schedule.due(state.step + 1))
           previous = state.velocity;
@@ -590,13 +601,30 @@ namespace Voussoir
           }
       }
 
+      static double
+      norm(const double *x)
+      {
+        return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+      }
+
       void
-      update(const State &state)
+      look_at_motion(const State &state)
+      {
+        for (unsigned int i = 0; i < largest.locally_owned_size(); i += 3)
+          {
+            const double displacement = norm(state.displacement.begin() + i);
+            double      *m            = largest.begin() + i;
+            if (displacement > m[0])
+              accelerations.begin()[i + 1] = state.time;
+            m[0] = std::max(m[0], displacement);
+            m[1] = std::max(m[1], norm(state.velocity.begin() + i));
+          }
+      }
+
+      void
+      look_at_acceleration(const State &state)
       {
         const double looked = (state.step - last_step) * model->time_step;
-        const auto   norm   = [](const double *x) {
-          return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-        };
         for (unsigned int i = 0; i < largest.locally_owned_size(); i += 3)
           {
             const double *v    = state.velocity.begin() + i;
@@ -606,15 +634,10 @@ namespace Voussoir
                                      v[2] - before[2]};
               return norm(change) / time;
             };
-            const double displacement = norm(state.displacement.begin() + i),
-                         acceleration = mean(last_look.begin() + i, looked);
+            const double acceleration = mean(last_look.begin() + i, looked);
             double *m = largest.begin() + i, *a = accelerations.begin() + i;
-            if (displacement > m[0])
-              a[1] = state.time;
             if (acceleration > m[2])
               a[2] = state.time;
-            m[0] = std::max(m[0], displacement);
-            m[1] = std::max(m[1], norm(v));
             m[2] = std::max(m[2], acceleration);
             a[0] = std::max(a[0], mean(previous.begin() + i, model->time_step));
           }
@@ -630,7 +653,7 @@ namespace Voussoir
       std::string stress_sets;
 
       std::unique_ptr<ObservedModel> model;
-      Schedule                       schedule, stress_schedule;
+      Schedule                       schedule, looks, stress_schedule;
       Vector                         largest, accelerations;
       Vector previous, last_look; // velocities of a step and of a look before
       unsigned long long              last_step = 0;  // of that look

@@ -53,6 +53,10 @@ namespace Voussoir
         schedule = Schedule(envelope_interval > 0. ? envelope_interval :
                                                      model.resolving_interval(),
                             model.time_step);
+        if (envelope_interval > 0.)
+          model.warn_of_coarse_looks(
+            envelope_interval,
+            "\"Envelope interval\" in section \"Output/face stresses\"");
         mesh = make_mesh(model);
         directions.clear();
         envelopes.assign(n_values * mesh->n_nodes(), 0.);

@@ -59,7 +59,8 @@ namespace Voussoir
                           Patterns::Double(0.));
         prm.add_parameter("Interval",
                           interval,
-                          "Time between two lines [s].",
+                          "Time between two lines [s]; the largest amounts in "
+                          "summary.json are those of all steps.",
                           Patterns::Double(1e-6));
       }
 
@@ -83,7 +84,8 @@ namespace Voussoir
       {
         filtered_at =
           filter_frequency > 0. ? filter_frequency : model.carried_frequency;
-        recorder.prepare(model, interval, 0.443 / filtered_at);
+        schedule = Schedule(interval, model.time_step);
+        recorder.prepare(model, 0., 0.443 / filtered_at);
         largest.assign(recorder.points().size(), {});
         for (unsigned int k = n_recorded; k < n_quantities; ++k)
           {
@@ -219,7 +221,8 @@ namespace Voussoir
                     if (wanted(k))
                       values.push_back(motion[k][d]);
               }
-            table.write(line.time, values);
+            if (schedule.due(line.step))
+              table.write(line.time, values);
           }
         table.flush();
       }
@@ -229,6 +232,7 @@ namespace Voussoir
       double interval = 0.01, filter_frequency = 0.;
 
       PointRecorder recorder{"Output/histories", "Relative to"};
+      Schedule      schedule; // of lines
       TimeTable     table;
 
       double filtered_at = 0.; // [Hz]

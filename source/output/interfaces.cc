@@ -43,11 +43,11 @@ namespace Voussoir
           "other planes block its way.");
         prm.add_parameter("Interval",
                           interval,
-                          "Time between two lines of interfaces.csv, and two "
-                          "looks for the sliding safety of each surface [s], "
-                          "(c A + f N) / T: what friction and cohesion could "
-                          "bear over the resultant of the shear, both where "
-                          "no keys hold.",
+                          "Time between two lines of interfaces.csv [s]. In it "
+                          "the sliding safety of a surface is (c A + f N) / T, "
+                          "what friction and cohesion could bear over the "
+                          "resultant of the shear, both where no keys hold. "
+                          "Extremes in summary.json are those of all steps.",
                           Patterns::Double(1e-6));
       }
 
@@ -110,23 +110,19 @@ namespace Voussoir
       void
       observe(const State &state) override
       {
-        for (unsigned int k = 0; k < extremes.size(); ++k)
-          {
-            const ContactPoint &point = contact->points()[k];
-            extremes[k][0] = std::max(extremes[k][0], opening_of(point));
-            extremes[k][1] = std::max(extremes[k][1], slip_of(point));
-          }
-        if (!schedule.due(state.step))
-          return;
         const std::size_t   n_surfaces = areas.size();
         std::vector<double> sum(n_quantities * n_surfaces),
           largest(2 * n_surfaces);
-        for (const ContactPoint &point : contact->points())
+        for (unsigned int k = 0; k < extremes.size(); ++k)
           {
+            const ContactPoint &point = contact->points()[k];
+            const double opening = opening_of(point), slip = slip_of(point);
+            extremes[k][0] = std::max(extremes[k][0], opening);
+            extremes[k][1] = std::max(extremes[k][1], slip);
             add_to_sums(point, &sum[n_quantities * point.surface]);
             double *now = &largest[2 * point.surface];
-            now[0]      = std::max(now[0], opening_of(point));
-            now[1]      = std::max(now[1], slip_of(point));
+            now[0]      = std::max(now[0], opening);
+            now[1]      = std::max(now[1], slip);
           }
         for (const NearestContactPoint &point : points)
           for (unsigned int d = 0; d < 3; ++d)
@@ -134,7 +130,7 @@ namespace Voussoir
               point.is_mine ? contact->points()[point.number].gap[d] : 0.);
         sums.insert(sums.end(), sum.begin(), sum.end());
         largest_now.insert(largest_now.end(), largest.begin(), largest.end());
-        times.push_back(state.time);
+        times.emplace_back(state.time, schedule.due(state.step));
         if (times.size() >= 100)
           flush();
       }
@@ -243,8 +239,9 @@ namespace Voussoir
         Utilities::MPI::max(largest_now, communicator, largest_now);
         for (std::size_t i = 0; i < times.size(); ++i)
           {
-            const double *sums_now = &all_sums[width * i];
-            const double  interval = std::max(0., times[i] - last_look);
+            const auto &[time, has_line] = times[i];
+            const double *sums_now       = &all_sums[width * i];
+            const double  interval       = std::max(0., time - last_look);
 
             std::vector<double> line;
             for (unsigned int s = 0; s < areas.size(); ++s)
@@ -265,10 +262,11 @@ namespace Voussoir
             for (unsigned int b = 0; b < blocks.size(); ++b)
               {
                 line.push_back(safety_from_sums(blocks[b], sums_now, areas));
-                safety_of_blocks[b].add(times[i], interval, line.back());
+                safety_of_blocks[b].add(time, interval, line.back());
               }
-            last_look = std::max(last_look, times[i]);
-            table.write(times[i], line);
+            last_look = std::max(last_look, time);
+            if (has_line)
+              table.write(time, line);
           }
         table.flush();
         sums.clear();
@@ -356,7 +354,8 @@ namespace Voussoir
       TimeTable                        table;
 
       // looks that are not written yet
-      std::vector<double> sums, largest_now, times;
+      std::vector<double>                  sums, largest_now;
+      std::vector<std::pair<double, bool>> times; // with a line
 
       std::vector<InterfaceExtremes> extremes; // of each point, over all steps
 

@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/output/picture_series.h>
+#include <voussoir/output/table.h>
 
 #include <deal.II/base/data_out_base.h>
 
@@ -57,14 +58,18 @@ namespace Voussoir
     time_step = model.time_step;
     log       = &model.log;
     pictures.clear();
-    if (!restarted)
-      return;
-    std::ifstream list(folder + "/" + name + ".txt");
-    double        time;
-    std::string   file;
-    while (list >> time >> file)
-      if (time < start_time - 0.5 * time_step)
-        pictures.emplace_back(time, file);
+    const std::string list_file = folder + "/" + name + ".txt";
+    const double      before    = start_time - 0.5 * time_step;
+    if (restarted)
+      {
+        std::ifstream in(list_file);
+        double        time;
+        std::string   file;
+        while (in >> time >> file)
+          if (time < before)
+            pictures.emplace_back(time, file);
+      }
+    list = log->grow(list_file, restarted ? size_before(list_file, before) : 0);
   }
 
 
@@ -97,14 +102,13 @@ namespace Voussoir
     pictures.emplace_back(time, file);
     if (Utilities::MPI::this_mpi_process(log->communicator()) != 0)
       return;
-    std::ostringstream pvd, text;
+    std::ostringstream pvd, line;
     DataOutBase::write_pvd_record(pvd, pictures);
-    text << std::setprecision(17);
-    for (const auto &picture : pictures)
-      text << picture.first << ' ' << picture.second << '\n';
-    const std::string list = folder + "/" + name;
-    log->attempted(list + ".pvd", write_file(list + ".pvd", pvd.str()));
-    log->attempted(list + ".txt", write_file(list + ".txt", text.str()));
+    const std::string pvd_file = folder + "/" + name + ".pvd";
+    log->attempted(pvd_file, write_file(pvd_file, pvd.str()));
+    line << std::setprecision(17) << time << ' ' << file << '\n';
+    list->append(line.str());
+    log->write(*list);
   }
 
 

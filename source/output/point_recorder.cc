@@ -127,7 +127,7 @@ namespace Voussoir
                                         velocities.front()[p][d] :
                                         0.);
             }
-        record.times.push_back(double(state.step - 1) * time_step);
+        record.steps.push_back(state.step - 1);
       }
     record.last_displacement = record.weights->share(state.displacement);
     record.has_last          = true;
@@ -170,7 +170,7 @@ namespace Voussoir
   std::size_t
   PointRecorder::n_waiting() const
   {
-    return record.times.size();
+    return record.steps.size();
   }
 
 
@@ -182,11 +182,11 @@ namespace Voussoir
                      record.model->discretization.grid.communicator());
     std::vector<Line> lines;
     auto              value = sums.begin();
-    for (const double time : record.times)
+    for (const unsigned long long step : record.steps)
       {
-        lines.push_back({time, std::vector<PointMotion>(record.points.size())});
         const RigidBase &ground    = record.model->base;
         const double     time_step = record.model->time_step,
+                     time          = double(step) * time_step,
                      window        = double(record.window) * time_step,
                      end           = time + 0.5 * time_step;
         const PointMotion base{{ground.displacement(time),
@@ -195,6 +195,8 @@ namespace Voussoir
                                 (ground.velocity(end) -
                                  ground.velocity(std::max(0., end - window))) /
                                   window}};
+        lines.push_back(
+          {step, time, std::vector<PointMotion>(record.points.size())});
         for (PointMotion &motion : lines.back().points)
           for (unsigned int d = 0; d < 3; ++d)
             {
@@ -205,7 +207,7 @@ namespace Voussoir
             }
       }
     record.shares.clear();
-    record.times.clear();
+    record.steps.clear();
     return lines;
   }
 } // namespace Voussoir

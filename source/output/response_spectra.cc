@@ -47,7 +47,10 @@ namespace Voussoir
         prm.add_parameter("Interval",
                           interval,
                           "Time between two samples of the acceleration [s]; a "
-                          "whole number of steps is taken, at least one.",
+                          "whole number of steps is taken, at least one, and "
+                          "no more than a twentieth of the shortest period "
+                          "that the mesh carries with eight nodes per "
+                          "wavelength.",
                           Patterns::Double(1e-6));
       }
 
@@ -66,11 +69,13 @@ namespace Voussoir
       void
       prepare(const ObservedModel &model, const double, const bool) override
       {
-        folder = model.folder;
-        log    = &model.log;
-        sample_step =
-          model.time_step *
-          std::max(1., std::floor(interval / model.time_step + 1e-9));
+        folder      = model.folder;
+        log         = &model.log;
+        sample_step = model.time_step *
+                      std::max(1.,
+                               std::floor(model.looking_interval(interval) /
+                                            model.time_step +
+                                          1e-9));
         recorder.prepare(model, sample_step);
         directions.clear();
         for (const std::string &component : split_list(components))

@@ -73,9 +73,8 @@ namespace Voussoir
       {
         communicator = model.discretization.grid.communicator();
         schedule     = Schedule(interval, model.time_step);
-        looks        = Schedule(std::min(interval, model.resolving_interval()),
-                         model.time_step);
-        lines        = make_lines(model);
+        looks = Schedule(model.looking_interval(interval), model.time_step);
+        lines = make_lines(model);
         std::vector<StressPoints::Place> places;
         for (const SectionLine &line : lines)
           for (const auto &point : line.points)

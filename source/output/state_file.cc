@@ -21,7 +21,7 @@ namespace Voussoir
 
   namespace
   {
-    constexpr int format = 1;
+    constexpr int format = 2;
 
     using Words = std::vector<std::uint64_t>;
     using Bytes = std::vector<std::uint8_t>;
@@ -391,6 +391,10 @@ namespace Voussoir
       static hid_t
       open(const std::string &name)
       {
+        // a pipe would be waited for
+        std::error_code none;
+        if (!std::filesystem::is_regular_file(name, none))
+          throw Problem{"it is not a regular file"};
         H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
         return H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
       }
@@ -640,7 +644,7 @@ namespace Voussoir
     const std::string unfinished = file + ".unfinished";
     std::error_code   ignored; // shows when the file is written
     if (first)
-      std::filesystem::create_directories(
+      std::filesystem::create_directory(
         std::filesystem::path(file).parent_path(), ignored);
     MPI_Barrier(communicator);
 

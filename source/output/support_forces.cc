@@ -63,11 +63,10 @@ namespace Voussoir
       {
         communicator = model.discretization.grid.communicator();
         schedule     = Schedule(interval, model.time_step);
-        looks        = Schedule(std::min(interval, model.resolving_interval()),
-                         model.time_step);
-        time_step    = model.time_step;
-        scheme       = model.scheme;
-        base         = &model.base;
+        looks     = Schedule(model.looking_interval(interval), model.time_step);
+        time_step = model.time_step;
+        scheme    = model.scheme;
+        base      = &model.base;
         supports.clear();
         forces.clear();
         times.clear();

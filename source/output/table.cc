@@ -39,22 +39,21 @@ namespace Voussoir
   }
 
 
-  namespace
+  std::uintmax_t
+  size_before(const std::string &filename, const double time)
   {
-    /** Bytes of the heading and the lines before a time; what is cut or comes
-     *  later is of a run that was interrupted. */
-    std::uintmax_t
-    size_before(const std::string &filename, const double time)
-    {
-      std::ifstream  file(filename);
-      std::uintmax_t size = 0;
-      for (std::string line; std::getline(file, line) && !file.eof();
-           size += line.size() + 1)
-        if (size > 0 && std::strtod(line.c_str(), nullptr) >= time)
+    std::ifstream  file(filename);
+    std::uintmax_t size = 0;
+    for (std::string line; std::getline(file, line) && !file.eof();
+         size += line.size() + 1)
+      {
+        char        *end    = nullptr;
+        const double number = std::strtod(line.c_str(), &end);
+        if (end != line.c_str() && number >= time)
           break;
-      return size;
-    }
-  } // namespace
+      }
+    return size;
+  }
 
 
   std::string
@@ -81,19 +80,17 @@ namespace Voussoir
                   const double                    start_time,
                   const bool                      restarted)
   {
+    this->log = &log;
     if (dealii::Utilities::MPI::this_mpi_process(log.communicator()) != 0)
       return;
-    this->log     = &log;
-    first_waiting = start_time;
     const std::uintmax_t kept =
       restarted ? size_before(filename, start_time - 0.5 * time_step) : 0;
-    file = GrowingFile();
-    file.open(filename, kept);
+    file = log.grow(filename, kept);
     if (kept == 0)
       {
         std::vector<std::string> titles = columns;
         titles.insert(titles.begin(), "time [s]");
-        file.append(csv_heading(titles) + '\n');
+        file->append(csv_heading(titles) + '\n');
       }
     flush();
   }
@@ -102,24 +99,18 @@ namespace Voussoir
   void
   TimeTable::write(const double time, const std::vector<double> &values)
   {
-    if (file.name().empty())
+    if (!file)
       return;
-    if (!file.has_waiting())
-      first_waiting = time;
     std::vector<double> line{time};
     line.insert(line.end(), values.begin(), values.end());
-    file.append(csv_line(line) + '\n');
+    file->append(csv_line(line) + '\n');
   }
 
 
   void
   TimeTable::flush()
   {
-    if (file.name().empty())
-      return;
-    std::ostringstream remark;
-    remark << "; its lines from t = " << first_waiting
-           << " s on wait in memory until that is possible";
-    log->attempted(file.name(), file.flush(), remark.str());
+    if (file)
+      log->write(*file);
   }
 } // namespace Voussoir

@@ -162,8 +162,10 @@ namespace Voussoir
         prm.add_parameter("To", to, "Face sets on which it ends.");
         prm.add_parameter("Interval",
                           interval,
-                          "Time between two lines of through_cracks.csv, the "
-                          "moments at which cracks are looked at [s].",
+                          "Time between two lines of through_cracks.csv [s]; "
+                          "cracks are looked at each twentieth of the shortest "
+                          "period that the mesh carries with eight nodes per "
+                          "wavelength, if that is shorter.",
                           Patterns::Double(1e-6));
       }
 
@@ -196,7 +198,9 @@ namespace Voussoir
       {
         model    = std::make_unique<ObservedModel>(observed);
         schedule = Schedule(interval, observed.time_step);
-        most     = {{0., 0.}};
+        looks =
+          Schedule(observed.looking_interval(interval), observed.time_step);
+        most = {{0., 0.}};
         shares.clear();
         for (unsigned int m = 0; m < observed.materials.size(); ++m)
           shares.push_back(
@@ -213,11 +217,13 @@ namespace Voussoir
       void
       observe(const State &state) override
       {
-        if (!schedule.due(state.step))
+        const bool has_line = schedule.due(state.step);
+        if (!has_line && !looks.due(state.step))
           return;
         const Ways ways = find_ways();
         take(ways, state.time);
-        table.write(state.time, {ways.now, ways.ever});
+        if (has_line)
+          table.write(state.time, {ways.now, ways.ever});
       }
 
       void
@@ -354,7 +360,7 @@ namespace Voussoir
       double      interval = 0.02;
 
       std::unique_ptr<ObservedModel> model;
-      Schedule                       schedule;
+      Schedule                       schedule, looks; // of lines, of extremes
       TimeTable                      table;
 
       // of each material and point

@@ -57,6 +57,15 @@ def contents(folder):
     return files
 
 
+def missing_observers(options):
+    """Observers that the case leaves out: each must stand a kill."""
+    every = subprocess.run([str(options.program), "--list", "observers"],
+                           capture_output=True, text=True, check=True).stdout
+    used = re.search(r"set Observers\s*=\s*(.*)", options.case.read_text()).group(1)
+    return {line.split(":")[0] for line in every.splitlines()} - set(
+        name.strip() for name in used.split(","))
+
+
 def fresh(folder):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -85,6 +94,8 @@ def main():
     options.program = options.program.resolve()
     options.case = options.case.resolve()
     chance = random.Random(options.seed)
+    if left_out := missing_observers(options):
+        sys.exit("the case leaves out the observers " + ", ".join(sorted(left_out)))
 
     straight = options.folder / "straight"
     fresh(straight)

@@ -89,8 +89,10 @@ namespace Voussoir
    * by itself. Without static stages nothing is done.
    *
    * @param internal_force that of the run
+   * @return what its laws dissipate in the static state on this rank [J]: none,
+   *   if they take over the internal variables as they are
    */
-  void
+  double
   hand_over(InitialState        &state,
             const InternalForce &internal_force,
             const NodalTerms    &terms);

@@ -8,6 +8,10 @@
 
 namespace Voussoir
 {
+  /** Why a file that was written is not there any more. */
+  inline constexpr char removed_meanwhile[] =
+    "it was removed while the run went on";
+
   /** What an error number of the system means, as the end of a sentence:
    *  "... because the disk is full". */
   std::string
@@ -56,7 +60,9 @@ namespace Voussoir
   };
 
   /** A text file that grows. What cannot be written waits in memory and is
-   *  written with what comes next; no part of a text is left in the file. */
+   *  written with what comes next; no part of a text is left in the file. A
+   * file that was removed, replaced or cut off meanwhile is not made anew, as
+   * its beginning would be lost. */
   class GrowingFile
   {
   public:
@@ -67,6 +73,10 @@ namespace Voussoir
     /** Empty: not open. */
     const std::string &
     name() const;
+
+    /** What is written [bytes]. */
+    std::uintmax_t
+    size() const;
 
     void
     append(const std::string &text);
@@ -79,8 +89,13 @@ namespace Voussoir
     has_waiting() const;
 
   private:
+    /** Why what was written is not there any more; empty: it is. */
+    std::string
+    loss() const;
+
     std::string    file_name, waiting;
-    std::uintmax_t written = 0; // bytes
+    std::uintmax_t written       = 0; // bytes
+    std::uint64_t  serial_number = 0; // of the file in its file system
   };
 } // namespace Voussoir
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -85,6 +86,33 @@ namespace Voussoir
     std::map<std::string, std::string>
     missing_files() const;
 
+    /**
+     * A file of the results that grows, on the first rank, from these bytes on.
+     * What was appended to it is on the disk before each checkpoint, see
+     * write_growing_files().
+     */
+    std::shared_ptr<GrowingFile>
+    grow(const std::string &filename, const std::uintmax_t keep);
+
+    /** Writes what waits in memory for one of them. */
+    void
+    write(GrowingFile &grown);
+
+    /** Writes what waits in memory for all of them; returns whether all
+     *  of it is written. All ranks must call this together. */
+    bool
+    write_growing_files();
+
+    /** Their sizes, with which a run can go on from here [bytes], by name; all
+     *  ranks must call this together. */
+    std::map<std::string, std::uint64_t>
+    sizes_of_growing_files() const;
+
+    /** Takes note of files that were written and are not there any more, or
+     *  not as they were. */
+    void
+    look_for_lost_files();
+
     MPI_Comm
     communicator() const;
 
@@ -107,8 +135,13 @@ namespace Voussoir
     using Clock = std::chrono::steady_clock;
     Clock::time_point last_bar, last_line; // of progress
 
-    std::vector<std::string>           all_warnings;
-    std::map<std::string, std::string> missing; // on the first rank
+    std::vector<std::string> all_warnings;
+
+    // on the first rank: files that are missing, with the reason; sizes of
+    // those that were written [bytes]; those that grow
+    std::map<std::string, std::string>      missing;
+    std::map<std::string, std::uintmax_t>   sizes;
+    std::vector<std::weak_ptr<GrowingFile>> growing;
   };
 
   /** "1 h 05 min", "3 min 20 s", "12 s". */

@@ -30,7 +30,8 @@ namespace Voussoir
   RestState
   handed_over(RestState          &&found,
               const Model         &model,
-              const InternalForce &internal_force);
+              const InternalForce &internal_force,
+              Log                 &log);
 
   /** Refuses natural modes that the model cannot have. */
   void

@@ -81,6 +81,10 @@ namespace Voussoir
     void
     find_checkpoint(Log &log);
 
+    /** Refuses to go on with files shorter than the checkpoint knows them. */
+    void
+    check_sizes() const;
+
     const Case      &parameters;
     const RunOptions options;
     std::string      chosen; // on all ranks; another number may be claimed

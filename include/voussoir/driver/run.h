@@ -123,6 +123,10 @@ namespace Voussoir
     StateContent
     checkpoint_content();
 
+    /** Of the files that grow, by name in the output folder [bytes]. */
+    nlohmann::json
+    sizes_of_files() const;
+
     /** @return whether it was possible */
     bool
     write_checkpoint();

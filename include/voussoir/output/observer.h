@@ -45,6 +45,19 @@ namespace Voussoir
       return 0.05 / carried_frequency;
     }
 
+    /** Between two looks for extremes of what is written at this interval
+     *  [s]. */
+    double
+    looking_interval(const double interval) const
+    {
+      return std::min(interval, resolving_interval());
+    }
+
+    /** Warns of extremes that are looked for at an interval which the entry at
+     *  @p place sets coarser than that [s]. */
+    void
+    warn_of_coarse_looks(const double interval, const std::string &place) const;
+
     /** The ground, to which the state is relative where it moves. */
     const RigidBase &base;
 
@@ -137,7 +150,8 @@ namespace Voussoir
   };
 
   /** Steps at which something with this interval [s] is due: every n-th, so
-   * that a record has equal intervals, the nearest to the one asked for. */
+   * that a record has equal intervals, the nearest to the one asked for. At an
+   * interval of 0 each step. */
   class Schedule
   {
   public:

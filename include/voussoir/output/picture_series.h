@@ -53,6 +53,7 @@ namespace Voussoir
     double                                      time_step = 1.;
     Log                                        *log       = nullptr;
     std::vector<std::pair<double, std::string>> pictures;
+    std::shared_ptr<GrowingFile>                list; // of them, to go on from
   };
 } // namespace Voussoir
 

@@ -41,7 +41,7 @@ namespace Voussoir
     /**
      * Starts a new record.
      *
-     * @param interval between two lines [s]
+     * @param interval between two records [s]; 0: of each step
      * @param window   of the mean acceleration [s]
      */
     void
@@ -80,6 +80,7 @@ namespace Voussoir
 
     struct Line
     {
+      unsigned long long       step;
       double                   time;   // [s]
       std::vector<PointMotion> points; // absolute
     };
@@ -108,7 +109,8 @@ namespace Voussoir
 
       bool                              has_last = false;
       std::vector<dealii::Tensor<1, 3>> last_displacement;
-      std::vector<double>               shares, times;
+      std::vector<double>               shares;
+      std::vector<unsigned long long>   steps;
 
       // of the half steps of the window and the one before, the latest last;
       // at rest before the first

@@ -5,6 +5,12 @@
 
 namespace Voussoir
 {
+  /** Bytes of the first lines of a file whose first number is less than this
+   *  [s], and of a heading. What is cut or comes later is of a run that was
+   *  interrupted. */
+  std::uintmax_t
+  size_before(const std::string &filename, const double time);
+
   /** The heading of a file of comma-separated values, or another line of texts.
    *  Those with a comma, a quotation mark or a line break are quoted as RFC
    * 4180 has it, so that each stays one column. */
@@ -53,9 +59,8 @@ namespace Voussoir
     flush();
 
   private:
-    Log        *log = nullptr;
-    GrowingFile file;
-    double      first_waiting = 0.; // time of a line [s]
+    Log                         *log = nullptr;
+    std::shared_ptr<GrowingFile> file;
   };
 } // namespace Voussoir
 

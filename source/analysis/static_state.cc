@@ -3,6 +3,7 @@
 #include <voussoir/analysis/relaxation.h>
 #include <voussoir/analysis/static_state.h>
 #include <voussoir/base/mpi.h>
+#include <voussoir/base/text.h>
 #include <voussoir/fem/nodal_values.h>
 
 #include <deal.II/base/timer.h>
@@ -321,8 +322,8 @@ namespace Voussoir
 
       // at once, unless materials crack or yield
       const double largest_step = 1. / parameters.increments;
-      double       step         = 1.;
-      unsigned int iterations   = 0;
+      double       step = 1., largest_error = 0.;
+      unsigned int iterations = 0, n_jumps = 0;
       for (double share = 0.; share < 1.;)
         {
           const double    next = share + step > 1. - 1e-9 ? 1. : share + step;
@@ -334,36 +335,26 @@ namespace Voussoir
           const bool is_trial                 = step > largest_step;
           iterations += find_equilibrium(goal, is_trial);
 
-          bool is_accepted = true;
+          double error = 0.;
           if (dissipated(state.material_memory,
                          memory_before.losses().material))
-            {
-              const double error =
-                is_trial ?
-                  1. :
-                  error_of_return_mapping(displacement_before,
-                                          memory_before,
-                                          start.grown_to(end,
-                                                         0.5 * (share + next)),
-                                          goal);
-              is_accepted = error <= tolerance || step <= least_step;
-              if (is_accepted && error > tolerance)
-                log.warn("in the stage \"",
-                         join(stage, ", "),
-                         "\" a load increment of ",
-                         100. * step,
-                         " % changes the forces of the materials by up to ",
-                         100. * error,
-                         " % of the loads, or their losses by up to ",
-                         2000. * error,
-                         " %, against two of half its size; take "
-                         "more stages, or more \"Load increments\" in section "
-                         "\"Static state\"");
-            }
-          if (is_accepted)
+            error =
+              is_trial ?
+                1. :
+                error_of_return_mapping(displacement_before,
+                                        memory_before,
+                                        start.grown_to(end,
+                                                       0.5 * (share + next)),
+                                        goal);
+          if (error <= tolerance || (!is_trial && step <= least_step))
             {
               share = next;
               ++increments;
+              n_jumps += error > tolerance;
+              largest_error = std::max(largest_error, error);
+              // behind a crack that came at once longer ones do again
+              if (!is_trial && error < 0.25 * tolerance)
+                step = std::min(2. * step, largest_step);
               continue;
             }
           step                  = is_trial ? largest_step : 0.5 * step;
@@ -372,6 +363,20 @@ namespace Voussoir
           if (model.contact != nullptr)
             model.contact->set_points(points_before);
         }
+      if (n_jumps > 0)
+        log.warn("in the stage \"",
+                 join(stage, ", "),
+                 "\" ",
+                 counted(n_jumps, "load increment", "load increments"),
+                 " of ",
+                 100. * least_step,
+                 " % change the forces of the materials by up to ",
+                 100. * largest_error,
+                 " % of the loads, or their losses by up to ",
+                 2000. * largest_error,
+                 " %, against two of half the size, as where a crack runs at "
+                 "once; take more stages, or more \"Load increments\" in "
+                 "section \"Static state\"");
       return iterations;
     }
 

@@ -338,11 +338,11 @@ namespace Voussoir
                                                    reason_of(errno);
     if (!S_ISREG(now.st_mode)) // devices keep nothing
       return "";
-    if (now.st_ino != serial_number)
+    const auto size = static_cast<std::uintmax_t>(now.st_size);
+    // some network file systems number a file anew
+    if (now.st_ino != serial_number && size != written)
       return "another file was put in its place while the run went on";
-    if (static_cast<std::uintmax_t>(now.st_size) < written)
-      return "it was cut off while the run went on";
-    return "";
+    return size < written ? "it was cut off while the run went on" : "";
   }
 
 

@@ -66,8 +66,8 @@ namespace Voussoir
           fs::remove(table);
         else if (kind == "table replaced")
           {
-            fs::copy(table, table + ".copy");
-            fs::rename(table + ".copy", table);
+            std::ofstream(table + ".new") << text_of(table) << "0,0,0,0\n";
+            fs::rename(table + ".new", table);
           }
         else if (kind == "table cut off")
           fs::resize_file(table, fs::file_size(table) / 2);

@@ -8,9 +8,7 @@ namespace Voussoir
 
   namespace
   {
-    // Steps in which what is missing to the equilibrium has to halve: a crack
-    // that runs far takes several of them for each cell on its way.
-    constexpr unsigned int patience = 300, max_updates = 300;
+    constexpr unsigned int max_updates = 300;
 
     // of points that all hold together in the tangent: with nothing of it parts
     // that lie loose move away
@@ -25,6 +23,7 @@ namespace Voussoir
                                        const NodalTerms    *springs,
                                        const Vector        &force,
                                        const double         tolerance,
+                                       const unsigned int   patience,
                                        Log                 &log)
     : solver(solver)
     , contact(solver.tangent_contact())
@@ -32,6 +31,7 @@ namespace Voussoir
     , springs(springs)
     , force(force)
     , tolerance(tolerance)
+    , patience(patience)
     , log(log)
     , residual(force)
     , change(force)

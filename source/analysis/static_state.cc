@@ -170,6 +170,8 @@ namespace Voussoir
       unsigned int                        damped_steps = 0;    // of this stage
       unsigned int                        increments   = 0;    // of this stage
       bool                                is_last      = true; // increment
+      bool may_be_halved = false; // the increment, if the search does not
+      bool is_found      = true;  // find its equilibrium
     };
 
 
@@ -333,11 +335,15 @@ namespace Voussoir
           const auto      points_before       = contact_points();
           is_last                             = next == 1.;
           const bool is_trial                 = step > largest_step;
+          may_be_halved                       = !is_trial && step > least_step;
+          is_found                            = true;
           iterations += find_equilibrium(goal, is_trial);
 
           double error = 0.;
-          if (dissipated(state.material_memory,
-                         memory_before.losses().material))
+          if (!is_found)
+            error = 1.;
+          else if (dissipated(state.material_memory,
+                              memory_before.losses().material))
             error =
               is_trial ?
                 1. :
@@ -522,15 +528,19 @@ namespace Voussoir
     StaticStages::search_equilibrium(const Vector   &force,
                                      MaterialMemory *memory)
     {
-      const double                    tolerance = model.contact != nullptr ?
-                                                    0.1 * parameters.rest :
-                                                    std::max(parameters.tolerance, 1e-8);
+      const double tolerance = model.contact != nullptr ?
+                                 0.1 * parameters.rest :
+                                 std::max(parameters.tolerance, 1e-8);
+      // a crack that runs far takes several steps for each cell on its way
+      const unsigned int patience =
+        memory != nullptr && may_be_halved ? 100 : 300;
       const EquilibriumSearch::Effort effort =
         EquilibriumSearch(*solver,
                           internal_force,
                           on_springs ? &model.terms : nullptr,
                           force,
                           tolerance,
+                          patience,
                           log)
           .find(state.displacement, memory);
       std::ostringstream text;
@@ -539,9 +549,13 @@ namespace Voussoir
            << effort.residual;
       if (model.contact != nullptr)
         text << ", forces of contact to " << effort.contact.force;
+      is_found = effort.found || memory == nullptr || !may_be_halved;
       if (!effort.found)
-        text << "; not found, so by damped motion";
+        text << "; not found, so "
+             << (is_found ? "by damped motion" : "in two load increments");
       log.line(text.str());
+      if (!is_found)
+        return effort.iterations;
       MaterialMemory none;
       if ((model.contact != nullptr && is_last) || !effort.found)
         come_to_rest(force, memory == nullptr ? none : *memory);

@@ -39,12 +39,15 @@ namespace Voussoir
      * @param springs   of the absorbing boundary, or null if it is held
      * @param tolerance of the equilibrium over the loads, and a tenth of that
      *   of the forces of contact over all of them
+     * @param patience  number of steps in which what is missing to the
+     *   equilibrium has to halve
      */
     EquilibriumSearch(ElasticSolver       &solver,
                       const InternalForce &internal_force,
                       const NodalTerms    *springs,
                       const Vector        &force,
                       const double         tolerance,
+                      const unsigned int   patience,
                       Log                 &log);
 
     /**
@@ -95,6 +98,7 @@ namespace Voussoir
     const NodalTerms    *springs;
     const Vector        &force;
     const double         tolerance;
+    const unsigned int   patience;
     Log                 &log;
     double               size; // of the force on what is free
 

@@ -35,13 +35,30 @@ def with_runs_of_studies(folders, studies):
     return result
 
 
+def section_of(make, *arguments):
+    """What a function makes of the runs. A report says what it cannot read; whatever
+    else a damaged file leads to becomes a sentence, too."""
+    from .files import ReportError
+    try:
+        return make(*arguments)
+    except ReportError:
+        raise
+    except Exception as error:
+        what = make.__name__.removesuffix("_section").replace("_", " ")
+        folders = ", ".join(f'"{run.folder}"' for run in arguments[0])
+        raise ReportError(f'The section on {what} cannot be made from the results in {folders} '
+                          f"({type(error).__name__}: {error}); if their files are whole, "
+                          "please report it.") from None
+
+
 def main():
     options = arguments()
     try:
         # takes a second, and --help shall not
         from . import (case, damage, faces, interfaces, motions, over_stress, page, scenes,
                        structure, study)
-        from .run import ReportError, read_runs
+        from .files import ReportError
+        from .run import read_runs
     except ImportError as error:
         sys.exit(f"voussoir-report: {error}; install python3-numpy, python3-matplotlib, python3-vtk9 "
                  "and python3-jinja2.")
@@ -60,8 +77,13 @@ def main():
         # drawing takes nearly all of the time: one process for each core
         fork = multiprocessing.get_context("fork")
         with concurrent.futures.ProcessPoolExecutor(mp_context=fork) as pool:
-            pending = [pool.submit(make, runs) for make in makers]
-            pending.insert(1, pool.submit(study.study_section, runs, list(studies.values())))
+            pending = [pool.submit(section_of, make, runs) for make in makers]
+            pending.insert(1, pool.submit(section_of, study.study_section, runs, list(studies.values())))
+            ended, _ = concurrent.futures.wait(pending, return_when=concurrent.futures.FIRST_EXCEPTION)
+            for made in ended:
+                if problem := made.exception():
+                    pool.shutdown(cancel_futures=True)
+                    raise problem
             sections = [section for section in (made.result() for made in pending) if section]
         page.write(runs, sections, file)
         if options.pictures:

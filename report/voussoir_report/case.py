@@ -88,8 +88,8 @@ def interfaces_in_words(run):
                                     ("Cohesion", "cohesion {} MPa", 1e-6),
                                     ("Tensile strength", "tensile strength {} MPa", 1e-6),
                                     ("Key depth", "keys {} m deep", 1.)):
-            if float(entries.get(entry) or 0.) > 0.:
-                facts.append(text.format(f"{float(entries[entry]) * factor:g}"))
+            if (value := run.number(f"Interfaces/{name}/{entry}")) > 0.:
+                facts.append(text.format(f"{value * factor:g}"))
         if entries.get("Grouted after"):
             facts.append(f"grouted after {entries['Grouted after']}")
         words.append(f"{name} ({entries.get('Face sets', '')}): {', '.join(facts)}")

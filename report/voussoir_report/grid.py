@@ -4,10 +4,13 @@ import functools
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkPlane, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkCutter
 from vtkmodules.vtkFiltersVerdict import vtkMeshQuality
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+from .files import PictureCheck, refuse
 
 # faces of a hexahedron, corners seen in turn from outside
 HEXAHEDRON_FACES = np.array([(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2),
@@ -32,6 +35,17 @@ def centre_keys(corners):
     return np.floor(100. * corners.mean(axis=1) + 0.137).astype(np.int64) @ SCATTER
 
 
+class Fields(dict):
+    """Values at corners by the name of the field."""
+
+    def __init__(self, file, values):
+        super().__init__(values)
+        self.file = file
+
+    def __missing__(self, name):
+        refuse(self.file, f'has no field "{name}"')
+
+
 class Grid:
     """A file of hexahedra or quadrilaterals: corners, cells and values at corners.
 
@@ -39,20 +53,34 @@ class Grid:
     """
 
     def __init__(self, file):
+        self.file = file
+        check = PictureCheck(file)
+        messages = vtkStringOutputWindow()
+        vtkOutputWindow.SetInstance(messages)
         reader = vtkXMLUnstructuredGridReader()
         reader.SetFileName(str(file))
         reader.Update()
+        vtkOutputWindow.SetInstance(None)
         self.vtk = reader.GetOutput()
+        if messages.GetOutput() or self.vtk.GetNumberOfPoints() == 0:
+            check.refuse("its data cannot be read")
         self.points = vtk_to_numpy(self.vtk.GetPoints().GetData()).astype(float)
         connectivity = vtk_to_numpy(self.vtk.GetCells().GetConnectivityArray())
-        self.cells = connectivity.reshape(self.vtk.GetNumberOfCells(), -1)
+        n_cells = self.vtk.GetNumberOfCells()
+        if len(connectivity) not in (4 * n_cells, 8 * n_cells):
+            check.refuse("its cells are no hexahedra or quadrilaterals")
+        self.cells = connectivity.reshape(n_cells, -1)
+        if self.cells.min() < 0 or self.cells.max() >= len(self.points):
+            check.refuse("its cells have corners that are no points of it")
         data = self.vtk.GetPointData()
-        self.values = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i))
-                       for i in range(data.GetNumberOfArrays())}
+        self.values = Fields(file, {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i))
+                                    for i in range(data.GetNumberOfArrays())})
 
     def names(self, kind):
         """What the numbers of a field "material", "face_set" and so on stand for."""
         texts = self.vtk.GetFieldData().GetAbstractArray(kind + "_names")
+        if texts is None:
+            refuse(self.file, f'has no list "{kind}_names"')
         # written with quotation marks
         return [texts.GetValue(i).strip('"') for i in range(texts.GetNumberOfValues())]
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from . import charts
 from .case import DIRECTIONS
+from .files import refuse
 from .motion import (GRAVITY, PERIODS, ROUND_PERIODS, arias_intensity, integral, peak, response_spectrum,
                      significant_duration)
 from .page import Pictures, Section, Table, number
@@ -20,6 +21,8 @@ class GroundMotion:
     def __init__(self, table):
         self.time = table.time
         self.interval = (table.time[-1] - table.time[0]) / (len(table.time) - 1)
+        if np.ptp(np.diff(self.time)) > 1e-3 * self.interval:
+            refuse(table.file, "has lines missing or twice, as its times are not at equal intervals")
         self.acceleration = {match[1]: values for match, values
                              in table.matching(r"acceleration ([xyz]) \[m/s2\]")}
 

@@ -14,7 +14,7 @@ def faces_of(run):
 
 
 def over_stress_section(runs):
-    runs = [run for run in runs if "over-stress" in run.summary and run.table(CURVES)]
+    runs = [run for run in runs if "over-stress" in run.summary and run.table(CURVES, "ratio")]
     if not runs:
         return None
     verdicts = Table(["", "verdict"], [[run.prefix or "This run",
@@ -48,7 +48,7 @@ def figures_table(runs):
 
 def curves(run):
     """Accumulated time against ratio beside the limit."""
-    table = run.table(CURVES)
+    table = run.table(CURVES, "ratio")
     figure, axes = charts.new_figure()
     axes.plot(table["ratio"], table["allowed time [s]"], color="0.3", linestyle="--", label="allowed")
     charts.lines(axes, [(name, table["ratio"], table[f"{name} accumulated time [s]"])

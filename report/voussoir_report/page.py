@@ -10,7 +10,7 @@ import re
 import jinja2
 import numpy as np
 
-from .run import ReportError
+from .files import ReportError
 
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

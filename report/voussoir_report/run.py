@@ -1,47 +1,57 @@
 """A result folder, as the program has left it."""
 
-import csv
-import json
 import pathlib
 import re
 
 import numpy as np
 
+from .files import NUMBER, NUMBER_OR_NONE, TEXT, Group, ReportError, Table, is_number, read_bytes, read_json, refuse
 
 LOOSE = 5.  # opening at which no softening law of concrete has any strength left [mm]
 
+# what sections take from summary.json; numbers that are none are null there
+SUMMARY = Group(
+    {"verdict": TEXT},
+    {"version": TEXT, "warnings": [TEXT], "files not written": Group(), "end time [s]": NUMBER,
+     **dict.fromkeys(("cells", "unknowns", "degree", "time step [s]", "largest stable step [s]", "steps",
+                      "ranks", "SIMD bits", "loop time [s]", "contact share of the loop",
+                      "MDOF-steps/s", "peak memory of a rank [MB]"), NUMBER),
+     "static state": Group(optional={"seconds": NUMBER}),
+     "materials": Group(others=Group(optional=dict.fromkeys(
+         ("largest crack opening [mm]", "share of the volume that left the elastic range"), NUMBER))),
+     "histories": Group(others=Group(
+         dict.fromkeys(("largest displacement [m]", "filtered at [Hz]"), NUMBER),
+         {"largest filtered acceleration [m/s2]": NUMBER})),
+     "face stresses": Group(optional=dict.fromkeys(
+         ("largest arch stress [MPa]", "largest cantilever stress [MPa]", "largest principal stress [MPa]",
+          "smallest principal stress [MPa]"), NUMBER)),
+     "interfaces": Group(
+         {"surfaces": Group(others=Group(dict.fromkeys(
+             ("area [m2]", "largest opening [mm]", "largest slip [mm]", "residual slip [mm]",
+              "smallest sliding safety", "time at safety one or below [s]"), NUMBER_OR_NONE)))},
+         {"blocks": Group(others=Group(
+             {"time at safety one or below [s]": NUMBER},
+             dict.fromkeys(("safety at the start", "smallest safety", "time of the smallest safety [s]"),
+                           NUMBER_OR_NONE)))}),
+     "modes": Group(optional={"modes": [Group(
+         {"frequency [Hz]": NUMBER, "period [s]": NUMBER, "effective mass [-]": [NUMBER],
+          "cumulative effective mass [-]": [NUMBER]})]}),
+     "energy balance": Group(optional={"largest energy-balance error": NUMBER_OR_NONE}),
+     "target spectrum": Group({"periods [s]": [NUMBER], "damping ratio": NUMBER},
+                              dict.fromkeys(("x [m/s2]", "y [m/s2]", "z [m/s2]"), [NUMBER])),
+     "over-stress": Group({"verdict": TEXT}, others=Group(
+         {"largest ratio": NUMBER, "at the time [s]": NUMBER,
+          "above 1": Group(dict.fromkeys(("share at any time [%]", "largest share at once [%]",
+                                          "accumulated time [s]"), NUMBER))}))})
 
-class ReportError(Exception):
-    """Something of the user's that makes a report impossible, in one sentence."""
+# files that belong to a part of the summary
+FILES = {"histories": ("histories.csv",), "energy balance": ("energy.csv",), "envelopes": ("envelopes.vtu",),
+         "interfaces": ("interfaces.csv", "interface_envelopes.vtu"),
+         "face stresses": ("face_stress_envelopes.vtu",), "over-stress": ("over_stress.csv", "over_stress.vtu")}
 
-
-class Table:
-    """A file of comma-separated values over time."""
-
-    def __init__(self, file):
-        with open(file, newline="") as lines:
-            rows = list(csv.reader(lines))
-        self.titles = rows[0]
-        # a run that was cut off may have left half a line; no number is an empty cell
-        whole = [row for row in rows[1:] if len(row) == len(self.titles)]
-        self.values = np.array([[float(cell or "inf") for cell in row] for row in whole])
-        self.values = self.values.reshape(-1, len(self.titles))
-
-    def __contains__(self, title):
-        return title in self.titles
-
-    def __getitem__(self, title):
-        return self.values[:, self.titles.index(title)]
-
-    @property
-    def time(self):
-        """[s]"""
-        return self.values[:, 0]
-
-    def matching(self, pattern):
-        """Match and column of each title that is like a regular expression as a whole."""
-        found = [(re.fullmatch(pattern, title), i) for i, title in enumerate(self.titles)]
-        return [(match, self.values[:, i]) for match, i in found if match]
+# tables over time, and the entries that say how often they have a line
+INTERVALS = {"histories.csv": "Output/histories/Interval", "interfaces.csv": "Output/interfaces/Interval",
+             "energy.csv": "Output/Energy interval", "ground_motion.csv": ""}
 
 
 def read_parameters(text):
@@ -70,13 +80,15 @@ class Run:
         if not self.folder.exists():
             raise ReportError(f'There is no folder "{folder}"; name the output folder of a run.')
         if not (self.folder / "parameters.prm").is_file():
-            raise ReportError(f'"{folder}" is not the output folder of a run, as it holds no '
-                              "parameters.prm; name the folder that holds summary.json.")
+            raise ReportError(f'"{folder}" is not the output folder of a run or a study, as it holds neither '
+                              "parameters.prm nor study.json; name the folder that holds summary.json.")
         self.label = label or self.folder.resolve().name
         # said where there are several runs
         self.prefix = self.title_in_chart = ""
         self.place = 0
         self.parameters, self.changed = read_parameters(self.read("parameters.prm"))
+        if not self.parameters:
+            refuse(self.folder / "parameters.prm", "holds no entries", "run the case again")
         self.summary = self._read_summary()
         self.log = self.read("log.txt") if self.has("log.txt") else ""
         self._tables = {}
@@ -91,11 +103,7 @@ class Run:
         if not self.has("summary.json"):
             raise ReportError(f'The run in "{self.folder}" has not ended, as there is no '
                               "summary.json yet; wait for its end, or let it go on with --restart.")
-        try:
-            return json.loads(self.read("summary.json"))
-        except ValueError as error:
-            raise ReportError(f'"{self.folder}/summary.json" cannot be read ({error}); '
-                              "let the run go on with --restart, which writes it again.") from None
+        return read_json(self.folder / "summary.json", SUMMARY, "run the case again, which writes it anew")
 
     @property
     def title(self):
@@ -117,8 +125,15 @@ class Run:
     @property
     def warnings(self):
         """Warnings, and results that are missing."""
-        missing = self.summary.get("files not written", {})
-        return [*self.summary.get("warnings", []), *(f"not written: {file}" for file in missing)]
+        unwritten = self.summary.get("files not written", {})
+        expected = [file for part, files in FILES.items() if part in self.summary for file in files]
+        if "steps" in self.summary and self.entry("Ground motion/Type", "none") != "none":
+            expected.append("ground_motion.csv")
+        missing = [file for file in expected
+                   if not self.has(file) and not any(name.endswith(file) for name in unwritten)]
+        return [*self.summary.get("warnings", []), *(f"not written: {file}" for file in unwritten),
+                *(f"{file} is missing in the folder, so that this report lacks what it shows"
+                  for file in missing)]
 
     @property
     def remarks(self):
@@ -148,20 +163,40 @@ class Run:
         return (self.folder / name).is_file()
 
     def read(self, name):
-        return (self.folder / name).read_text(errors="replace")
+        return read_bytes(self.folder / name).decode(errors="replace")
 
-    def table(self, name):
-        """A table of this name with at least two lines, or None."""
+    def table(self, name, first="time [s]"):
+        """A table of this name, with this first column and at least two lines, or None."""
         if name not in self._tables:
-            table = Table(self.folder / name) if self.has(name) else None
+            table = Table(self.folder / name, first) if self.has(name) else None
+            if table and first == "time [s]":
+                self._check_end(table, name)
             self._tables[name] = table if table and len(table.values) > 1 else None
         return self._tables[name]
+
+    def _check_end(self, table, name):
+        """Refuses a table that ends before the run, or after it."""
+        end = self.summary.get("end time [s]")
+        if end is None or len(table.time) < 2 or any(file.endswith(name) for file in
+                                                     self.summary.get("files not written", {})):
+            return
+        last, between = table.time[-1], np.diff(table.time).max()
+        # a run that was stopped has been given a longer motion
+        planned = self.number("Time/End time")
+        if last > 1.01 * max(end, planned) + between:
+            refuse(table.file, f"goes on to {last:g} s, but the run ended at {end:g} s")
+        if name in INTERVALS and last < min(end, planned) - 1.01 * max(between, self.number(INTERVALS[name])):
+            refuse(table.file, f"is cut, as it ends at {last:g} s and the run at {end:g} s")
 
     def entry(self, path, default=""):
         return self.parameters.get(path, default)
 
     def number(self, path, default=0.):
-        return float(self.entry(path) or default)
+        value = self.entry(path) or default
+        if not is_number(value):
+            refuse(self.folder / "parameters.prm", f'has "{value}" for "{path}", which is no number',
+                   "run the case again")
+        return float(value)
 
     def list(self, path, separator=","):
         return [item.strip() for item in self.entry(path).split(separator) if item.strip()]
@@ -178,8 +213,9 @@ class Run:
         if not self.has(f"{name}.txt"):
             return []
         lines = [line.split(maxsplit=1) for line in self.read(f"{name}.txt").splitlines()]
-        return [(float(line[0]), line[1].strip()) for line in lines
-                if len(line) == 2 and self.has(line[1].strip())]
+        if not all(len(line) == 2 and is_number(line[0]) for line in lines):
+            refuse(self.folder / f"{name}.txt", "is no list of times and pictures")
+        return [(float(time), file.strip()) for time, file in lines if self.has(file.strip())]
 
 
 def read_runs(arguments):

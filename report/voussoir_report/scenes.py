@@ -13,7 +13,7 @@ from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRendere
                                          vtkWindowToImageFilter)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (draws)
 
-from .run import ReportError
+from .files import ReportError
 
 STONE = (0.80, 0.77, 0.72)
 

@@ -1,14 +1,19 @@
 """A study: a table of its runs and curves over what was varied."""
 
-import csv
-import json
 import pathlib
 
 from . import charts
+from .files import NUMBER, TEXT, Group, csv_rows, is_number, read_json, refuse
 from .page import Pictures, Section, Table, number
-from .run import ReportError
 
 MOST = 6  # runs of a study that are shown in detail
+
+VALUES = Group(others=TEXT)
+STUDY = Group(
+    {"runs": [Group({"folder": TEXT, "verdict": TEXT, "values": VALUES},
+                    {"quantities": Group(others=NUMBER)})]},
+    {"limits": [Group({"of": TEXT, "criterion": TEXT, "not met at": NUMBER, "met at": NUMBER,
+                       "values": VALUES})]})
 
 
 class Study:
@@ -16,15 +21,19 @@ class Study:
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
-        try:
-            data = json.loads((self.folder / "study.json").read_text())
-        except ValueError as error:
-            raise ReportError(f'"{folder}/study.json" cannot be read ({error}); start the study '
-                              "again, which writes it anew.") from None
+        data = read_json(self.folder / "study.json", STUDY, "start the study again, which writes it anew")
         self.runs, self.limits = data["runs"], data.get("limits", [])
+        if not self.in_detail:
+            refuse(self.folder / "study.json", "names no run that has a summary.json beside it",
+                   "start the study again, which does what is missing")
 
     def folder_of(self, run):
         return self.folder / pathlib.Path(run["folder"]).name
+
+    def lacks(self, run):
+        """Files without which a run cannot be shown and that its folder does not have."""
+        return [name for name in ("summary.json", "parameters.prm")
+                if not (self.folder_of(run) / name).is_file()]
 
     def label_of(self, run):
         return ", ".join(f"{short(entry)} {value}" for entry, value in run["values"].items())
@@ -44,8 +53,7 @@ class Study:
     @property
     def in_detail(self):
         """Runs with results, at most so many, evenly chosen."""
-        there = [run for run in self.runs if (self.folder_of(run) / "summary.json").is_file()
-                 and (self.folder_of(run) / "parameters.prm").is_file()]
+        there = [run for run in self.runs if not self.lacks(run)]
         if len(there) <= MOST:
             return there
         step = (len(there) - 1) / (MOST - 1)
@@ -69,10 +77,7 @@ def titled(path):
 
 
 def numeric(text):
-    try:
-        return float(text)
-    except ValueError:
-        return None
+    return float(text) if is_number(text) else None
 
 
 def abscissa(study):
@@ -103,10 +108,17 @@ def spread(study, over, quantity):
     file = study.folder / "study_statistics.csv"
     if not file.is_file():
         return []
-    with open(file, newline="") as lines:
-        rows = [row for row in csv.DictReader(lines) if row["quantity"] == quantity and over in row]
-    return sorted([float(row[over]), *(float(row[title]) for title in ("16 %", "median", "84 %"))]
-                  for row in rows if row["16 %"] and row["median"] and row["84 %"])
+    heading, rows = csv_rows(file)
+    lines = [dict(zip(heading, row)) for row in rows]
+    wanted = (over, "16 %", "median", "84 %")
+    if "quantity" not in heading or not set(wanted[1:]) <= set(heading):
+        refuse(file, "is not the table of statistics that the program writes")
+    found = [[line[title] for title in wanted] for line in lines
+             if line["quantity"] == quantity and over in line]
+    found = [values for values in found if all(values)]
+    if not all(is_number(value) for values in found for value in values):
+        refuse(file, f'has numbers of "{quantity}" that are none')
+    return sorted([float(value) for value in values] for values in found)
 
 
 def curve_picture(study, over, quantity):
@@ -145,6 +157,10 @@ def study_section(_, studies):
         over = abscissa(study)
         if over:
             parts.append(Pictures([curve_picture(study, over, quantity) for quantity in study.quantities]))
+        for run in study.runs:
+            if study.lacks(run) and not run["verdict"].startswith("failed: "):
+                parts.append(f"Not in detail: {study.label_of(run)}, as there is no "
+                             f"{' and no '.join(study.lacks(run))} in its folder.")
         if len(study.in_detail) < len(study.runs):
             parts.append(f"{len(study.in_detail)} of its {len(study.runs)} runs follow in detail.")
     return Section("Study", parts) if parts else None

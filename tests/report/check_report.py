@@ -227,17 +227,31 @@ def check_refusals(scratch, wall):
     (broken / "summary.json").write_text((wall / "summary.json").read_text()[:300])
     for folder, words, options in (
             (scratch / "none", "There is no folder", ()),
-            (scratch / "empty", "is not the output folder of a run", ()),
+            (scratch / "empty", "is not the output folder of a run or a study", ()),
             (half, "has not ended", ()), (broken, "cannot be read", ()),
             (wall, "cannot be written", ("-o", scratch / "none" / "page.html"))):
         answer = run_report(folder, *options)
         is_true(f"{folder.name}: {words}", answer.returncode == 1 and words in answer.stdout
                 and len(answer.stdout.strip().splitlines()) == 1)
-    cut = scratch / "cut"
-    shutil.copytree(wall, cut)
     table = (wall / "histories.csv").read_text()
-    (cut / "histories.csv").write_text(table[:len(table) // 2])
-    is_true("a table that ends within a line", run_report(cut).returncode == 0)
+    lines = table.splitlines(keepends=True)
+    middle = len(lines) // 2
+    for name, text, words in (
+            ("cut in a line", table[:len(table) // 2], "is cut"),
+            ("cut between lines", "".join(lines[:middle]), "is cut, as it ends at"),
+            ("with NUL bytes", "\0" * 5000 + "".join(lines[middle:]), "NUL bytes"),
+            ("without its heading", "".join(lines[1:]), "no heading"),
+            ("empty", "", "is empty"),
+            ("with unequal lines", table.replace("\n", ",1\n", 3), "in line"),
+            ("of words", "There is\nno table.\n", 'begins with the column "There is"'),
+            ("with a word", table.replace(lines[5].split(",")[2], "none", 1), "is no number")):
+        damaged = scratch / "damaged"
+        shutil.copytree(wall, damaged)
+        (damaged / "histories.csv").write_text(text)
+        answer = run_report(damaged)
+        is_true(f"a table {name} is refused by name", answer.returncode == 1 and words in answer.stdout
+                and "histories.csv" in answer.stdout and len(answer.stdout.strip().splitlines()) == 1)
+        shutil.rmtree(damaged)
 
 
 def check_study(folder):

@@ -15,20 +15,17 @@ namespace Voussoir
     for (unsigned int k = 0; k < point_memory.size(); ++k)
       {
         const ContactPoint &point = solver->points[k];
-        point_memory[k]           = {{point.force[0],
-                                      point.force[1],
-                                      point.force[2],
-                                      point.stick_point[0],
-                                      point.stick_point[1],
-                                      point.history.opening,
-                                      point.history.slip,
-                                      point.bar_extension,
-                                      point.largest_slip,
-                                      point.initial_gap[0],
-                                      point.initial_gap[1],
-                                      point.initial_gap[2],
-                                      point.mean_pressure,
-                                      static_cast<double>(point.status)}};
+        point_memory[k]           = {
+                    {point.force[0],       point.force[1],
+                     point.force[2],       point.stick_point[0],
+                     point.stick_point[1], point.history.opening,
+                     point.history.slip,   point.bar_extension,
+                     point.largest_slip,   point.initial_gap[0],
+                     point.initial_gap[1], point.initial_gap[2],
+                     point.mean_pressure,  static_cast<double>(point.status),
+                     point.gap[0],         point.gap[1],
+                     point.gap[2],         point.velocity[0],
+                     point.velocity[1],    point.velocity[2]}};
         values.items.emplace_back(point_keys[k], point_memory[k].data());
       }
     return values;
@@ -125,5 +122,21 @@ namespace Voussoir
     total.clusters    = saved.at("clusters");
     total.paths       = saved.at("paths");
     total.unsolved    = saved.at("unsolved");
+  }
+
+
+  void
+  Contact::resume()
+  {
+    for (unsigned int k = 0; k < solver->points.size(); ++k)
+      {
+        ContactPoint &point = solver->points[k];
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            point.gap[d]      = point_memory[k][14 + d];
+            point.velocity[d] = point_memory[k][17 + d];
+          }
+        solver->update_limits(point);
+      }
   }
 } // namespace Voussoir

@@ -53,6 +53,9 @@ namespace Voussoir
       {
         fs::create_directories(fs::path(file).parent_path(), ignored);
         mine = lock.take(file + ".lock");
+        if (mine)
+          remove_unfinished(fs::path(file).parent_path(),
+                            fs::path(file).filename());
       }
     if (!dealii::Utilities::MPI::broadcast(log.communicator(), mine))
       return;

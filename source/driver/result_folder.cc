@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <climits>
 #include <filesystem>
+#include <regex>
 
 namespace Voussoir
 {
@@ -183,7 +184,37 @@ namespace Voussoir
       for (const fs::path &result : results)
         fs::remove_all(result);
     }
+
+
+    /** The same in the folder of a run and in those of its checkpoints and
+     *  pictures. */
+    void
+    remove_unfinished_of_run(const std::string &folder)
+    {
+      remove_unfinished(folder);
+      std::error_code problem;
+      for (const auto &entry : fs::directory_iterator(folder, problem))
+        if (entry.is_directory(problem) &&
+            !is_there(entry.path() / "parameters.prm"))
+          remove_unfinished(entry.path());
+    }
   } // namespace
+
+
+  void
+  remove_unfinished(const std::string &folder, const std::string &start)
+  {
+    static const std::regex unfinished(
+      R"(.+\.(csv|h5|json|prm|pvd|txt|vtu)\.(part|unfinished)(-\d+-\d+\.lock)?)");
+    std::error_code       problem;
+    std::vector<fs::path> files;
+    for (const auto &entry : fs::directory_iterator(folder, problem))
+      if (const std::string name = entry.path().filename();
+          name.rfind(start, 0) == 0 && std::regex_match(name, unfinished))
+        files.push_back(entry);
+    for (const fs::path &file : files)
+      fs::remove(file, problem);
+  }
 
 
   ResultFolder::ResultFolder(const Case       &parameters,
@@ -271,6 +302,7 @@ namespace Voussoir
           }
       if (!lock.take(lock_in(chosen)))
         refuse(chosen, still_going_on);
+      remove_unfinished_of_run(chosen);
       try
         {
           if (!made && !options.restart)

@@ -82,10 +82,13 @@ namespace Voussoir
   {
     if (folder.exists())
       open_output();
-    if (folder.exists() && folder.restarts())
+    const bool resumes = folder.exists() && folder.restarts();
+    if (resumes)
       read_checkpoint();
     for (Projection *projection : equation.projections)
       projection->start(state);
+    if (resumes && contact)
+      contact->resume();
     // the table has its line of a checkpoint between two
     if (!folder.restarts() || energy.is_due(state.step))
       energy.evaluate(state);

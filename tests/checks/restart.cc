@@ -82,11 +82,31 @@ namespace Voussoir
         interrupt(*stopped, communicator, verdicts);
         copy("together", "older", communicator);
         copy("together", "refused", communicator);
+        const std::vector<std::string> unfinished{
+          "together/checkpoint/step-000000000000.h5.unfinished-20-7.lock",
+          "together/checkpoint/step-000000000000.h5.unfinished",
+          "together/fields/fields-00000000.vtu.part-20-7.lock",
+          "together/summary.json.part"};
+        const std::string of_user = "together/checkpoint/notes.lock";
+        if (first)
+          for (const std::string &name : unfinished)
+            std::ofstream(name) << "?";
+        if (first)
+          std::ofstream(of_user) << "!";
+        MPI_Barrier(communicator);
         const auto continued = make_case(folder(file, "together", false));
         Simulation going_on(*continued, options(true), communicator);
         verdicts.is_true("it goes on from a time between start and end",
                          going_on.run.state.time > 0. &&
                            going_on.run.state.time < continued->time.end_time);
+        const auto is_there = [](const std::string &name) {
+          return std::filesystem::exists(name);
+        };
+        verdicts.is_true("what a killed run leaves behind is removed",
+                         std::none_of(unfinished.begin(),
+                                      unfinished.end(),
+                                      is_there) &&
+                           is_there(of_user));
         going_on.run.march();
         verdicts.is_true("same displacement, bit for bit",
                          same(uninterrupted.run.state.displacement,
@@ -309,6 +329,8 @@ namespace Voussoir
                          same(a.checkpoint_values(),
                               b.checkpoint_values(),
                               communicator));
+        verdicts.is_true("same energies of each surface, bit for bit",
+                         a.save().at("energies") == b.save().at("energies"));
         compare_energies(a, b, verdicts);
       }
 

@@ -70,6 +70,12 @@ namespace Voussoir
     void
     load(const nlohmann::json &saved);
 
+    /** Called after `start`, which finds gaps and velocities from those of the
+     *  nodes, where a run goes on from a checkpoint: takes them as its last
+     * step left them, which differ by round-off. */
+    void
+    resume();
+
     /** From here on the points swing on their way to a static state. */
     void
     begin_approach();
@@ -147,7 +153,7 @@ namespace Voussoir
   private:
     friend class StaticContact; // finds the same forces in its own way
 
-    static constexpr unsigned int memory_width = 14;
+    static constexpr unsigned int memory_width = 20;
     using PointMemory = std::array<double, memory_width>;
 
     void

@@ -9,6 +9,12 @@
 
 namespace Voussoir
 {
+  /** Removes what a run that was killed was writing in a folder: files without
+   *  their end, and the locks of Open MPI beside them.
+   *  @param start of their names */
+  void
+  remove_unfinished(const std::string &folder, const std::string &start = "");
+
   /** How the command line wants a case to be run. */
   struct RunOptions
   {

@@ -76,7 +76,7 @@ class Table:
         # no number is an empty cell
         self.values = np.array([[float(cell or "inf") for cell in row] for row in rows])
         self.values = self.values.reshape(-1, len(self.titles))
-        if not np.isfinite(self.time).all() or (np.diff(self.time) < 0.).any():
+        if not np.isfinite(self.time).all() or (np.diff(self.time) <= 0.).any():
             refuse(file, f'has numbers in its column "{first}" that do not rise')
 
     def __contains__(self, title):
@@ -221,10 +221,8 @@ class PictureCheck:
         parent = self.within[-1]
         rows = self.points if parent in ("Points", "PointData") else self.cells
         components = self.array.get("NumberOfComponents", "1")
-        if parent == "Points":
-            components = "3"
-        if not components.isdecimal():
-            self.refuse(f'the components of "{name}" are no number')
+        if not components.isdecimal() or (parent == "Points" and components != "3"):
+            self.refuse(f'"{name}" cannot have {components or "no"} components')
         expected = rows * int(components) * SIZES[kind] if n_blocks else 0
         if name != "connectivity" and full != expected:
             self.refuse(f'"{name}" has another size than the points or cells')

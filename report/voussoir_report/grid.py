@@ -4,7 +4,7 @@ import functools
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkPlane, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkCutter
 from vtkmodules.vtkFiltersVerdict import vtkMeshQuality
@@ -57,6 +57,7 @@ class Grid:
         check = PictureCheck(file)
         messages = vtkStringOutputWindow()
         vtkOutputWindow.SetInstance(messages)
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
         reader = vtkXMLUnstructuredGridReader()
         reader.SetFileName(str(file))
         reader.Update()

@@ -14,19 +14,33 @@ namespace Voussoir
 
   namespace
   {
+    // around the name of a file that an entry names
+    constexpr char with_file[]   = " with the file \"",
+                   of_checksum[] = "\" of the checksum ";
+
+
+    /** Whether the results of a run do not depend on an entry. */
     bool
-    is_free(const std::string &entry)
+    is_free_of_results(const std::string &entry)
     {
       static const std::set<std::string> free{"Title",
                                               "Mesh/Partition",
-                                              "Time/End time",
                                               "Output/Folder",
                                               "Static state/Keep in",
-                                              "Output/Energy interval",
-                                              "Output/Energy limit",
                                               "Output/Checkpoint interval",
                                               "Output/Checkpoint time"};
-      if (free.count(entry) > 0 || entry.rfind("Study/", 0) == 0)
+      return free.count(entry) > 0 || entry.rfind("Study/", 0) == 0;
+    }
+
+
+    /** Whether a run may go on with another value of an entry. */
+    bool
+    is_free_of_restart(const std::string &entry)
+    {
+      static const std::set<std::string> free{"Time/End time",
+                                              "Output/Energy interval",
+                                              "Output/Energy limit"};
+      if (is_free_of_results(entry) || free.count(entry) > 0)
         return true;
       // of observers: when they write
       const std::string last = entry.substr(entry.rfind('/') + 1);
@@ -67,6 +81,81 @@ namespace Voussoir
           return true;
       return false;
     }
+
+
+    /** Entries and the files that they name, but those that are free. */
+    nlohmann::json
+    identity_without(const Case &parameters,
+                     bool (*const is_free)(const std::string &entry))
+    {
+      std::ostringstream text;
+      parameters.prm.print_parameters(text, ParameterHandler::ShortText);
+      nlohmann::json           result = nlohmann::json::array();
+      std::istringstream       in(text.str());
+      std::vector<std::string> sections;
+      for (std::string line; std::getline(in, line);)
+        {
+          line              = Utilities::trim(line);
+          const auto equals = line.find('=');
+          if (line.rfind("subsection ", 0) == 0)
+            sections.push_back(line.substr(11) + "/");
+          else if (line == "end")
+            sections.pop_back();
+          else if (line.rfind("set ", 0) == 0)
+            {
+              const std::string entry =
+                join(sections, "") +
+                Utilities::trim(line.substr(4, equals - 4));
+              if (is_free(entry))
+                continue;
+              const std::string value = line.substr(equals + 1);
+              result.push_back(entry + " =" + value);
+              for (const std::string &part : split_list(value))
+                if (const std::string sum =
+                      checksum_of_file(parameters.file.resolve(part));
+                    !sum.empty())
+                  result.push_back(entry + with_file + part + of_checksum +
+                                   sum);
+            }
+        }
+      return result;
+    }
+
+
+    /** Lines of an identity by their entries, "Entry = value", with checksums
+     *  in place of the names of files. */
+    std::map<std::string, std::string>
+    by_contents(const nlohmann::json &identity)
+    {
+      std::map<std::string, std::string> result;
+      std::string                        entry; // of the line before
+      for (const nlohmann::json &item : identity)
+        {
+          const std::string line  = item.is_string() ?
+                                      Utilities::trim(item.get<std::string>()) :
+                                      item.dump();
+          const std::string start = entry + with_file;
+          const auto        sum   = line.rfind(of_checksum);
+          if (!entry.empty() && line.rfind(start, 0) == 0 &&
+              sum != std::string::npos && sum >= start.size())
+            {
+              const std::string file =
+                line.substr(start.size(), sum - start.size());
+              std::string &value = result[entry];
+              // not in the name of the entry
+              const auto place = value.find(file, entry.size());
+              if (place != std::string::npos)
+                value.replace(place,
+                              file.size(),
+                              "a file" +
+                                line.substr(sum + 1)); // " of the checksum ..."
+              continue;
+            }
+          entry         = line.substr(0, line.find(" ="));
+          result[entry] = line;
+        }
+      return result;
+    }
   } // namespace
 
 
@@ -85,36 +174,30 @@ namespace Voussoir
   nlohmann::json
   identity_of(const Case &parameters)
   {
-    std::ostringstream text;
-    parameters.prm.print_parameters(text, ParameterHandler::ShortText);
-    nlohmann::json           result = nlohmann::json::array();
-    std::istringstream       in(text.str());
-    std::vector<std::string> sections;
-    for (std::string line; std::getline(in, line);)
-      {
-        line              = Utilities::trim(line);
-        const auto equals = line.find('=');
-        if (line.rfind("subsection ", 0) == 0)
-          sections.push_back(line.substr(11) + "/");
-        else if (line == "end")
-          sections.pop_back();
-        else if (line.rfind("set ", 0) == 0)
-          {
-            const std::string entry =
-              join(sections, "") + Utilities::trim(line.substr(4, equals - 4));
-            if (is_free(entry))
-              continue;
-            const std::string value = line.substr(equals + 1);
-            result.push_back(entry + " =" + value);
-            for (const std::string &part : split_list(value))
-              if (const std::string sum =
-                    checksum_of_file(parameters.file.resolve(part));
-                  !sum.empty())
-                result.push_back(entry + " with the file \"" + part +
-                                 "\" of the checksum " + sum);
-          }
-      }
-    return result;
+    return identity_without(parameters, is_free_of_restart);
+  }
+
+
+  nlohmann::json
+  result_identity_of(const Case &parameters)
+  {
+    return identity_without(parameters, is_free_of_results);
+  }
+
+
+  std::optional<std::pair<std::string, std::string>>
+  first_difference(const nlohmann::json &one, const nlohmann::json &other)
+  {
+    const auto mine = by_contents(one), theirs = by_contents(other);
+    const auto line = [](const auto &lines, const std::string &entry) {
+      const auto found = lines.find(entry);
+      return found == lines.end() ? "nothing" : found->second;
+    };
+    for (const auto *const lines : {&theirs, &mine})
+      for (const auto &item : *lines)
+        if (line(mine, item.first) != line(theirs, item.first))
+          return std::pair(line(mine, item.first), line(theirs, item.first));
+    return {};
   }
 
 
@@ -135,16 +218,11 @@ namespace Voussoir
                  const nlohmann::json &identity,
                  const std::string    &checkpoint)
   {
-    const nlohmann::json mine = identity_of(parameters);
-    const auto           line = [](const nlohmann::json &lines, std::size_t i) {
-      return i < lines.size() ? Utilities::trim(lines[i].get<std::string>()) :
-                                          std::string("nothing");
-    };
-    for (std::size_t i = 0; i < std::max(mine.size(), identity.size()); ++i)
-      if (line(mine, i) != line(identity, i))
-        throw UserError("The checkpoint \"" + checkpoint +
-                        "\" was written with \"" + line(identity, i) +
-                        "\", the case now has \"" + line(mine, i) +
-                        "\"; restart with the same one, or start afresh.");
+    if (const auto difference =
+          first_difference(identity, identity_of(parameters)))
+      throw UserError("The checkpoint \"" + checkpoint +
+                      "\" was written with \"" + difference->first +
+                      "\", the case now has \"" + difference->second +
+                      "\"; restart with the same one, or start afresh.");
   }
 } // namespace Voussoir

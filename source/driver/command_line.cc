@@ -270,10 +270,16 @@ namespace Voussoir
     MPI_Comm meeting;
     MPI_Comm_dup(communicator, &meeting);
     std::string message;
+    int         code = 1;
     try
       {
         action();
         return 0;
+      }
+    catch (const IncompleteStudy &error)
+      {
+        message = error.what();
+        code    = exit_code_incomplete;
       }
     catch (const UserError &error)
       {
@@ -302,8 +308,8 @@ namespace Voussoir
     if (first || !all)
       std::cerr << "Error: " << message << std::endl;
     if (!all)
-      MPI_Abort(communicator, 1);
-    return 1;
+      MPI_Abort(communicator, code);
+    return code;
   }
 
 

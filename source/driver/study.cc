@@ -48,9 +48,9 @@ namespace Voussoir
     }
 
 
-    /** What a file holds on the first rank; null: none, or no JSON. */
-    nlohmann::json
-    read_json(const std::string &name, const MPI_Comm communicator)
+    /** What a file holds on the first rank; empty: nothing, or no file. */
+    std::string
+    read_text(const std::string &name, const MPI_Comm communicator)
     {
       std::string text;
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
@@ -58,9 +58,44 @@ namespace Voussoir
           std::ifstream in(name);
           text.assign(std::istreambuf_iterator<char>(in), {});
         }
-      text      = Utilities::MPI::broadcast(communicator, text);
-      auto json = nlohmann::json::parse(text, nullptr, false);
-      return json.is_discarded() ? nlohmann::json() : json;
+      return Utilities::MPI::broadcast(communicator, text);
+    }
+
+
+    /** Whether this is the summary of a run, which has a verdict. */
+    bool
+    is_summary(const nlohmann::json &json)
+    {
+      return json.is_object() && json.contains("verdict") &&
+             json.at("verdict").is_string();
+    }
+
+
+    /** The summary that a run has left in a file; null: none. */
+    nlohmann::json
+    read_summary(const std::string &name, const MPI_Comm communicator)
+    {
+      const auto json =
+        nlohmann::json::parse(read_text(name, communicator), nullptr, false);
+      return is_summary(json) ? json : nlohmann::json();
+    }
+
+
+    /** What a study has noted of a run: "identity" and, once the run has ended,
+     *  "summary". Null: the run has not been begun. */
+    nlohmann::json
+    read_record(const std::string &name, const MPI_Comm communicator)
+    {
+      const std::string text = read_text(name, communicator);
+      if (text.empty())
+        return {};
+      const auto json = nlohmann::json::parse(text, nullptr, false);
+      if (json.is_object() && json.contains("identity") &&
+          (!json.contains("summary") || is_summary(json.at("summary"))))
+        return json;
+      throw UserError("\"" + name +
+                      "\" is not what a study notes of a run, or was changed; "
+                      "remove it, and the study does this run again.");
     }
 
 
@@ -73,13 +108,25 @@ namespace Voussoir
     }
 
 
-    /** All that a run depends on. */
-    std::string
-    checksum_of(const Case &parameters)
+    /** Refuses a run that has been done with other entries. */
+    void
+    check_same(const nlohmann::json &recorded,
+               const nlohmann::json &now,
+               const std::string    &run_folder)
     {
-      std::ostringstream text;
-      parameters.prm.print_parameters(text, ParameterHandler::ShortText);
-      return checksum(text.str() + identity_of(parameters).dump());
+      const std::string remedy =
+        "; choose another \"Folder\" in section \"Output\" for the study, or "
+        "\"--overwrite\".";
+      if (!recorded.is_array())
+        throw UserError("The run in \"" + run_folder +
+                        "\" has been done by an earlier version of the "
+                        "program, which did not note its entries" +
+                        remedy);
+      if (const auto difference = first_difference(recorded, now))
+        throw UserError("The run in \"" + run_folder +
+                        "\" has been done with \"" + difference->first +
+                        "\", the study now has \"" + difference->second + "\"" +
+                        remedy);
     }
 
 
@@ -266,6 +313,7 @@ namespace Voussoir
   Study::run()
   {
     const auto combinations = parameters.combinations();
+    claim_folder();
     say("Study of " +
         counted(combinations.size(), "combination", "combinations") + " in " +
         folder +
@@ -284,21 +332,61 @@ namespace Voussoir
         outcome_of(combinations[i]);
     gather();
     write_tables();
-    if (std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome &run) {
-          return was_stopped(run.summary) || has_failed(run.summary);
-        }))
-      throw UserError("None of the runs of the study in \"" + folder +
-                      "\" came to its end; the first one " +
-                      verdict_of(outcomes.at(0).summary) + ".");
-    const auto failed =
-      std::count_if(outcomes.begin(), outcomes.end(), [](const Outcome &run) {
-        return has_failed(run.summary);
-      });
-    if (failed > 0)
-      throw UserError(counted(failed, "run", "runs") + " of the study in \"" +
-                      folder +
-                      "\" failed, see study.csv; mend what its verdict names "
-                      "and start the study again, which does only these.");
+    conclude();
+  }
+
+
+  void
+  Study::claim_folder()
+  {
+    bool mine = true;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      {
+        std::error_code problem;
+        fs::create_directories(folder, problem);
+        mine = lock.take(folder + "/.lock");
+      }
+    if (!Utilities::MPI::broadcast(communicator, mine))
+      throw UserError("The folder \"" + folder +
+                      "\" is that of a study which is still going on; wait for "
+                      "its end, or choose another \"Folder\" in section "
+                      "\"Output\".");
+  }
+
+
+  void
+  Study::conclude() const
+  {
+    const auto number_of = [this](bool (*is)(const nlohmann::json &)) {
+      return std::count_if(outcomes.begin(),
+                           outcomes.end(),
+                           [is](const Outcome &run) {
+                             return is(run.summary);
+                           });
+    };
+    const auto n_failed  = number_of(has_failed),
+               n_stopped = number_of(was_stopped),
+               n_stand = std::ptrdiff_t(outcomes.size()) - n_failed - n_stopped;
+    const std::string count =
+      "Of " + counted(outcomes.size(), "run", "runs") + " in \"" + folder +
+      "\" " + std::to_string(n_stand) +
+      (n_stand == 1 ? " stands, " : " stand, ") + std::to_string(n_stopped) +
+      (n_stopped == 1 ? " was stopped, " : " were stopped, ") +
+      std::to_string(n_failed) + " failed";
+    if (n_stand == 0)
+      throw UserError("None of the runs of the study came to its end; the "
+                      "first one " +
+                      verdict_of(outcomes.at(0).summary) + ". " + count + ".");
+    if (n_failed > 0)
+      throw IncompleteStudy(count +
+                            "; mend what the verdicts in study.csv name and "
+                            "start the study again, which does only the runs "
+                            "that failed.");
+    // a search for a limit goes on from a run that was stopped only if that one
+    // has met the criterion
+    if (n_stopped > 0 && !parameters.seeks_limit())
+      throw IncompleteStudy(count + "; the verdicts in study.csv say why.");
+    say(count);
   }
 
 
@@ -326,19 +414,16 @@ namespace Voussoir
 
     const std::string run_folder = folder_of(values),
                       record     = run_folder + ".json";
-    Case              run(file_of(values));
-    const std::string identity      = checksum_of(run);
-    nlohmann::json    known         = read_json(record, group);
-    const bool        has_been_done = !options.overwrite && known.is_object() &&
-                               known.contains("summary") &&
-                               !has_failed(known.at("summary"));
-    if (!options.overwrite && known.is_object() &&
-        known.at("identity") != identity &&
-        (has_been_done || !known.contains("summary")))
-      throw UserError("The run in \"" + run_folder +
-                      "\" has been done with other entries; choose another "
-                      "\"Folder\" in section \"Output\" for the study, or "
-                      "\"--overwrite\".");
+    Case                 run(file_of(values));
+    const nlohmann::json identity = result_identity_of(run);
+    // of no interest where all is done anew
+    const nlohmann::json known =
+      options.overwrite ? nlohmann::json() : read_record(record, group);
+    const bool has_ended     = known.is_object() && known.contains("summary"),
+               has_been_done = has_ended && !has_failed(known.at("summary"));
+    // entries of a run that failed may have been mended
+    if (known.is_object() && (has_been_done || !has_ended))
+      check_same(known.at("identity"), identity, run_folder);
     nlohmann::json summary;
     const Timer    clock_of_run;
     if (has_been_done)
@@ -351,8 +436,6 @@ namespace Voussoir
         const auto write = [&](const nlohmann::json &text) {
           if (Utilities::MPI::this_mpi_process(group) > 0)
             return;
-          std::error_code ignored;
-          fs::create_directories(folder, ignored);
           if (const std::string reason =
                 write_file(record, text.dump(2) + '\n');
               !reason.empty())
@@ -361,10 +444,7 @@ namespace Voussoir
         };
         write({{"identity", identity}});
         // what failed has nothing to go on from
-        summary = do_run(run,
-                         run_folder,
-                         !options.overwrite &&
-                           !(known.is_object() && known.contains("summary")));
+        summary = do_run(run, run_folder, known.is_object() && !has_ended);
         write({{"identity", identity}, {"summary", summary}});
         ++n_done;
         seconds_of_runs += clock_of_run.wall_time();
@@ -403,7 +483,7 @@ namespace Voussoir
     catch (const RunStopped &stopped)
       {
         const nlohmann::json summary =
-          read_json(run_folder + "/summary.json", group);
+          read_summary(run_folder + "/summary.json", group);
         return summary.is_object() && was_stopped(summary) ?
                  summary :
                  nlohmann::json{
@@ -414,7 +494,7 @@ namespace Voussoir
         return {{"verdict", std::string("failed: ") + error.what()}};
       }
     const nlohmann::json summary =
-      read_json(run_folder + "/summary.json", group);
+      read_summary(run_folder + "/summary.json", group);
     return summary.is_object() ?
              summary :
              nlohmann::json{{"verdict", "failed: it has left no summary.json"}};

@@ -1,3 +1,4 @@
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/output/table.h>
 
 #include <cmath>
@@ -6,6 +7,18 @@
 
 namespace Voussoir
 {
+  namespace
+  {
+    /** A spreadsheet takes what begins so for a formula, unless there is an
+     *  apostrophe before it; numbers are none. */
+    bool
+    is_like_formula(const std::string &text)
+    {
+      return text.find_first_of("=+-@\t\r") == 0 && !parse_number(text);
+    }
+  } // namespace
+
+
   std::string
   csv_heading(const std::vector<std::string> &titles)
   {
@@ -13,11 +26,13 @@ namespace Voussoir
     for (std::size_t i = 0; i < titles.size(); ++i)
       {
         line << (i > 0 ? "," : "");
+        const std::string cell =
+          (is_like_formula(titles[i]) ? "'" : "") + titles[i];
         // quoted() doubles the quotation marks inside, as RFC 4180 has it
-        if (titles[i].find_first_of(",\"\r\n") != std::string::npos)
-          line << std::quoted(titles[i], '"', '"');
+        if (cell.find_first_of(",\"\r\n") != std::string::npos)
+          line << std::quoted(cell, '"', '"');
         else
-          line << titles[i];
+          line << cell;
       }
     return line.str();
   }

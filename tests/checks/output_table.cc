@@ -34,5 +34,33 @@ namespace Voussoir
     // Reference: closed form
     const Registry<Check>::Add<InfiniteNumbers>
       registered("infinite numbers", "In tables of comma-separated values.");
+
+
+    /** Texts in tables stay one cell, and no spreadsheet takes them for
+     *  formulas. */
+    class Headings : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &, Verdicts &verdicts, const MPI_Comm) override
+      {
+        const auto line = [&](const std::vector<std::string> &texts,
+                              const std::string              &expected) {
+          verdicts.is_true(expected, csv_heading(texts) == expected);
+        };
+        line({"crest, left", "a \"b\"", "c"},
+             "\"crest, left\",\"a \"\"b\"\"\",c");
+        line({"=1+1 [m]", "@SUM(A1) [m]", "+a", "-b"},
+             "'=1+1 [m],'@SUM(A1) [m],'+a,'-b");
+        line({"=A1,B1", "a=b", "a@b"}, "\"'=A1,B1\",a=b,a@b");
+        line({"-0.5", "+2", "-1e9", "1"}, "-0.5,+2,-1e9,1");
+        verdicts.is_true("a tab and a carriage return in front",
+                         csv_heading({"\ta", "\rb"}) == "'\ta,\"'\rb\"");
+      }
+    };
+
+    // Reference: closed form
+    const Registry<Check>::Add<Headings>
+      headings("headings", "Texts in tables of comma-separated values.");
   } // namespace
 } // namespace Voussoir

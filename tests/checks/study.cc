@@ -24,14 +24,21 @@ namespace Voussoir
 
 
     nlohmann::json
+    study_json(const std::string &folder)
+    {
+      std::ifstream in(folder + "/study.json");
+      return nlohmann::json::parse(in);
+    }
+
+
+    nlohmann::json
     results_of(const ParameterFile &file, const MPI_Comm communicator)
     {
       RunOptions options;
       options.quiet = true;
       Study(file, options, communicator).run();
       MPI_Barrier(communicator);
-      std::ifstream in(file.given("Output/Folder") + "/study.json");
-      return nlohmann::json::parse(in);
+      return study_json(file.given("Output/Folder"));
     }
 
 
@@ -149,7 +156,20 @@ namespace Voussoir
                    "0.1, 0.8",
                    "Study/Quantities=interfaces/surfaces/plane/residual slip "
                    "[mm]"});
-        const nlohmann::json runs = results_of(study, communicator).at("runs");
+        std::string end = "done";
+        try
+          {
+            results_of(study, communicator);
+          }
+        catch (const IncompleteStudy &error)
+          {
+            end = error.what();
+          }
+        verdicts.is_true("of which two stand, and one was stopped",
+                         end.find("Of 3 runs in \"failing\" 2 stand, 1 was "
+                                  "stopped, 0 failed") == 0);
+        MPI_Barrier(communicator);
+        const nlohmann::json runs = study_json("failing").at("runs");
         verdicts.is_true("three runs", runs.size() == 3);
         for (unsigned int i = 0; i < 3; ++i)
           {
@@ -238,7 +258,8 @@ namespace Voussoir
                  communicator);
         verdicts.is_true(
           "one of two runs fails: an error, and the other's line",
-          holds(one_of_two, "1 run ") && lines_of("no_limit/study.csv") == 3);
+          holds(one_of_two, "1 stands, 0 were stopped, 1 failed") &&
+            lines_of("no_limit/study.csv") == 3);
       }
 
     private:

@@ -5,6 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <optional>
+#include <utility>
+
 namespace Voussoir
 {
   /**
@@ -20,6 +23,17 @@ namespace Voussoir
    *  and those entries and files that it depends on. */
   nlohmann::json
   static_identity_of(const Case &parameters);
+
+  /** What the results of a run depend on: as identity_of(), and how long the
+   * run goes on and what it writes when. */
+  nlohmann::json
+  result_identity_of(const Case &parameters);
+
+  /** The first entry in which two identities differ, as each has it ("nothing"
+   *  if it does not). Files are compared by what they hold: they may have been
+   *  moved. */
+  std::optional<std::pair<std::string, std::string>>
+  first_difference(const nlohmann::json &one, const nlohmann::json &other);
 
   /** FNV-1a, in hexadecimal digits. */
   std::string

@@ -1,11 +1,22 @@
 #ifndef voussoir_driver_study_h
 #define voussoir_driver_study_h
 
+#include <voussoir/base/error.h>
 #include <voussoir/driver/result_folder.h>
 #include <voussoir/driver/study_parameters.h>
 
 namespace Voussoir
 {
+  /** Of a study of which some runs stand, and others were stopped or failed. */
+  constexpr int exit_code_incomplete = 2;
+
+  /** A study ends with that exit code. */
+  class IncompleteStudy : public UserError
+  {
+  public:
+    using UserError::UserError;
+  };
+
   /**
    * Many runs of one parameter file with some entries varied, and the search
    * for the value of one at which something happens. Each run has a folder in
@@ -23,7 +34,9 @@ namespace Voussoir
     ~Study();
 
     /** All runs, then study.csv and study.json. A run that fails is reported,
-     *  and the others go on. */
+     *  and the others go on; in the end that is IncompleteStudy, or UserError
+     *  if no run stands. Throws UserError, too, if another study is going on in
+     *  the folder. */
     void
     run();
 
@@ -55,6 +68,14 @@ namespace Voussoir
 
     std::string
     folder_of(const StudyValues &values) const;
+
+    /** Makes the folder and takes it for this study. */
+    void
+    claim_folder();
+
+    /** Says how many runs stand, and throws if these are not all. */
+    void
+    conclude() const;
 
     /** Does a run, or takes what is there of it. */
     const Outcome &
@@ -104,6 +125,7 @@ namespace Voussoir
     unsigned int        n_groups = 1, my_group = 0;
     StudyParameters     parameters;
     std::string         folder;
+    FileLock            lock; // of the first rank
 
     /** Strengths that the strength reduction leaves, "Entry = value". */
     std::vector<std::string> strengths_kept;

@@ -3,6 +3,7 @@
 import base64
 import csv
 import dataclasses
+import io
 import json
 import math
 import pathlib
@@ -44,7 +45,7 @@ def csv_rows(file):
     if not data.strip():
         refuse(file, "is empty")
     try:
-        rows = list(csv.reader(data.decode().splitlines(keepends=True), strict=True))
+        rows = list(csv.reader(io.StringIO(data.decode(), newline=""), strict=True))
     except UnicodeDecodeError:
         refuse(file, "is no text")
     except csv.Error as error:
@@ -69,12 +70,13 @@ class Table:
         self.titles, rows = csv_rows(file)
         if self.titles[0] != first:
             refuse(file, f'begins with the column "{self.titles[0][:40]}" where "{first}" should be')
-        for number, row in enumerate(rows, 2):
-            for cell in row:
-                if cell and not is_number(cell):
-                    refuse(file, f'has "{cell[:40]}" in line {number}, which is no number')
-        # no number is an empty cell
-        self.values = np.array([[float(cell or "inf") for cell in row] for row in rows])
+        try:
+            # no number is an empty cell
+            self.values = np.array([[float(cell or "inf") for cell in row] for row in rows])
+        except ValueError:
+            line, word = next((line, cell) for line, row in enumerate(rows, 2) for cell in row
+                              if cell and not is_number(cell))
+            refuse(file, f'has "{word[:40]}" in line {line}, which is no number')
         self.values = self.values.reshape(-1, len(self.titles))
         if not np.isfinite(self.time).all() or (np.diff(self.time) <= 0.).any():
             refuse(file, f'has numbers in its column "{first}" that do not rise')

@@ -314,12 +314,13 @@ namespace Voussoir
   {
     const auto combinations = parameters.combinations();
     claim_folder();
-    say("Study of " +
-        counted(combinations.size(), "combination", "combinations") + " in " +
-        folder +
-        (n_groups > 1 ? ", " + std::to_string(n_groups) + " side by side" :
-                        std::string()));
-    if (parameters.reduces_strengths())
+    if (my_group == 0)
+      say("Study of " +
+          counted(combinations.size(), "combination", "combinations") + " in " +
+          folder +
+          (n_groups > 1 ? ", " + std::to_string(n_groups) + " side by side" :
+                          std::string()));
+    if (parameters.reduces_strengths() && my_group == 0)
       say("The " + strength_reduction + " divides " +
           join(split_list(parameters.reduced, ';'), "; ") +
           (strengths_kept.empty() ?
@@ -386,7 +387,8 @@ namespace Voussoir
     // has met the criterion
     if (n_stopped > 0 && !parameters.seeks_limit())
       throw IncompleteStudy(count + "; the verdicts in study.csv say why.");
-    say(count);
+    if (my_group == 0)
+      say(count);
   }
 
 

@@ -4,7 +4,7 @@ ends in time with a page and exit code 0 or with one sentence and exit code 1,
 never with a traceback, and what cannot be read is named.
 
 usage: damage_results.py PROGRAM FOLDER_OF_THE_REPORT DAM.prm WALL.prm
-                         [--damages N] [--seed N]
+                         [--damages N] [--seed N] [--first N]
 
 DAM.prm has joints and concrete that cracks, WALL.prm neither. Damage number N of a
 seed is the same whatever comes before it.
@@ -34,6 +34,7 @@ parser.add_argument("dam", type=pathlib.Path)
 parser.add_argument("wall", type=pathlib.Path)
 parser.add_argument("--damages", type=int, default=200)
 parser.add_argument("--seed", type=int, default=1)
+parser.add_argument("--first", type=int, default=0, help="number of the first damage")
 parser.add_argument("--patience", type=float, default=120., help="for one report [s]")
 options = parser.parse_args()
 
@@ -307,7 +308,7 @@ def main():
             if code != 0:
                 failures += 1
                 print(f"{folder.name}, whole: exit code {code}, {said}")
-        for number in range(options.damages):
+        for number in range(options.first, options.first + options.damages):
             chance = random.Random(f"{options.seed} {number}")
             damaged = pathlib.Path(scratch) / "damaged"
             shutil.copytree(whole / chance.choice(("dam", "dam", "wall", "study")), damaged, symlinks=True)

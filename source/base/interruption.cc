@@ -28,8 +28,11 @@ namespace Voussoir
   listen_to_signals()
   {
     stop_flag = checkpoint_flag = 0;
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR2})
+    for (const int signal : {SIGINT, SIGTERM, SIGXCPU, SIGUSR2})
       std::signal(signal, on_stop);
+    // nohup ignores it
+    if (std::signal(SIGHUP, on_stop) == SIG_IGN)
+      std::signal(SIGHUP, SIG_IGN);
     std::signal(SIGUSR1, on_checkpoint);
   }
 

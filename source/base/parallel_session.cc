@@ -1,5 +1,7 @@
 #include <voussoir/base/parallel_session.h>
 
+#include <sys/prctl.h>
+
 #include <csignal>
 #include <cstdlib>
 
@@ -17,6 +19,10 @@ namespace Voussoir
 #endif
     // A file that grows beyond the limit of its size is an error like others.
     std::signal(SIGXFSZ, SIG_IGN);
+    // Ranks do not outlive an mpirun that is killed: Open MPI lets them go on,
+    // and write, for a second.
+    if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr)
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
     // Shared file pointers are not used. Open MPI's component for them keeps a
     // file in the session's folder, which two programs without mpirun at the
     // same time take from each other, and complains on every file opened then.

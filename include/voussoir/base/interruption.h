@@ -22,7 +22,7 @@ namespace Voussoir
   /**
    * From now on signals ask instead of killing: SIGUSR1 for a checkpoint;
    * SIGINT, SIGTERM, SIGHUP, SIGXCPU and SIGUSR2 for a checkpoint and the end.
-   * A second SIGINT kills.
+   * A second SIGINT kills. A SIGHUP that was ignored, as by nohup, still is.
    */
   void
   listen_to_signals();

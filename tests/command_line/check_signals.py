@@ -1,0 +1,207 @@
+#!/usr/bin/python3
+"""Signals to the launcher and to its processes on two ranks: which exit code comes through mpirun, how
+soon, and that the run goes on from where it was stopped to the files of one that nobody disturbed.
+
+usage: check_signals.py LAUNCHER CASE.prm
+"""
+
+import os
+import pathlib
+import pty
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "kills"))
+from kill_and_resume import contents  # noqa: E402
+
+launcher, case = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
+STOPPED = 75
+failed = []
+
+
+def is_true(what, good):
+    print(f"{what}  {'ok' if good else 'FAILED'}", flush=True)
+    if not good:
+        failed.append(what)
+
+
+def wait_for(condition, seconds=60.):
+    limit = time.monotonic() + seconds
+    while not condition() and time.monotonic() < limit:
+        time.sleep(0.02)
+    return condition()
+
+
+def ranks(folder):
+    """Processes of the program in a folder, by their number."""
+    found = []
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            if (os.readlink(process / "exe") == str(launcher.parent / "voussoir")
+                    and os.readlink(process / "cwd") == str(folder)):
+                found.append(int(process.name))
+        except OSError:
+            pass  # it has ended, or is none of ours
+    return sorted(found)
+
+
+def parent(process):
+    return int(re.search(r"PPid:\s*(\d+)", pathlib.Path(f"/proc/{process}/status").read_text())[1])
+
+
+def start(folder, *arguments, end=1000., **options):
+    folder.mkdir(exist_ok=True)
+    with open(folder / "terminal.txt", "a") as terminal:
+        return subprocess.Popen(
+            [str(launcher), "-n", "2", str(case), "--set", f"Time/End time={end:.9g}", "Output/Folder=run", *arguments],
+            **{"cwd": folder, "stdout": terminal, "stderr": terminal, "start_new_session": True, **options})
+
+
+def started(folder, **options):
+    """A run that is in its time loop."""
+    run = start(folder, **options)
+    wait_for(lambda: list(folder.glob("run/checkpoint/step-*")))
+    time.sleep(0.3)
+    return run
+
+
+def ends(run, seconds=60.):
+    """Its exit code; None if it does not end, and then it is killed."""
+    try:
+        return run.wait(seconds)
+    except subprocess.TimeoutExpired:
+        run.kill()
+        run.wait()
+        return None
+
+
+def last_time(folder):
+    return float(re.findall(r"Stopped on request at t = (\S+) s; ", (folder / "terminal.txt").read_text())[-1])
+
+
+def check_stops(scratch):
+    stopped = {}
+    for kind in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR2, "SIGTERM to one rank"):
+        folder = scratch / getattr(kind, "name", "rank")
+        run = started(folder)
+        if isinstance(kind, signal.Signals):
+            run.send_signal(kind)
+        else:
+            os.kill(ranks(folder)[-1], signal.SIGTERM)
+        begin = time.monotonic()
+        code = ends(run)
+        seconds = time.monotonic() - begin
+        name = getattr(kind, "name", kind)
+        is_true(f"{name}: exit code {code}", code == STOPPED)
+        is_true(f"  after {seconds:.1f} s", seconds < 30.)
+        if code == STOPPED:
+            stopped[name] = folder
+    ending = max(last_time(folder) for folder in stopped.values()) + 0.1
+    straight = scratch / "straight"
+    is_true("a run that nobody disturbs ends with 0", ends(start(straight, end=ending), 300.) == 0)
+    expected = contents(straight)
+    for name, folder in stopped.items():
+        is_true(f"{name}: it goes on", ends(start(folder, "--restart", end=ending), 300.) == 0)
+        is_true("  to the same files", contents(folder) == expected)
+
+
+def check_early(scratch):
+    for i, delay in enumerate((0.05, 0.3, 0.6, 1.)):
+        run = start(scratch / f"early{i}")
+        time.sleep(delay)
+        run.terminate()
+        code = ends(run)
+        is_true(f"SIGTERM {delay} s after the start: exit code {code}", code == STOPPED)
+
+
+def check_errors(scratch):
+    folder = scratch / "typo"
+    seconds = []
+    for _ in range(3):
+        begin = time.monotonic()
+        code = ends(start(folder, "Time/Edn time=3"))
+        seconds.append(time.monotonic() - begin)
+    is_true(f"a wrong entry: exit code {code}", code == 1)
+    is_true(f"  after {min(seconds):.1f} s", min(seconds) < 3.)
+    text = (folder / "terminal.txt").read_text()
+    is_true("  said once each time, and nothing else", re.fullmatch('(Error: [^\n]*"Edn time"[^\n]*\n){3}', text))
+
+
+def check_kills(scratch):
+    folder = scratch / "no_mpirun"
+    run = started(folder)
+    processes = ranks(folder)
+    is_true("two ranks", len(processes) == 2)
+    os.kill(parent(processes[0]), signal.SIGKILL)
+    # Open MPI itself gives them a second
+    is_true("ranks do not outlive mpirun", wait_for(lambda: not ranks(folder), 0.7))
+    code = ends(run)
+    is_true(f"  exit code {code}", code == 128 + signal.SIGKILL)
+
+    folder = scratch / "no_rank"
+    run = started(folder)
+    os.kill(ranks(folder)[0], signal.SIGKILL)
+    code = ends(run, 10.)
+    is_true(f"SIGKILL to one rank: exit code {code}", code == 128 + signal.SIGKILL)
+
+    folder = scratch / "no_launcher"
+    run = started(folder)
+    run.kill()
+    run.wait()
+    is_true("ranks do not outlive the launcher", wait_for(lambda: not ranks(folder), 5.))
+
+
+def check_second(scratch):
+    folder = scratch / "second"
+    run = started(folder)
+    waiting = ranks(folder)[-1]
+    os.kill(waiting, signal.SIGSTOP)  # writes no checkpoint
+    run.send_signal(signal.SIGINT)
+    time.sleep(2.5)
+    is_true("SIGINT waits for the checkpoint", run.poll() is None)
+    run.send_signal(signal.SIGINT)
+    code = ends(run, 10.)
+    is_true(f"  a second one ends the run, exit code {code}", code == 1)
+    is_true("  and its ranks", wait_for(lambda: not ranks(folder), 2.))
+
+
+def check_terminal(scratch):
+    """Ctrl-C goes to all processes in the foreground of a terminal."""
+    try:
+        master, terminal = pty.openpty()
+    except OSError:
+        print("no terminal can be made here: Ctrl-C is not tried", flush=True)
+        return
+    folder = scratch / "terminal"
+    run = start(folder, stdin=terminal, stdout=terminal, stderr=terminal,
+                env={**os.environ, "TERM": "xterm"}, preexec_fn=lambda: os.login_tty(terminal))
+    os.close(terminal)
+    shown = b""
+
+    def read_until(text):
+        nonlocal shown
+        limit = time.monotonic() + 60.
+        while text not in shown and time.monotonic() < limit:
+            try:
+                shown += os.read(master, 4096)
+            except OSError:  # no process has the terminal any more
+                break
+        return text in shown
+
+    is_true("a terminal has its bar", read_until(b" %  t = "))
+    os.write(master, b"\x03")
+    is_true("  Ctrl-C stops the run", read_until(b"Stopped on request at"))
+    code = ends(run)
+    is_true(f"  exit code {code}", code == STOPPED)
+    os.close(master)
+
+
+with tempfile.TemporaryDirectory() as name:
+    for check in (check_stops, check_early, check_errors, check_kills, check_second, check_terminal):
+        check(pathlib.Path(name))
+print(f"{len(failed)} failed" if failed else "all ok")
+sys.exit(1 if failed else 0)

@@ -92,6 +92,7 @@ namespace Voussoir
   StaticContact::StaticContact(Contact &contact, const Vector &stiffness)
     : contact(contact)
     , multiplier(contact.points().size())
+    , last_change(multiplier.size())
     , cohesion(multiplier.size())
     , closing(multiplier.size())
     , tangent(multiplier.size())
@@ -124,10 +125,11 @@ namespace Voussoir
     before = contact.points();
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
-        multiplier[k] = before[k].force;
-        cohesion[k]   = before[k].status == ContactStatus::open ?
-                          0. :
-                          before[k].limits.cohesion;
+        multiplier[k]  = before[k].force;
+        last_change[k] = Tensor<1, 3>();
+        cohesion[k]    = before[k].status == ContactStatus::open ?
+                           0. :
+                           before[k].limits.cohesion;
       }
   }
 
@@ -253,7 +255,11 @@ namespace Voussoir
         ContactPoint &point = contact.solver->points[k];
         changed += (point.force - multiplier[k]).norm_square();
         whole += point.force.norm_square();
-        multiplier[k] = point.force;
+        // those that swing to and fro meet in the middle
+        const Tensor<1, 3> way   = point.force - multiplier[k];
+        const double       share = way * last_change[k] < 0. ? 0.5 : 1.;
+        last_change[k]           = share * way;
+        multiplier[k] += last_change[k];
         cohesion[k] =
           std::clamp(cohesion[k] + cohesion_per_pressure * closing[k] *
                                      (closing[k] > 0. ? over_relaxation : 1.),

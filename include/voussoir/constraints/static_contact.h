@@ -96,7 +96,7 @@ namespace Voussoir
 
     Contact                          &contact;
     std::vector<double>               spring; // of each point [N/m]
-    std::vector<dealii::Tensor<1, 3>> multiplier;
+    std::vector<dealii::Tensor<1, 3>> multiplier, last_change;
     std::vector<double>               cohesion; // its multiplier [N]
     std::vector<double>               closing;  // see closing_force [N]
     std::vector<dealii::Tensor<2, 3>> tangent;  // in global axes

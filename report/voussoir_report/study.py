@@ -25,7 +25,7 @@ class Study:
         self.runs, self.limits = data["runs"], data.get("limits", [])
         if not self.in_detail:
             refuse(self.folder / "study.json", "names no run that has a summary.json beside it",
-                   "start the study again, which does what is missing")
+                   "do the study again with --overwrite")
 
     def folder_of(self, run):
         return self.folder / pathlib.Path(run["folder"]).name

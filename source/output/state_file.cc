@@ -773,7 +773,7 @@ namespace Voussoir
           if (entry.at("width") != values.width)
             throw Problem{"its \"" + name +
                           "\" has another size; restart with the same "
-                          "parameters"};
+                          "parameters and version of the program"};
           distribute(read_rows(reader, std::to_string(i), entry, communicator),
                      values,
                      communicator);

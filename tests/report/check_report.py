@@ -242,7 +242,7 @@ def check_refusals(scratch, wall):
             ("with NUL bytes", "\0" * 5000 + "".join(lines[middle:]), "NUL bytes"),
             ("without its heading", "".join(lines[1:]), "no heading"),
             ("empty", "", "is empty"),
-            ("with unequal lines", table.replace("\n", ",1\n", 3), "in line"),
+            ("with unequal lines", table.replace(lines[2], lines[2].replace("\n", ",1\n")), "in line 3 under"),
             ("of words", "There is\nno table.\n", 'begins with the column "There is"'),
             ("with a word", table.replace(lines[5].split(",")[2], "none", 1), "is no number")):
         damaged = scratch / "damaged"

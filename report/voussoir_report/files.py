@@ -68,6 +68,8 @@ class Table:
     def __init__(self, file, first):
         self.file = file
         self.titles, rows = csv_rows(file)
+        if not rows:
+            refuse(file, "holds nothing but its heading")
         if self.titles[0] != first:
             refuse(file, f'begins with the column "{self.titles[0][:40]}" where "{first}" should be')
         try:
@@ -77,7 +79,6 @@ class Table:
             line, word = next((line, cell) for line, row in enumerate(rows, 2) for cell in row
                               if cell and not is_number(cell))
             refuse(file, f'has "{word[:40]}" in line {line}, which is no number')
-        self.values = self.values.reshape(-1, len(self.titles))
         if not np.isfinite(self.time).all() or (np.diff(self.time) <= 0.).any():
             refuse(file, f'has numbers in its column "{first}" that do not rise')
 

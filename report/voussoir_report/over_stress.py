@@ -2,10 +2,20 @@
 
 from . import charts
 from .faces import face_panels
+from .files import refuse
 from .grid import dam_of
 from .page import Pictures, Section, Table, number
 
 FILE, CURVES = "over_stress.vtu", "over_stress.csv"
+
+
+def table_of(run):
+    """Time above each ratio, or None."""
+    table = run.table(CURVES, "ratio")
+    ratios = run.list("Output/over-stress/Ratios")
+    if table and len(ratios) not in (0, len(table.values)):
+        refuse(table.file, f"is cut, as it has lines for {len(table.values)} of {len(ratios)} ratios")
+    return table
 
 
 def faces_of(run):
@@ -14,7 +24,7 @@ def faces_of(run):
 
 
 def over_stress_section(runs):
-    runs = [run for run in runs if "over-stress" in run.summary and run.table(CURVES, "ratio")]
+    runs = [run for run in runs if "over-stress" in run.summary and table_of(run)]
     if not runs:
         return None
     verdicts = Table(["", "verdict"], [[run.prefix or "This run",
@@ -48,7 +58,7 @@ def figures_table(runs):
 
 def curves(run):
     """Accumulated time against ratio beside the limit."""
-    table = run.table(CURVES, "ratio")
+    table = table_of(run)
     figure, axes = charts.new_figure()
     axes.plot(table["ratio"], table["allowed time [s]"], color="0.3", linestyle="--", label="allowed")
     charts.lines(axes, [(name, table["ratio"], table[f"{name} accumulated time [s]"])

@@ -23,11 +23,11 @@ RUN apt-get update && \
       $(cat /opt/voussoir/packages) openmpi-bin \
       python3-numpy python3-matplotlib python3-vtk9 python3-jinja2 xvfb && \
     rm -rf /var/lib/apt/lists/*
-# root may, and others without a home; without what a container forbids or has not (see set_up_mpi in bootstrap)
+# root may, and others without a home; without what a container forbids or has not (see set_up_mpi in voussoir-run)
 ENV PATH=/opt/voussoir/bin:$PATH HOME=/tmp \
     OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
     OMPI_MCA_btl=^uct,openib,ofi OMPI_MCA_btl_vader_single_copy_mechanism=none \
-    OMPI_MCA_orte_execute_quiet=1 PRTE_MCA_prte_execute_quiet=1 \
+    OMPI_MCA_orte_execute_quiet=1 \
     HWLOC_HIDE_ERRORS=2
 WORKDIR /work
 CMD ["voussoir", "--help"]

@@ -26,6 +26,11 @@ namespace Voussoir
       if (isatty(STDOUT_FILENO) == 0 || terminal == nullptr ||
           std::string(terminal) == "dumb")
         return false;
+#if defined(OMPI_MAJOR_VERSION) && OMPI_MAJOR_VERSION >= 5
+      // its mpirun passes on whole lines only
+      if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr)
+        return false;
+#endif
       // mpirun gives each process a terminal and passes on what comes there, so
       // that its own output counts, the parent's
       std::error_code   none;

@@ -9,6 +9,7 @@ import os
 import pathlib
 import pty
 import re
+import select
 import signal
 import subprocess
 import sys
@@ -126,9 +127,9 @@ def check_errors(scratch):
         code = ends(start(folder, "Time/Edn time=3"))
         seconds.append(time.monotonic() - begin)
     is_true(f"a wrong entry: exit code {code}", code == 1)
-    is_true(f"  after {min(seconds):.1f} s", min(seconds) < 3.)
-    text = (folder / "terminal.txt").read_text()
-    is_true("  said once each time, and nothing else", re.fullmatch('(Error: [^\n]*"Edn time"[^\n]*\n){3}', text))
+    # two without load, of which one to start
+    is_true(f"  after {min(seconds):.1f} s", min(seconds) < 10.)
+    is_true("  said once each time", (folder / "terminal.txt").read_text().count('Error: --set "Time/Edn time') == 3)
 
 
 def check_kills(scratch):
@@ -182,19 +183,20 @@ def check_terminal(scratch):
     os.close(terminal)
     shown = b""
 
-    def read_until(text):
+    def comes(pattern):
         nonlocal shown
         limit = time.monotonic() + 60.
-        while text not in shown and time.monotonic() < limit:
-            try:
-                shown += os.read(master, 4096)
-            except OSError:  # no process has the terminal any more
-                break
-        return text in shown
+        while not re.search(pattern, shown) and time.monotonic() < limit:
+            if select.select([master], [], [], 1.)[0]:
+                try:
+                    shown += os.read(master, 4096)
+                except OSError:  # no process has the terminal any more
+                    break
+        return re.search(pattern, shown)
 
-    is_true("a terminal has its bar", read_until(b" %  t = "))
+    is_true("a terminal shows how far the run is", comes(rb" +[0-9.]+ %  t = "))
     os.write(master, b"\x03")
-    is_true("  Ctrl-C stops the run", read_until(b"Stopped on request at"))
+    is_true("  Ctrl-C stops the run", comes(rb"Stopped on request at"))
     code = ends(run)
     is_true(f"  exit code {code}", code == STOPPED)
     os.close(master)

@@ -34,7 +34,7 @@ STOPPED = 75
 def command(options, restart):
     program = [str(options.program), str(options.case), "--set", "Output/Folder=run"]
     if options.ranks > 1:
-        program = ["mpirun", "-n", str(options.ranks)] + program
+        program = [str(options.program.parent / "voussoir-run"), "-n", str(options.ranks)] + program[1:]
     return program + (["--restart"] if restart else [])
 
 
@@ -91,8 +91,8 @@ def fresh(folder):
 
 
 def finish(process):
-    """Exit code; everything that is left of the run is gone afterwards: the ranks
-    of a killed mpirun, which have groups of their own in its session, live on."""
+    """Exit code; everything that is left of the run is gone afterwards: mpirun, in
+    a group of its own in the session, lives on for a moment after its launcher."""
     code = process.wait()
     session = ["-s", str(process.pid)]
     while subprocess.run(["pkill", "-KILL"] + session).returncode == 0:
@@ -141,8 +141,6 @@ def main():
                 except subprocess.TimeoutExpired:
                     kind = chance.choice([signal.SIGKILL] * 5 + [
                         signal.SIGTERM, signal.SIGHUP, signal.SIGUSR2])
-                    if options.ranks > 1:
-                        kind = signal.SIGKILL
                     os.killpg(process.pid, kind)
                     kills += 1
             code = finish(process)

@@ -198,7 +198,10 @@ namespace Voussoir
             else if (is_quadrilateral)
               add_element(element, quadrilaterals, mesh.quadrilaterals);
             else
-              count_other_element(type);
+              {
+                count_other_element(type);
+                others.insert(element[0]);
+              }
           }
         if (keyword.has("ELSET"))
           element_sets.add(keyword, numbers, is_in_assembly);
@@ -339,7 +342,10 @@ namespace Voussoir
         if (quadrilateral != quadrilaterals.end())
           mesh.quadrilateral_sets[name].push_back(quadrilateral->second);
         else if (hexahedron == hexahedra.end())
-          return false;
+          {
+            refuse_missing(name, number);
+            return false;
+          }
         else if (side.empty())
           mesh.free_face_sets[name].push_back(hexahedron->second);
         else if (side.size() == 2 && side[0] == 'S' && side[1] >= '1' &&
@@ -371,7 +377,10 @@ namespace Voussoir
                     mesh.quadrilateral_sets[name].push_back(
                       quadrilateral->second);
                   else
-                    ++n_unknown;
+                    {
+                      refuse_missing(name, number);
+                      ++n_unknown;
+                    }
                 }
               note_unknown(name, n_unknown);
             }
@@ -383,6 +392,18 @@ namespace Voussoir
                          entry.second.numbers.begin(),
                          entry.second.numbers.end());
             }
+      }
+
+
+      // An element of another type is left out, one that is nowhere is a slip.
+      void
+      refuse_missing(const std::string &name, const std::int64_t number) const
+      {
+        if (others.count(number) == 0)
+          throw UserError(file.name + ": the set or surface \"" + name +
+                          "\" names element " + std::to_string(number) +
+                          ", which the file does not have; export the mesh "
+                          "again, or correct the set.");
       }
 
 
@@ -412,6 +433,7 @@ namespace Voussoir
 
       // index by element number
       std::unordered_map<std::int64_t, unsigned int> hexahedra, quadrilaterals;
+      std::set<std::int64_t> others; // numbers of elements that are not read
     };
   } // namespace
 

@@ -101,8 +101,14 @@ def earthquake_in_words(run):
     if kind == "none":
         return "No earthquake."
     factor = run.number("Ground motion/Overload factor", 1.)
-    peaks = [f"{factor * run.number(f'Ground motion/Peak acceleration {d}'):g} g {where}"
-             for d, where in DIRECTIONS.items() if run.number(f"Ground motion/Peak acceleration {d}")]
+    peaks = []
+    for d, where in DIRECTIONS.items():
+        peak = run.entry(f"Ground motion/Peak acceleration {d}", "0")
+        if peak != "as recorded":
+            if float(peak) > 0.:
+                peaks.append(f"{factor * float(peak):g} g {where}")
+        elif kind == "record" and run.entry(f"Ground motion/Record/File {d}"):
+            peaks.append(f"{factor:g} times that recorded {where}")
     files = dict.fromkeys(run.entry(f"Ground motion/Record/File {d}") for d in DIRECTIONS)
     source = f" ({', '.join(filter(None, files))})" if kind == "record" else ""
     return (f"Earthquake: {kind}{source}, given at the {run.entry('Ground motion/Given at')}"

@@ -216,6 +216,8 @@ namespace Voussoir
     warnings = unusual_values(prm);
     find_water_of_uplift();
     check();
+    for (const std::string &warning : ground_motion.warnings())
+      warnings.push_back(warning);
     // modes alone need no steps
     if (modes.number > 0 && !moves())
       time.end_time = 0.;

@@ -135,10 +135,10 @@ namespace Voussoir
         {
           result["periods [s]"].push_back(period);
           for (unsigned int d = 0; d < 3; ++d)
-            if (motion.peak_acceleration[d] > 0.)
+            if (const double peak = motion.peak_acceleration(d).value_or(0.);
+                peak > 0.)
               result[std::string(1, "xyz"[d]) + " [m/s2]"].push_back(
-                motion.overload_factor * standard_gravity *
-                motion.peak_acceleration[d] *
+                motion.overload_factor * standard_gravity * peak *
                 motion.spectrum.spectrum.amplification(period));
         }
       return result;

@@ -3,6 +3,7 @@
 #include <voussoir/loads/ground_motion.h>
 
 #include <deal.II/base/patterns.h>
+#include <deal.II/base/utilities.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,12 +53,13 @@ namespace Voussoir
       Selection("outcrop|free surface|incident wave"));
     for (unsigned int c = 0; c < 3; ++c)
       prm.add_parameter("Peak acceleration " + axis_names[c],
-                        peak_acceleration[c],
+                        peak_entries[c],
                         "Largest acceleration, " + axis_meanings[c] +
-                          ", before the overload factor [g = 9.81 m/s2]. 0 "
-                          "leaves a record as its file has it, and leaves out "
-                          "this component with all other types.",
-                        Double(0., 10.));
+                          ", before the overload factor, from 0 to 10 [g = "
+                          "9.81 m/s2]; 0 for no motion. \"as recorded\" leaves "
+                          "a record as its file has it; the other types have "
+                          "no motion then.",
+                        Anything());
     prm.add_parameter("Overload factor",
                       overload_factor,
                       "Multiplies all components, for studies beyond the "
@@ -184,15 +186,65 @@ namespace Voussoir
   }
 
 
+  std::optional<double>
+  GroundMotion::peak_acceleration(const unsigned int component) const
+  {
+    const std::string &entry = peak_entries[component];
+    if (entry == as_recorded)
+      return {};
+    if (!dealii::Patterns::Double(0., 10.).match(entry))
+      throw UserError("\"Peak acceleration " + axis_names[component] +
+                      "\" in section \"Ground motion\" cannot be \"" + entry +
+                      "\"; it must be a number from 0 to 10 [g], or \"" +
+                      as_recorded + "\".");
+    return dealii::Utilities::string_to_double(entry);
+  }
+
+
+  bool
+  GroundMotion::has_record(const unsigned int component) const
+  {
+    return type == "record" && !record.files[component].empty();
+  }
+
+
+  bool
+  GroundMotion::moves(const unsigned int component) const
+  {
+    const std::optional<double> peak = peak_acceleration(component);
+    return type == "record" ? has_record(component) && peak != 0. :
+                              type != "none" && peak.value_or(0.) > 0.;
+  }
+
+
+  std::vector<std::string>
+  GroundMotion::warnings() const
+  {
+    std::vector<std::string> result;
+    for (unsigned int c = 0; c < 3; ++c)
+      if (has_record(c) && !moves(c))
+        result.push_back(
+          "\"Peak acceleration " + axis_names[c] +
+          "\" in section \"Ground motion\" is 0, so that \"File " +
+          axis_names[c] + "\" is not used; write \"" + as_recorded +
+          "\" to take the record as it is, or leave \"File " + axis_names[c] +
+          "\" empty");
+    return result;
+  }
+
+
   void
   GroundMotion::check() const
   {
+    std::array<std::optional<double>, 3> peaks;
+    for (unsigned int c = 0; c < 3; ++c)
+      peaks[c] = peak_acceleration(c);
     if (type == "none")
       return;
 
     for (unsigned int c = 0; c < 3; ++c)
       if (type == "record" && record.files[c].empty() &&
-          peak_acceleration[c] > 0)
+          peaks[c].value_or(0.) > 0.)
         throw UserError("\"Peak acceleration " + axis_names[c] +
                         "\" in section \"Ground motion\" is set, but \"File " +
                         axis_names[c] +
@@ -207,10 +259,14 @@ namespace Voussoir
                       "\"Ground motion/Record\" are all empty; name a file, or "
                       "set \"Type = none\" in section \"Ground motion\".");
 
-    if (type != "record" && peak_acceleration == std::array<double, 3>{})
+    if (!moves(0) && !moves(1) && !moves(2))
       throw UserError(
-        "\"Peak acceleration x\", y and z in section \"Ground motion\" are all "
-        "0, so that there is no motion; set one of them, or \"Type = none\".");
+        "\"Peak acceleration x\", y and z in section \"Ground motion\" leave no "
+        "motion, which needs one above 0" +
+        std::string(type == "record" ?
+                      ", or \"as recorded\", of a component with a file" :
+                      "") +
+        "; set one of them, or \"Type = none\".");
 
     if (type == "Ricker" && ricker.middle > 0 &&
         ricker.middle * ricker.frequency < 1.5 - 1e-9)
@@ -234,11 +290,11 @@ namespace Voussoir
                       "\"Ground motion\" is \"" +
                       type + "\"; set \"Method = none\".");
     for (unsigned int c = 0; c < 3; ++c)
-      if (!record.files[c].empty() && peak_acceleration[c] == 0)
+      if (has_record(c) && !peaks[c])
         throw UserError("\"Peak acceleration " + axis_names[c] +
-                        "\" in section \"Ground motion\" is 0, but the target "
-                        "spectrum of a record that is matched is a multiple of "
-                        "it; set it.");
+                        "\" in section \"Ground motion\" is \"" + as_recorded +
+                        "\", but the target spectrum of a record that is "
+                        "matched is a multiple of it; set it.");
     match.check(spectrum.spectrum);
   }
 
@@ -323,7 +379,7 @@ namespace Voussoir
     std::vector<TimeSeries>  records;
     std::vector<SpectrumFit> components;
     for (unsigned int c = 0; c < 3; ++c)
-      if (!record.files[c].empty())
+      if (moves(c))
         {
           records.push_back(read_component(record, c, folder));
           check_it_moves(peak(records.back().values), c);
@@ -331,7 +387,7 @@ namespace Voussoir
           fit.component    = c;
           fit.periods      = match.periods();
           for (const double period : fit.periods)
-            fit.target.push_back(standard_gravity * peak_acceleration[c] *
+            fit.target.push_back(standard_gravity * *peak_acceleration(c) *
                                  spectrum.spectrum.amplification(period));
         }
     fit_to_spectrum(records, match, spectrum.damping_ratio, components);
@@ -361,21 +417,20 @@ namespace Voussoir
     GroundMotionSignals signals;
     for (unsigned int c = 0; c < 3; ++c)
       {
-        if (type == "none" || (type == "record" ? record.files[c].empty() :
-                                                  peak_acceleration[c] == 0))
+        if (!moves(c))
           continue;
 
-        const double largest =
-          overload_factor * standard_gravity * peak_acceleration[c];
+        const std::optional<double> own = peak_acceleration(c);
+        const double                largest =
+          overload_factor * standard_gravity * own.value_or(0.);
         if (type == "record")
           {
             const TimeSeries motion    = read_component(record, c, folder);
             const double     unchanged = peak(motion.values);
-            if (peak_acceleration[c] > 0)
+            if (own)
               check_it_moves(unchanged, c);
-            signals[c] = scaled(motion,
-                                peak_acceleration[c] > 0 ? largest / unchanged :
-                                                           overload_factor);
+            signals[c] =
+              scaled(motion, own ? largest / unchanged : overload_factor);
           }
         else if (type == "Ricker")
           signals[c] =

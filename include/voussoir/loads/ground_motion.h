@@ -11,6 +11,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace Voussoir
@@ -33,10 +34,23 @@ namespace Voussoir
      */
     std::string given_at = "outcrop";
 
-    /** Largest accelerations before the overload factor [g]. */
-    std::array<double, 3> peak_acceleration{{0., 0., 0.}};
+    /** The entries "Peak acceleration x", y and z. */
+    std::array<std::string, 3> peak_entries{
+      {as_recorded, as_recorded, as_recorded}};
+
+    /** Largest acceleration of a component before the overload factor [g]; none
+     *  for a record as its file has it, which is no motion with other types. */
+    std::optional<double>
+    peak_acceleration(const unsigned int component) const;
+
+    /** Whether the component has a file to read. */
+    bool
+    has_record(const unsigned int component) const;
 
     double overload_factor = 1.;
+
+    /** What stands for a record whose peak is left alone. */
+    static constexpr const char *as_recorded = "as recorded";
 
     struct Record
     {
@@ -95,6 +109,10 @@ namespace Voussoir
     void
     check() const;
 
+    /** A sentence for each record that is named but not used. */
+    std::vector<std::string>
+    warnings() const;
+
     /**
      * The motion in SI units, all factors included; nothing but null pointers
      * for the type "none". Paths of records are relative to @p folder, the one
@@ -116,6 +134,10 @@ namespace Voussoir
     summary(const GroundMotionSignals &signals, const double end_time) const;
 
   private:
+    /** Whether the ground moves in this direction. */
+    bool
+    moves(const unsigned int component) const;
+
     /** From records that are matched to a spectrum. */
     GroundMotionSignals
     build_matched(const std::string        &folder,

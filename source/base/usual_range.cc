@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <regex>
@@ -50,7 +52,25 @@ namespace Voussoir
         {Usual::sound_speed, {100., 2000.}},
         {Usual::silt_weight, {1e3, 2e4}},
         {Usual::silt_friction_angle, {5., 50., true}},
-        {Usual::overload, {0.01, 20.}}};
+        {Usual::overload, {0.01, 20.}},
+        {Usual::friction_coefficient, {0.05, 3., true}},
+        {Usual::interface_cohesion, {100., 1e9, true}},
+        {Usual::interface_tension, {1e3, 1e8, true}},
+        {Usual::shear_fracture_energy, {1., 1e6}},
+        {Usual::gap, {1e-6, 0.1, true}},
+        {Usual::key_depth, {1e-4, 2., true}},
+        {Usual::steel_modulus, {1e10, 1e12}},
+        {Usual::steel_strength, {1e7, 1e10}},
+        {Usual::bar_length, {1e-3, 100.}},
+        {Usual::elevation, {-500., 9000.}},
+        {Usual::acceleration, {-20., 20.}},
+        {Usual::displacement, {-10., 10.}},
+        {Usual::force, {-1e12, 1e12}},
+        {Usual::pressure, {-1e9, 1e9}},
+        {Usual::relaxation_time, {1e-6, 10., true}},
+        {Usual::compression_coefficient, {100., 1e4}},
+        {Usual::demand_capacity_ratio, {1., 20.}},
+        {Usual::accumulated_time, {0., 60.}}};
       return ranges.at(quantity);
     }
 
@@ -94,7 +114,8 @@ namespace Voussoir
       sentence << "\"" << entry << "\" in section \"" << section << "\" is "
                << value << unit << ", but usually it is " << parts[2]
                << parts[3] << " to " << parts[4] << unit;
-      if (value > absurd * to || (value != 0. && value < from / absurd))
+      if (std::abs(value) > absurd * std::max(std::abs(from), to) ||
+          (value > 0. && value < from / absurd))
         throw UserError(sentence.str() +
                         ", and nothing can be computed with it; correct it.");
       result.push_back(sentence.str() + "; look at the unit");

@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/constraints/bond.h>
 
 namespace Voussoir
@@ -10,24 +11,29 @@ namespace Voussoir
   {
     prm.add_parameter("Tensile strength",
                       intact.tension,
-                      "Normal stress at which the bond begins to open [Pa].",
+                      "Normal stress at which the bond begins to open [Pa]." +
+                        usually(Usual::interface_tension),
                       Patterns::Double(0.));
     prm.add_parameter("Cohesion",
                       intact.bond,
-                      "Shear strength of the bond without pressure [Pa].",
+                      "Shear strength of the bond without pressure [Pa]." +
+                        usually(Usual::interface_cohesion),
                       Patterns::Double(0.));
     prm.add_parameter("Friction coefficient",
                       intact.friction,
-                      "Increase of the shear strength with the pressure.",
+                      "Increase of the shear strength with the pressure [-]." +
+                        usually(Usual::friction_coefficient),
                       Patterns::Double(0.));
     prm.add_parameter("Residual cohesion",
                       broken.cohesion,
                       "Shear strength without pressure once the bond is lost, "
-                      "while closed [Pa].",
+                      "while closed [Pa]." +
+                        usually(Usual::interface_cohesion),
                       Patterns::Double(0.));
     prm.add_parameter("Residual friction coefficient",
                       broken.friction,
-                      "Friction once the bond is lost.",
+                      "Friction coefficient once the bond is lost [-]." +
+                        usually(Usual::friction_coefficient),
                       Patterns::Double(0.));
   }
 

@@ -1,3 +1,4 @@
+#include <voussoir/base/usual_range.h>
 #include <voussoir/constraints/interface_law.h>
 
 namespace Voussoir
@@ -15,13 +16,15 @@ namespace Voussoir
       {
         prm.add_parameter("Friction coefficient",
                           constant.friction,
-                          "Shear over pressure at which it slips.",
+                          "Shear over pressure at which it slips [-]." +
+                            usually(Usual::friction_coefficient),
                           Patterns::Double(0.));
         prm.add_parameter("Cohesion",
                           constant.cohesion,
                           "Shear strength without pressure, while closed; slip "
                           "does not lose it, but where the interface has been "
-                          "open by more than 0.01 mm it is gone [Pa].",
+                          "open by more than 0.01 mm it is gone [Pa]." +
+                            usually(Usual::interface_cohesion),
                           Patterns::Double(0.));
       }
 

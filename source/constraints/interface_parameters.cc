@@ -1,4 +1,5 @@
 #include <voussoir/base/active.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/constraints/interface_parameters.h>
 #include <voussoir/mesh/interfaces.h>
 
@@ -49,7 +50,8 @@ namespace Voussoir
                       "Face sets at which it leaves.");
     prm.add_parameter("Upstream level",
                       upstream_level,
-                      "Elevation of the water at the upstream faces [m].");
+                      "Elevation of the water at the upstream faces [m]." +
+                        usually(Usual::elevation));
     prm.add_parameter("Downstream level",
                       downstream_level,
                       "Elevation of the water at the downstream faces [m].");
@@ -68,7 +70,8 @@ namespace Voussoir
       Patterns::Double(0., 1.));
     prm.add_parameter("Density",
                       density,
-                      "Density of the water [kg/m3].",
+                      "Density of the water [kg/m3]." +
+                        usually(Usual::water_density),
                       Patterns::Double(0.));
     prm.add_parameter("Comes with",
                       comes_with,
@@ -120,7 +123,8 @@ namespace Voussoir
     prm.add_parameter("Initial gap",
                       initial_gap,
                       "Opening at the start, or after grouting; such an "
-                      "interface has no bond [m].",
+                      "interface has no bond [m]." +
+                        usually(Usual::gap),
                       Patterns::Double(0.));
     prm.add_parameter("Grouted after",
                       grouted_after,
@@ -131,7 +135,8 @@ namespace Voussoir
     prm.add_parameter("Key depth",
                       key_depth,
                       "Depth of shear keys, which do not let it slip while its "
-                      "opening is smaller; 0 for none [m].",
+                      "opening is smaller; 0 for none [m]." +
+                        usually(Usual::key_depth),
                       Patterns::Double(0.));
     prm.add_parameter("Steel ratio",
                       steel_ratio,
@@ -140,16 +145,19 @@ namespace Voussoir
                       Patterns::Double(0., 1.));
     prm.add_parameter("Steel modulus",
                       steel_modulus,
-                      "Young's modulus of the bars [Pa].",
+                      "Young's modulus of the bars [Pa]." +
+                        usually(Usual::steel_modulus),
                       Patterns::Double(0.));
     prm.add_parameter("Free length",
                       free_length,
-                      "Length over which the bars stretch [m].",
+                      "Length over which the bars stretch [m]." +
+                        usually(Usual::bar_length),
                       Patterns::Double(1e-6));
     prm.add_parameter("Yield stress",
                       yield_stress,
                       "Stress at which the bars yield, in tension and "
-                      "compression [Pa].",
+                      "compression [Pa]." +
+                        usually(Usual::steel_strength),
                       Patterns::Double(0.));
     uplift.declare(prm);
     law->declare_parameters(prm);

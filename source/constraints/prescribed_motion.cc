@@ -1,4 +1,5 @@
 #include <voussoir/base/time_factor.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/constraints/projection.h>
 #include <voussoir/fem/named_sets.h>
 
@@ -25,7 +26,8 @@ namespace Voussoir
         prm.add_parameter("Displacement",
                           displacement,
                           "Displacement at factor 1, x, y, z [m], from where "
-                          "the nodes are at rest.");
+                          "the nodes are at rest." +
+                            usually(Usual::displacement));
         factor.declare(
           prm,
           "Time function",

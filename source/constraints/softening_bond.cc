@@ -1,3 +1,4 @@
+#include <voussoir/base/usual_range.h>
 #include <voussoir/constraints/bond.h>
 
 #include <algorithm>
@@ -23,12 +24,14 @@ namespace Voussoir
         Bond::declare_parameters(prm);
         prm.add_parameter("Fracture energy",
                           opening_energy,
-                          "Work per area that opens the bond (GfI) [J/m2].",
+                          "Work per area that opens the bond (GfI) [J/m2]." +
+                            usually(Usual::fracture_energy),
                           Patterns::Double(1e-3));
         prm.add_parameter("Shear fracture energy",
                           slip_energy,
                           "Work per area beyond that of the residual strength "
-                          "that shears it off (GfII) [J/m2].",
+                          "that shears it off (GfII) [J/m2]." +
+                            usually(Usual::shear_fracture_energy),
                           Patterns::Double(1e-3));
       }
 

@@ -1,5 +1,6 @@
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/fem/face_nodes.h>
 #include <voussoir/fem/named_sets.h>
 #include <voussoir/loads/added_mass.h>
@@ -162,7 +163,10 @@ namespace Voussoir
   AddedMassParameters::declare(ParameterHandler &prm)
   {
     prm.add_parameter("Face sets", face_sets, "Faces with water on them.");
-    prm.add_parameter("Level", level, "Height of the water's surface, z [m].");
+    prm.add_parameter("Level",
+                      level,
+                      "Height of the water's surface, z [m]." +
+                        usually(Usual::elevation));
     prm.add_parameter(
       "Reduction",
       reduction,

@@ -31,7 +31,7 @@ namespace Voussoir
         prm.add_parameter("Level",
                           level,
                           "Elevation of the " + surface +
-                            " [m]; must be given.");
+                            " [m]; must be given." + usually(Usual::elevation));
       }
 
       bool

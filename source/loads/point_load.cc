@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/time_factor.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/fem/point_weights.h>
 #include <voussoir/loads/load.h>
 
@@ -16,7 +17,10 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Point", point, "Where it acts, x, y, z [m].");
-        prm.add_parameter("Force", force, "Its components x, y, z [N].");
+        prm.add_parameter("Force",
+                          force,
+                          "Its components x, y, z [N]." +
+                            usually(Usual::force));
         factor.declare(prm, "Time function", "Factor on the force.");
       }
 

@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/time_factor.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/loads/face_forces.h>
 #include <voussoir/loads/load.h>
 
@@ -18,10 +19,12 @@ namespace Voussoir
         prm.add_parameter("Face sets", face_sets, "Face sets it acts on.");
         prm.add_parameter("Traction",
                           traction,
-                          "Force per area, x, y, z [Pa].");
+                          "Force per area, x, y, z [Pa]." +
+                            usually(Usual::pressure));
         prm.add_parameter("Pressure",
                           pressure,
-                          "Pressure against the surface [Pa].");
+                          "Pressure against the surface [Pa]." +
+                            usually(Usual::pressure));
         factor.declare(prm, "Time function", "Factor on the load.");
       }
 

@@ -66,7 +66,8 @@ namespace Voussoir
         prm.add_parameter("Relaxation time",
                           relaxation_time,
                           "Time that damage lags behind by, which strengthens "
-                          "under fast loading [s]; 0 for no effect of rate.",
+                          "under fast loading [s]; 0 for no effect of rate." +
+                            usually(Usual::relaxation_time),
                           Patterns::Double(0.));
         prm.add_parameter("Tension law",
                           tension_law,

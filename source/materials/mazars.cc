@@ -1,6 +1,7 @@
 // Concrete with a single damage.
 
 #include <voussoir/base/error.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/materials/isotropic_elasticity.h>
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/softening_curve.h>
@@ -44,8 +45,9 @@ namespace Voussoir
                           Patterns::Double(0., 3.));
         prm.add_parameter("Compression B",
                           rate,
-                          "Coefficient B of the damage in compression, usually "
-                          "1000 to 2000.",
+                          "Coefficient B of the damage in compression, 1000 to "
+                          "2000 for concrete [-]." +
+                            usually(Usual::compression_coefficient),
                           Patterns::Double(1.));
       }
 

@@ -28,7 +28,25 @@ namespace Voussoir
     sound_speed,
     silt_weight,
     silt_friction_angle,
-    overload
+    overload,
+    friction_coefficient,
+    interface_cohesion,
+    interface_tension,
+    shear_fracture_energy,
+    gap,
+    key_depth,
+    steel_modulus,
+    steel_strength,
+    bar_length,
+    elevation,
+    acceleration,
+    displacement,
+    force,
+    pressure,
+    relaxation_time,
+    compression_coefficient,
+    demand_capacity_ratio,
+    accumulated_time
   };
 
   /** The last sentence in the description of an entry: what the quantity

@@ -1,3 +1,4 @@
+#include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
 #include <voussoir/mesh/abaqus_reader.h>
 #include <voussoir/mesh/abaqus_sets.h>

@@ -1,8 +1,10 @@
 #include <voussoir/base/error.h>
 #include <voussoir/driver/earthquake.h>
+#include <voussoir/loads/fourier.h>
 
 #include <algorithm>
 #include <iomanip>
+#include <numeric>
 
 namespace Voussoir
 {
@@ -96,10 +98,11 @@ namespace Voussoir
     // What hardly is the earthquake that was meant.
     void
     check_peaks(const GroundMotionSignals &motion,
-                const bool                 recorded,
+                const GroundMotion        &parameters,
                 const double               end_time,
                 Log                       &log)
     {
+      constexpr double                 design = 1.5, recorded = 5.; // [g]
       const std::array<std::string, 3> axes{{"x", "y", "z"}};
       for (unsigned int d = 0; d < 3; ++d)
         if (motion[d])
@@ -121,11 +124,18 @@ namespace Voussoir
             if (!(g < 1e6))
               throw UserError("Nothing can be computed, as " + text.str() +
                               "; " + remedy + ".");
-            if (g > 5.)
+            if (g > recorded)
               log.warn(text.str(), ", more than was ever recorded; ", remedy);
+            else if (const double own = g / parameters.overload_factor;
+                     own > design)
+              log.warn(text.str(),
+                       own < g ? " with the overload factor" : "",
+                       ", more than dams are designed for; ",
+                       remedy,
+                       ", as 1 g is 9.81 m/s2");
             if (g < 1e-3)
               log.warn(text.str(), ", which nobody would feel; ", remedy);
-            if (recorded)
+            if (parameters.type == "record")
               check_single_sample(*motion[d], whole, text.str(), log);
             if (reached.acceleration < 0.99 * whole.acceleration)
               log.warn(text.str(),
@@ -135,6 +145,53 @@ namespace Voussoir
                        end_time,
                        " s in section \"Time\"");
           }
+    }
+
+
+    /** The frequency below which half of the power of the acceleration lies
+     *  [Hz]. */
+    double
+    middle_frequency(const std::array<std::vector<double>, 3> &accelerations)
+    {
+      std::vector<double> power;
+      for (const std::vector<double> &component : accelerations)
+        if (!component.empty())
+          {
+            const auto spectrum =
+              fourier_transform(component, transform_size(component.size()));
+            power.resize(spectrum.size(), 0.);
+            for (std::size_t k = 0; k < spectrum.size(); ++k)
+              power[k] += std::norm(spectrum[k]);
+          }
+      std::partial_sum(power.begin(), power.end(), power.begin());
+      const auto half =
+        std::lower_bound(power.begin(), power.end(), 0.5 * power.back());
+      return double(half - power.begin()) /
+             (2. * double(power.size() - 1) * Earthquake::sample_interval);
+    }
+
+
+    // Waves too short for the cells of the rock never reach the dam.
+    void
+    check_frequencies(const Model                              &model,
+                      const std::array<std::vector<double>, 3> &accelerations,
+                      Log                                      &log)
+    {
+      constexpr double          fairly  = 8. / 5.; // nodes per wavelength
+      const double              middle  = middle_frequency(accelerations);
+      const std::vector<double> carried = model.carried_frequencies();
+      for (unsigned int m = 0; m < carried.size(); ++m)
+        if (carried[m] > 0. && model.materials[m]->inertia_factor == 1. &&
+            fairly * carried[m] < middle)
+          log.warn("half of the power of the ground motion lies above ",
+                   middle,
+                   " Hz, but the largest cells of \"",
+                   model.parameters.materials.objects[m].first,
+                   "\" carry waves up to ",
+                   carried[m],
+                   " Hz with 8 nodes per wavelength, and up to ",
+                   fairly * carried[m],
+                   " Hz with 5; make them smaller in section \"Mesh\"");
     }
 
 
@@ -213,7 +270,10 @@ namespace Voussoir
           accelerations[d].push_back(
             motion[d]->acceleration(i * sample_interval));
     if (end_time > 0.)
-      check_peaks(motion, ground_motion.type == "record", end_time, log);
+      {
+        check_peaks(motion, ground_motion, end_time, log);
+        check_frequencies(model, accelerations, log);
+      }
     if (model.rigid_base())
       {
         if (std::all_of(model.materials.begin(),

@@ -1,3 +1,4 @@
+#include <voussoir/driver/mesh_against_case.h>
 #include <voussoir/driver/model.h>
 #include <voussoir/loads/added_mass.h>
 #include <voussoir/loads/water_level.h>
@@ -355,6 +356,7 @@ namespace Voussoir
     materials = parameters.material_of_coarse_cells(solid);
     check_parts(parameters, solid, log);
     say_sets_on_interfaces(parameters, solid, log);
+    check_mesh_against_case(parameters, solid, materials, log);
   }
 
 
@@ -525,23 +527,23 @@ namespace Voussoir
   }
 
 
-  double
-  Model::carried_frequency(const unsigned int material, const double edge) const
+  std::vector<double>
+  Model::carried_frequencies() const
   {
-    return materials[material]->elastic_constants().s_wave_speed() *
-           discretization.degree / (8. * edge);
+    std::vector<double> frequencies = longest_edges();
+    for (unsigned int m = 0; m < materials.size(); ++m)
+      if (double &value = frequencies[m]; value > 0.)
+        value = materials[m]->elastic_constants().s_wave_speed() *
+                discretization.degree / (8. * value);
+    return frequencies;
   }
 
 
   double
   Model::carried_frequency() const
   {
-    const std::vector<double> edges   = longest_edges();
-    double                    highest = 0.;
-    for (unsigned int m = 0; m < materials.size(); ++m)
-      if (edges[m] > 0.)
-        highest = std::max(highest, carried_frequency(m, edges[m]));
-    return highest;
+    const std::vector<double> frequencies = carried_frequencies();
+    return *std::max_element(frequencies.begin(), frequencies.end());
   }
 
 
@@ -549,7 +551,7 @@ namespace Voussoir
   Model::report_materials(Log &log) const
   {
     const MPI_Comm            communicator = grid.communicator();
-    const std::vector<double> longest      = longest_edges();
+    const std::vector<double> carried      = carried_frequencies();
     std::vector<double>       widest(materials.size(), 0.); // crack bands
     for (const auto &cell : grid.triangulation().active_cell_iterators())
       if (cell->is_locally_owned())
@@ -568,7 +570,7 @@ namespace Voussoir
              << mass.total[m] << " kg, P wave " << c.p_wave_speed()
              << " m/s, S wave " << c.s_wave_speed()
              << " m/s; its largest cells carry waves up to "
-             << std::setprecision(2) << carried_frequency(m, longest[m])
+             << std::setprecision(2) << carried[m]
              << " Hz with 8 nodes per wavelength";
         log.line(text.str());
         const double band = Utilities::MPI::max(widest[m], communicator);

@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/time_factor.h>
+#include <voussoir/base/usual_range.h>
 #include <voussoir/fem/lumped_mass.h>
 #include <voussoir/fem/named_sets.h>
 #include <voussoir/loads/load.h>
@@ -24,7 +25,8 @@ namespace Voussoir
                           "only the dam weighs.");
         prm.add_parameter("Acceleration",
                           acceleration,
-                          "Acceleration of gravity, x, y, z [m/s2].");
+                          "Acceleration of gravity, x, y, z [m/s2]." +
+                            usually(Usual::acceleration));
         factor.declare(prm,
                        "Time function",
                        "Factor on the acceleration, for weight that belongs to "
@@ -110,11 +112,15 @@ namespace Voussoir
                                   "gravity, 0, 0, -9.81, or leave the load "
                                   "out.");
         // it may be inclined, or more than one g by an earthquake's share
-        if (acceleration[2] > 0. || acceleration.norm() < 5. ||
-            acceleration.norm() > 20.)
+        if (acceleration.norm() < 5. || acceleration.norm() > 20.)
           log.warn(entry,
                    acceleration,
                    " m/s2, but gravity on earth is 0 0 -9.81 m/s2");
+        else if (-acceleration[2] < 0.5 * acceleration.norm())
+          log.warn(entry,
+                   acceleration,
+                   " m/s2, which does not point downwards; z is upwards, so "
+                   "that gravity is 0 0 -9.81 m/s2");
       }
 
       std::string         cell_sets;

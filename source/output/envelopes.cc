@@ -597,8 +597,31 @@ namespace Voussoir
               materials[m].json(model->discretization.grid.communicator());
             if (found.at("largest principal stress [MPa]").get<double>() >
                 -1e300)
-              summary[model->names.materials[m]] = found;
+              {
+                summary[model->names.materials[m]] = found;
+                check_tension(m, found);
+              }
           }
+      }
+
+      /** A law without strength bears any tension, concrete and rock do not. */
+      void
+      check_tension(const unsigned int material, const nlohmann::json &found)
+      {
+        constexpr double strongest = 10.; // [MPa]
+        const double     tension =
+          found.at("not exceeded in 95 % of the volume [MPa]");
+        if (tension > strongest &&
+            model->material_memory.of(material) == nullptr)
+          model->log.warn(
+            "a twentieth of the volume of \"",
+            model->names.materials[material],
+            "\" has more than ",
+            tension,
+            " MPa of tension at some time, which neither concrete "
+            "nor rock bears, but its law has no strength; look at "
+            "the units of loads and motion, or choose a law with "
+            "strength");
       }
 
       static double

@@ -160,7 +160,8 @@ namespace Voussoir
         prm.add_parameter("Ratios",
                           ratios,
                           "Demand-capacity ratios above which time and area "
-                          "are summed up, increasing from 1 [-].",
+                          "are summed up, increasing from 1 [-]." +
+                            usually(Usual::demand_capacity_ratio),
                           Patterns::List(Patterns::Double(0.), 1));
         prm.add_parameter(
           "Longest time",
@@ -168,11 +169,13 @@ namespace Voussoir
           "Accumulated time above the ratio 1 that a linear analysis allows "
           "[s]. It falls linearly to zero at the \"Largest ratio\". The limits "
           "are those ascribed to USACE EM 1110-2-6053 for arch dams, gravity "
-          "dams have 0.3 s; compare them with the code that applies.",
+          "dams have 0.3 s; compare them with the code that applies." +
+            usually(Usual::accumulated_time),
           Patterns::Double(0.));
         prm.add_parameter("Largest ratio",
                           largest_ratio,
-                          "Demand-capacity ratio that it allows [-].",
+                          "Demand-capacity ratio that it allows [-]." +
+                            usually(Usual::demand_capacity_ratio),
                           Patterns::Double(1.));
         prm.add_parameter("Largest share",
                           largest_share,
@@ -291,6 +294,8 @@ namespace Voussoir
           verdict += (i == 0 ? "" : "; ") + reasons[i];
         result["verdict"] = verdict;
         log->line("Over-stress of the faces: ", verdict);
+        if (!reasons.empty())
+          log->warn("\"over-stress\": ", verdict);
         write_curves(faces);
         write_fields(state.time);
       }

@@ -37,6 +37,11 @@ namespace Voussoir
         prm.add_parameter("Changes",
                           changes,
                           "\"Section/Entry=value\", separated by \";\".");
+        prm.add_parameter("Warnings",
+                          warnings,
+                          "Parts of the warnings that the run must give, one "
+                          "after the other and no more, separated by \"|\"; "
+                          "empty: none.");
         prm.add_parameter("Results",
                           results,
                           "\"place in the summary: smallest: largest\" "
@@ -59,8 +64,7 @@ namespace Voussoir
         make_simulation_with_files(parameters, communicator)->run.march();
 
         const nlohmann::json summary = read_summary(folder);
-        verdicts.is_true("no objection to the run",
-                         summary.at("verdict") == "no objection");
+        check_warnings(summary, verdicts);
         for (const std::string &result : split_list(results, ';'))
           {
             const auto   parts = split_list(result, ':');
@@ -78,6 +82,26 @@ namespace Voussoir
       }
 
     private:
+      void
+      check_warnings(const nlohmann::json &summary, Verdicts &verdicts) const
+      {
+        const auto                     expected = split_list(warnings, '|');
+        const std::vector<std::string> said     = summary.at("warnings");
+        for (std::size_t i = 0; i < said.size(); ++i)
+          verdicts.is_true("warning: " +
+                             (i < expected.size() ? expected[i] : said[i]),
+                           i < expected.size() &&
+                             said[i].find(expected[i]) != std::string::npos);
+        if (expected.empty())
+          verdicts.is_true("no objection to the run",
+                           summary.at("verdict") == "no objection");
+        else
+          verdicts.is_true("the verdict points to these warnings",
+                           said.size() == expected.size() &&
+                             summary.at("verdict") ==
+                               "with warnings, see there");
+      }
+
       void
       check_order(const std::string &folder, Verdicts &verdicts) const
       {
@@ -100,7 +124,7 @@ namespace Voussoir
           }
       }
 
-      std::string name, changes, results, events;
+      std::string name, changes, warnings, results, events;
     };
 
     // Reference: ourselves

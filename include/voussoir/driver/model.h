@@ -32,8 +32,13 @@ namespace Voussoir
     std::function<unsigned int(const Grid::Cell &)>
     material_of_cell() const;
 
-    /** Highest frequency that the cells of some material carry well; all ranks
-     *  must call this together [Hz]. */
+    /** Frequencies of the S waves that the largest cells of each material carry
+     *  well, with eight nodes per wavelength; 0 for a material without cells.
+     *  All ranks must call this together [Hz]. */
+    std::vector<double>
+    carried_frequencies() const;
+
+    /** The highest of them [Hz]. */
     double
     carried_frequency() const;
 
@@ -103,11 +108,6 @@ namespace Voussoir
     /** Longest edge of the cells of each material [m]. */
     std::vector<double>
     longest_edges() const;
-
-    /** Of S waves with eight nodes per wavelength in cells of this edge [Hz].
-     */
-    double
-    carried_frequency(const unsigned int material, const double edge) const;
   };
 } // namespace Voussoir
 

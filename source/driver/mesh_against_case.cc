@@ -58,6 +58,9 @@ namespace Voussoir
           {
             held.emplace(cell, face);
             absorbs[material_of_cell[cell]] = true;
+            const Tensor<1, 3> normal       = outward_area({cell, face});
+            absorbs_sideways =
+              absorbs_sideways || std::abs(normal[2]) < 0.5 * normal.norm();
           }
         for (const std::string &list :
              {supports.roller, supports.antisymmetric})
@@ -256,7 +259,10 @@ namespace Voussoir
                 side.fixed += area;
               if (held.count({cell, face}) + used.count({cell, face}) > 0)
                 continue;
-              const bool rock = is_rock(material_of_cell[cell]);
+              // a dam may stand alone on an absorbing base
+              const unsigned int m    = material_of_cell[cell];
+              const bool         rock = materials[m]->inertia_factor < 1. ||
+                                (absorbs[m] && absorbs_sideways);
               if (side.free == 0. || (rock && side.free_rock == 0.))
                 side.place = 0.5 * (mesh.vertices[vertices[0]] +
                                     mesh.vertices[vertices[3]]);
@@ -303,6 +309,7 @@ namespace Voussoir
       // and constraints
       Faces             fixed, held, used;
       std::vector<bool> absorbs; // materials that have absorbing faces
+      bool              absorbs_sideways = false;
     };
   } // namespace
 

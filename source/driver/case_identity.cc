@@ -122,13 +122,20 @@ namespace Voussoir
     }
 
 
-    /** Lines of an identity by their entries, "Entry = value", with checksums
-     *  in place of the names of files. */
-    std::map<std::string, std::string>
+    /** A line of an identity, "Entry = value": with checksums in place of the
+     *  names of files, and with both. */
+    struct Line
+    {
+      std::string compared, shown;
+    };
+
+
+    /** Lines of an identity by their entries. */
+    std::map<std::string, Line>
     by_contents(const nlohmann::json &identity)
     {
-      std::map<std::string, std::string> result;
-      std::string                        entry; // of the line before
+      std::map<std::string, Line> result;
+      std::string                 entry; // of the line before
       for (const nlohmann::json &item : identity)
         {
           const std::string line  = item.is_string() ?
@@ -141,18 +148,16 @@ namespace Voussoir
             {
               const std::string file =
                 line.substr(start.size(), sum - start.size());
-              std::string &value = result[entry];
+              auto &[compared, shown] = result[entry];
               // not in the name of the entry
-              const auto place = value.find(file, entry.size());
+              const auto place = compared.find(file, entry.size());
               if (place != std::string::npos)
-                value.replace(place,
-                              file.size(),
-                              "a file" +
-                                line.substr(sum + 1)); // " of the checksum ..."
+                compared.replace(place, file.size(), line.substr(sum));
+              shown += line.substr(sum + 1); // " of the checksum ..."
               continue;
             }
           entry         = line.substr(0, line.find(" ="));
-          result[entry] = line;
+          result[entry] = {line, line};
         }
       return result;
     }
@@ -191,12 +196,15 @@ namespace Voussoir
     const auto mine = by_contents(one), theirs = by_contents(other);
     const auto line = [](const auto &lines, const std::string &entry) {
       const auto found = lines.find(entry);
-      return found == lines.end() ? "nothing" : found->second;
+      return found == lines.end() ? Line{"", "nothing"} : found->second;
     };
     for (const auto *const lines : {&theirs, &mine})
       for (const auto &item : *lines)
-        if (line(mine, item.first) != line(theirs, item.first))
-          return std::pair(line(mine, item.first), line(theirs, item.first));
+        {
+          const Line a = line(mine, item.first), b = line(theirs, item.first);
+          if (a.compared != b.compared)
+            return std::pair(a.shown, b.shown);
+        }
     return {};
   }
 

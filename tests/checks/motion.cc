@@ -348,7 +348,7 @@ namespace Voussoir
     {
       GroundMotion motion;
       motion.type              = "record";
-      motion.peak_entries      = {{"0", "0.2", "0"}};
+      motion.peak_entries      = {{"as recorded", "0.2", "0"}};
       motion.overload_factor   = 1.5;
       motion.record.files      = {{record, record, ""}};
       motion.record.start_time = 1.;

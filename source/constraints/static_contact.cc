@@ -255,10 +255,12 @@ namespace Voussoir
         ContactPoint &point = contact.solver->points[k];
         changed += (point.force - multiplier[k]).norm_square();
         whole += point.force.norm_square();
-        // those that swing to and fro meet in the middle
-        const Tensor<1, 3> way   = point.force - multiplier[k];
-        const double       share = way * last_change[k] < 0. ? 0.5 : 1.;
-        last_change[k]           = share * way;
+        // those that swing to and fro meet in the middle; those of cohesion
+        // have a relaxation of their own
+        const Tensor<1, 3> way    = point.force - multiplier[k];
+        const bool         swings = way * last_change[k] < 0.;
+        const double share = swings && point.limits.cohesion == 0. ? 0.5 : 1.;
+        last_change[k]     = share * way;
         multiplier[k] += last_change[k];
         cohesion[k] =
           std::clamp(cohesion[k] + cohesion_per_pressure * closing[k] *

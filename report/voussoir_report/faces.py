@@ -29,7 +29,9 @@ def face_panels(run, field, file=FILE):
     for side, (title, _) in SIDES.items():
         if f"{side} face" in grid.names("face_set"):
             quads = grid.cells[grid.of("face_set", f"{side} face")]
-            panels.append((title, developed(dam, grid.points[quads], side), grid.values[field][quads]))
+            if len(quads):  # all face sets have names, those not looked at no quadrilaterals
+                panels.append((title, developed(dam, grid.points[quads], side),
+                               grid.values[field][quads]))
     return panels
 
 

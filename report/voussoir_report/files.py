@@ -188,8 +188,6 @@ class PictureCheck:
         if len(self.within) == 1 and (name != "VTKFile" or attributes.get("type") != "UnstructuredGrid"):
             self.refuse("it is no VTU file")
         if name == "Piece":
-            if self.points is not None:
-                self.refuse("it has several pieces")
             sizes = [attributes.get(f"NumberOf{what}", "") for what in ("Points", "Cells")]
             if not all(size.isdecimal() for size in sizes):
                 self.refuse("the numbers of its points and cells are missing")

@@ -287,6 +287,11 @@ def main():
         check_refusals(scratch, wall)
         check_study(scratch / "study")
 
+        ranks = scratch / "ranks"  # whose pictures have a piece of each
+        subprocess.run(["mpirun", "-n", "2", program, case, "--set", f"Output/Folder={ranks}"],
+                       check=True, stdout=subprocess.DEVNULL)
+        is_true("a report of a run on two ranks", run_report(ranks).returncode == 0)
+
         both = scratch / "both.html"
         answer = run_report(f"first={wall}", f"second={wall}", "-o", both)
         is_true("two runs in one page", answer.returncode == 0 and

@@ -3,8 +3,10 @@
 
 #include <filesystem>
 
+#include "folders.h"
 #include "limit_files.h"
 #include "same.h"
+#include "test_observer.h"
 #include "with_files.h"
 
 namespace Voussoir
@@ -18,7 +20,7 @@ namespace Voussoir
       "it would be larger than files may be here (ulimit -f)";
 
     /** Lets files grow no further in a part of a run. */
-    class FullDisk : public Observer
+    class FullDisk : public TestObserver
     {
     public:
       void
@@ -30,23 +32,11 @@ namespace Voussoir
       }
 
       void
-      check(const ObservedModel &) const override
-      {}
-
-      void
-      prepare(const ObservedModel &, const double, const bool) override
-      {}
-
-      void
       observe(const State &state) override
       {
         limit_files(state.time >= from && state.time < to ? size :
                                                             RLIM_INFINITY);
       }
-
-      void
-      finish(const State &, nlohmann::json &) override
-      {}
 
     private:
       double       from = 0., to = 0.;
@@ -69,10 +59,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
-        if (first)
-          look_at_files(verdicts);
-        MPI_Barrier(communicator);
+        on_first(communicator, [&verdicts] { look_at_files(verdicts); });
         const auto march = [&](const std::string &folder,
                                const std::string &from,
                                const std::string &to) {

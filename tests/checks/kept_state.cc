@@ -1,5 +1,6 @@
 #include <filesystem>
 
+#include "folders.h"
 #include "same.h"
 #include "with_files.h"
 
@@ -57,10 +58,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
-        if (first)
-          std::filesystem::remove_all(kept);
-        MPI_Barrier(communicator);
+        remove_folders({kept}, communicator);
         const auto marched = [&file](const std::string       &name,
                                      std::vector<std::string> changes,
                                      const MPI_Comm           ranks) {
@@ -95,11 +93,11 @@ namespace Voussoir
         verdicts.is_true("  and is the same bit for bit",
                          same(again.second->run.state.displacement,
                               one.second->run.state.displacement));
-        if (first)
+        on_first(communicator, [&] {
           verdicts.is_true("one rank alone takes it",
                            seconds(marched("alone", {}, MPI_COMM_SELF)) ==
                              seconds(one));
-        MPI_Barrier(communicator);
+        });
 
         const auto stiffer = marched("stiffer",
                                      {"Materials/rock/Young's modulus=20e9"},
@@ -111,9 +109,7 @@ namespace Voussoir
         verdicts.is_true("nor does one that is to keep none",
                          seconds(apart) != seconds(one) && n_files() == 2);
 
-        if (first)
-          damage_files();
-        MPI_Barrier(communicator);
+        on_first(communicator, damage_files);
         verdicts.is_true("nor does any from a damaged file",
                          seconds(marched("damaged", {}, communicator)) !=
                            seconds(one));

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "folders.h"
 #include "same.h"
+#include "test_observer.h"
 #include "with_files.h"
 
 namespace Voussoir
@@ -16,7 +18,7 @@ namespace Voussoir
   namespace
   {
     /** Does harm to the results in the middle of a run. */
-    class Harm : public Observer
+    class Harm : public TestObserver
     {
     public:
       void
@@ -25,10 +27,6 @@ namespace Voussoir
         prm.add_parameter("Kind", kind, "What it does.");
         prm.add_parameter("Times", time, "When [s].");
       }
-
-      void
-      check(const ObservedModel &) const override
-      {}
 
       void
       prepare(const ObservedModel &model, const double, const bool) override
@@ -44,14 +42,8 @@ namespace Voussoir
         if (done || state.time < time)
           return;
         done = true;
-        if (Utilities::MPI::this_mpi_process(log->communicator()) == 0)
-          harm();
-        MPI_Barrier(log->communicator());
+        on_first(log->communicator(), [this] { harm(); });
       }
-
-      void
-      finish(const State &, nlohmann::json &) override
-      {}
 
     private:
       void
@@ -100,7 +92,6 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
         const auto folder_of = [](std::string kind) {
           std::replace(kind.begin(), kind.end(), ' ', '_');
           return kind;
@@ -114,12 +105,7 @@ namespace Voussoir
                                        "picture removed"})
           {
             const std::string folder = folder_of(kind);
-            if (first)
-              {
-                fs::remove_all(folder);
-                fs::remove_all(folder + "_elsewhere");
-              }
-            MPI_Barrier(communicator);
+            remove_folders({folder, folder + "_elsewhere"}, communicator);
             verdicts.same_text(kind,
                                march(file, kind, folder, communicator),
                                end_of(kind, folder));
@@ -139,13 +125,9 @@ namespace Voussoir
         const auto go_on = [&](const std::string           &name,
                                const std::function<void()> &change,
                                const std::string           &sentence) {
-          if (first)
-            fs::remove_all("restart");
-          MPI_Barrier(communicator);
+          remove_folders({"restart"}, communicator);
           march(file, "nothing", "restart", communicator);
-          if (first)
-            change();
-          MPI_Barrier(communicator);
+          on_first(communicator, change);
           verdicts.same_text("restart, " + name,
                              march(file.with({"Time/End time=0.2"}),
                                    "nothing",

@@ -7,7 +7,9 @@
 #include <regex>
 
 #include "check.h"
+#include "folders.h"
 #include "same.h"
+#include "test_observer.h"
 
 namespace Voussoir
 {
@@ -16,7 +18,7 @@ namespace Voussoir
   namespace
   {
     /** Sends the program the signal of Ctrl-C at a given time. */
-    class Interruption : public Observer
+    class Interruption : public TestObserver
     {
     public:
       void
@@ -26,24 +28,12 @@ namespace Voussoir
       }
 
       void
-      check(const ObservedModel &) const override
-      {}
-
-      void
-      prepare(const ObservedModel &, const double, const bool) override
-      {}
-
-      void
       observe(const State &state) override
       {
         if (!sent && state.time >= time)
           std::raise(SIGINT);
         sent = state.time >= time;
       }
-
-      void
-      finish(const State &, nlohmann::json &) override
-      {}
 
     private:
       double time = 0.;
@@ -66,12 +56,9 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
-        if (first)
-          for (const std::string folder :
-               {"straight", "together", "older", "refused", "alone", "metis"})
-            std::filesystem::remove_all(folder);
-        MPI_Barrier(communicator);
+        remove_folders(
+          {"straight", "together", "older", "refused", "alone", "metis"},
+          communicator);
 
         const auto straight = make_case(folder(file, "straight", false));
         Simulation uninterrupted(*straight, options(false), communicator);
@@ -88,12 +75,11 @@ namespace Voussoir
           "together/fields/fields-00000000.vtu.part-20-7.lock",
           "together/summary.json.part"};
         const std::string of_user = "together/checkpoint/notes.lock";
-        if (first)
+        on_first(communicator, [&] {
           for (const std::string &name : unfinished)
             std::ofstream(name) << "?";
-        if (first)
           std::ofstream(of_user) << "!";
-        MPI_Barrier(communicator);
+        });
         const auto continued = make_case(folder(file, "together", false));
         Simulation going_on(*continued, options(true), communicator);
         verdicts.is_true("it goes on from a time between start and end",
@@ -169,11 +155,10 @@ namespace Voussoir
                            text_of("older/energy.csv"));
 
         // written by one rank, continued by all
-        if (first)
-          {
-            const auto alone = make_case(folder(file, "alone", true));
-            interrupt(*alone, MPI_COMM_SELF, verdicts);
-          }
+        on_first(communicator, [&] {
+          const auto alone = make_case(folder(file, "alone", true));
+          interrupt(*alone, MPI_COMM_SELF, verdicts);
+        });
         copy("alone", "metis", communicator);
         const auto shared = make_case(folder(file, "alone", false));
         Simulation shared_run(*shared, options(true), communicator);

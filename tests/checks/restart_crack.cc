@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include "check.h"
+#include "folders.h"
 #include "same.h"
 
 namespace Voussoir
@@ -21,10 +22,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        if (Utilities::MPI::this_mpi_process(communicator) == 0)
-          for (const std::string folder : {"straight", "in_two"})
-            std::filesystem::remove_all(folder);
-        MPI_Barrier(communicator);
+        remove_folders({"straight", "in_two"}, communicator);
 
         const double closing = time_of_closing(file, communicator);
         const auto   whole =

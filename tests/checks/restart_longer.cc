@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "check.h"
+#include "folders.h"
 #include "same.h"
 
 namespace Voussoir
@@ -25,9 +26,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        if (Utilities::MPI::this_mpi_process(communicator) == 0)
-          for (const std::string folder : {"at_once", "in_two"})
-            std::filesystem::remove_all(folder);
+        remove_folders({"at_once", "in_two"}, communicator);
         write_record(0., communicator);
 
         const double end = make_case(with(file, "at_once", 0.))->time.end_time;

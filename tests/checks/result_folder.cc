@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "folders.h"
 #include "same.h"
 #include "with_files.h"
 
@@ -23,12 +24,6 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
-        const auto on_first = [&](const std::function<void()> &action) {
-          if (first)
-            action();
-          MPI_Barrier(communicator);
-        };
         const auto parameters =
           make_case(file.with({"Output/Folder=results/"}));
         Log        log(communicator, true);
@@ -46,10 +41,7 @@ namespace Voussoir
           return std::string("claimed");
         };
 
-        on_first([] {
-          for (const std::string folder : {"results", "results-2"})
-            fs::remove_all(folder);
-        });
+        remove_folders({"results", "results-2"}, communicator);
         {
           // both look before one of them takes it
           ResultFolder one(*parameters, plain, log),
@@ -67,7 +59,7 @@ namespace Voussoir
             "still going on; choose another \"Folder\" in section \"Output\".");
         }
 
-        on_first([] {
+        on_first(communicator, [] {
           fs::create_directories("results/a/fields");
           fs::create_directories("results/fields");
           fs::create_directories("results/checkpoint");

@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include "check.h"
+#include "folders.h"
 #include "same.h"
 
 namespace Voussoir
@@ -22,10 +23,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        if (Utilities::MPI::this_mpi_process(communicator) == 0)
-          for (const std::string folder : {"twice", "twice-2"})
-            std::filesystem::remove_all(folder);
-        MPI_Barrier(communicator);
+        remove_folders({"twice", "twice-2"}, communicator);
 
         const auto parameters = make_case(file.with({"Output/Folder=twice"}));
         RunOptions options;

@@ -1,8 +1,7 @@
 #include <voussoir/driver/study.h>
 #include <voussoir/driver/study_statistics.h>
 
-#include <filesystem>
-
+#include "folders.h"
 #include "limit_files.h"
 #include "with_files.h"
 
@@ -42,15 +41,6 @@ namespace Voussoir
     }
 
 
-    void
-    remove(const std::string &name, const MPI_Comm communicator)
-    {
-      if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        std::filesystem::remove_all(name);
-      MPI_Barrier(communicator);
-    }
-
-
     /** A search for a limit whose closed form is known. */
     class StudyLimit : public Check
     {
@@ -67,7 +57,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        remove("limit", communicator);
+        remove_folders({"limit"}, communicator);
         const nlohmann::json found =
           results_of(study_file(file, name, "limit"), communicator)
             .at("limits");
@@ -100,7 +90,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        remove("columns", communicator);
+        remove_folders({"columns"}, communicator);
         const ParameterFile study =
           study_file(file, "study_columns", "columns");
         const auto        found  = results_of(study, communicator);
@@ -127,8 +117,8 @@ namespace Voussoir
                           kept = found.at("runs").at(2).at("folder");
         const auto age =
           std::filesystem::last_write_time(kept + "/summary.json");
-        remove(lost + ".json", communicator);
-        remove(lost, communicator);
+        remove_folders({lost + ".json"}, communicator);
+        remove_folders({lost}, communicator);
         verdicts.is_true("again: the same results",
                          results_of(study, communicator) == found);
         verdicts.is_true("  the missing run is there",
@@ -148,7 +138,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        remove("failing", communicator);
+        remove_folders({"failing"}, communicator);
         const ParameterFile study =
           study_file(file, "study_slope", "failing")
             .with({"Study/Limit/Entry=",
@@ -188,7 +178,7 @@ namespace Voussoir
           verdicts.is_true("  its summary has the " + number,
                            summary(1).at(number) == summary(0).at(number));
 
-        remove("failing", communicator);
+        remove_folders({"failing"}, communicator);
         bool refused = false;
         try
           {
@@ -267,7 +257,7 @@ namespace Voussoir
       static std::string
       end_of(const ParameterFile &file, const MPI_Comm communicator)
       {
-        remove("no_limit", communicator);
+        remove_folders({"no_limit"}, communicator);
         std::string end = "done";
         try
           {
@@ -332,7 +322,7 @@ namespace Voussoir
         verdicts.near("  median", some.fractiles[1].value(), 3., 1e-12);
         verdicts.is_true("  84 %: not finite", !some.fractiles[2]);
 
-        remove("spread", communicator);
+        remove_folders({"spread"}, communicator);
         results_of(study_file(file, "study_columns", "spread")
                      .with({"Study/Vary=Materials/stone/Density = 2000, 2400, "
                             "3100 ; Materials/stone/Young's modulus = 1e9, 4e9",
@@ -384,7 +374,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        remove("strengths", communicator);
+        remove_folders({"strengths"}, communicator);
         const auto found =
           results_of(study_file(file, "study_strengths", "strengths"),
                      communicator);

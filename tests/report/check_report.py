@@ -14,21 +14,11 @@ import subprocess
 import sys
 import tempfile
 
-try:
-    import jinja2  # noqa: F401
-    import matplotlib  # noqa: F401
-    import numpy as np
-    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
-except ImportError as error:
-    print(f"skipped: {error}; install python3-vtk9, python3-matplotlib and python3-jinja2")
-    sys.exit(77)
-if not shutil.which("Xvfb"):
-    print("skipped: the package xvfb is missing")
-    sys.exit(77)
-
 program, report, case = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(report))
+import needed  # noqa: E402, F401
+import numpy as np  # noqa: E402
 import verdicts  # noqa: E402
 from verdicts import is_true  # noqa: E402
 from voussoir_report import grid, motion  # noqa: E402

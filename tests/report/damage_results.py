@@ -39,15 +39,9 @@ parser.add_argument("--patience", type=float, default=120., help="for one report
 options = parser.parse_args()
 
 sys.path.insert(0, str(options.report))
-try:
-    from voussoir_report import __main__ as command, charts, scenes
-    from voussoir_report import damage, faces, interfaces, motions, over_stress, page, structure, study  # noqa: F401
-except ImportError as error:
-    print(f"skipped: {error}; install python3-vtk9, python3-matplotlib and python3-jinja2")
-    sys.exit(77)
-if not shutil.which("Xvfb"):
-    print("skipped: the package xvfb is missing")
-    sys.exit(77)
+import needed  # noqa: E402, F401
+from voussoir_report import __main__ as command, charts, scenes  # noqa: E402
+from voussoir_report import damage, faces, interfaces, motions, over_stress, page, structure, study  # noqa: E402, F401
 
 # what reports are made of, and must not be damaged without being refused
 TABLES = ("histories.csv", "energy.csv", "ground_motion.csv", "interfaces.csv", "over_stress.csv")

@@ -1,0 +1,26 @@
+#ifndef voussoir_tests_test_observer_h
+#define voussoir_tests_test_observer_h
+
+#include <voussoir/output/observer.h>
+
+namespace Voussoir
+{
+  /** An observer that does something to a run instead of looking at it. */
+  class TestObserver : public Observer
+  {
+  public:
+    void
+    check(const ObservedModel &) const override
+    {}
+
+    void
+    prepare(const ObservedModel &, const double, const bool) override
+    {}
+
+    void
+    finish(const State &, nlohmann::json &) override
+    {}
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,6 +1,6 @@
 #include <voussoir/base/mpi.h>
 #include <voussoir/constraints/contact.h>
-#include <voussoir/mesh/face_distance.h>
+#include <voussoir/grid/face_distance.h>
 #include <voussoir/mesh/interfaces.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
-#include <voussoir/base/time_factor.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/constraints/projection.h>
 #include <voussoir/fem/named_sets.h>
+#include <voussoir/loads/time_factor.h>
 
 namespace Voussoir
 {

@@ -1,6 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/driver/earthquake.h>
-#include <voussoir/loads/fourier.h>
+#include <voussoir/signals/fourier.h>
 
 #include <algorithm>
 #include <iomanip>

@@ -2,7 +2,7 @@
 #include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/kept_states.h>
 #include <voussoir/driver/stored_rest.h>
-#include <voussoir/output/state_file.h>
+#include <voussoir/files/state_file.h>
 
 #include <filesystem>
 

@@ -4,10 +4,10 @@
 #include <voussoir/base/text.h>
 #include <voussoir/driver/run.h>
 #include <voussoir/driver/summary_file.h>
-#include <voussoir/loads/response_spectrum.h>
+#include <voussoir/files/table.h>
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/material_memory.h>
-#include <voussoir/output/table.h>
+#include <voussoir/signals/response_spectrum.h>
 
 #include <iomanip>
 

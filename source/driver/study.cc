@@ -5,8 +5,8 @@
 #include <voussoir/driver/simulation.h>
 #include <voussoir/driver/study.h>
 #include <voussoir/driver/study_statistics.h>
+#include <voussoir/files/table.h>
 #include <voussoir/output/checkpoint.h>
-#include <voussoir/output/table.h>
 
 #include <cmath>
 #include <filesystem>

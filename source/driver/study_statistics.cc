@@ -1,5 +1,5 @@
 #include <voussoir/driver/study_statistics.h>
-#include <voussoir/output/table.h>
+#include <voussoir/files/table.h>
 
 #include <algorithm>
 #include <cmath>

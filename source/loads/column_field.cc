@@ -1,6 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/loads/column_field.h>
-#include <voussoir/loads/deconvolution.h>
+#include <voussoir/signals/deconvolution.h>
 
 #include <deal.II/base/quadrature_lib.h>
 

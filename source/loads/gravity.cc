@@ -1,9 +1,9 @@
 #include <voussoir/base/error.h>
-#include <voussoir/base/time_factor.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/fem/lumped_mass.h>
 #include <voussoir/fem/named_sets.h>
 #include <voussoir/loads/load.h>
+#include <voussoir/loads/time_factor.h>
 
 namespace Voussoir
 {

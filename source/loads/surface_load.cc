@@ -1,8 +1,8 @@
 #include <voussoir/base/error.h>
-#include <voussoir/base/time_factor.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/loads/face_forces.h>
 #include <voussoir/loads/load.h>
+#include <voussoir/loads/time_factor.h>
 
 namespace Voussoir
 {

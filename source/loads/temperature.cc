@@ -1,9 +1,9 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parse_numbers.h>
 #include <voussoir/fem/named_sets.h>
-#include <voussoir/loads/design_spectrum.h>
+#include <voussoir/grid/face_distance.h>
 #include <voussoir/loads/load.h>
-#include <voussoir/mesh/face_distance.h>
+#include <voussoir/signals/design_spectrum.h>
 
 namespace Voussoir
 {

@@ -1,10 +1,10 @@
 #include <voussoir/fem/nodal_values.h>
+#include <voussoir/files/vtu_file.h>
 #include <voussoir/materials/principal_stress.h>
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/filtered_displacement.h>
 #include <voussoir/output/law_stress.h>
 #include <voussoir/output/material_memory.h>
-#include <voussoir/output/vtu_file.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>

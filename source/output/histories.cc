@@ -1,7 +1,7 @@
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/files/table.h>
 #include <voussoir/output/displacement_since.h>
 #include <voussoir/output/point_recorder.h>
-#include <voussoir/output/table.h>
 
 namespace Voussoir
 {

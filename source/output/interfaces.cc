@@ -2,9 +2,9 @@
 #include <voussoir/base/mpi.h>
 #include <voussoir/constraints/contact.h>
 #include <voussoir/fem/point_weights.h>
+#include <voussoir/files/table.h>
 #include <voussoir/output/interface_faces.h>
 #include <voussoir/output/interface_sums.h>
-#include <voussoir/output/table.h>
 
 namespace Voussoir
 {

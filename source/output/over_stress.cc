@@ -2,9 +2,9 @@
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/base/usual_range.h>
+#include <voussoir/files/table.h>
 #include <voussoir/materials/principal_stress.h>
 #include <voussoir/output/face_mesh.h>
-#include <voussoir/output/table.h>
 
 #include <numeric>
 

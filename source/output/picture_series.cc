@@ -1,6 +1,6 @@
 #include <voussoir/base/error.h>
+#include <voussoir/files/table.h>
 #include <voussoir/output/picture_series.h>
-#include <voussoir/output/table.h>
 
 #include <deal.II/base/data_out_base.h>
 

@@ -1,8 +1,8 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
-#include <voussoir/loads/response_spectrum.h>
+#include <voussoir/files/table.h>
 #include <voussoir/output/point_recorder.h>
-#include <voussoir/output/table.h>
+#include <voussoir/signals/response_spectrum.h>
 
 namespace Voussoir
 {

@@ -1,7 +1,7 @@
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/files/table.h>
 #include <voussoir/output/section_line.h>
-#include <voussoir/output/table.h>
 
 namespace Voussoir
 {

@@ -3,8 +3,8 @@
 #include <voussoir/constraints/contact.h>
 #include <voussoir/fem/named_sets.h>
 #include <voussoir/fem/nodal_values.h>
+#include <voussoir/files/table.h>
 #include <voussoir/output/observer.h>
-#include <voussoir/output/table.h>
 #include <voussoir/time/central_difference.h>
 
 

@@ -1,9 +1,9 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/files/table.h>
 #include <voussoir/materials/tension_split.h>
 #include <voussoir/output/material_memory.h>
-#include <voussoir/output/table.h>
 
 #include <deal.II/base/geometry_info.h>
 

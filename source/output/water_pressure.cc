@@ -1,7 +1,7 @@
 #include <voussoir/base/error.h>
+#include <voussoir/files/vtu_file.h>
 #include <voussoir/loads/water_motion.h>
 #include <voussoir/output/picture_series.h>
-#include <voussoir/output/vtu_file.h>
 
 #include <deal.II/numerics/data_out.h>
 

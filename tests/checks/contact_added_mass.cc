@@ -1,4 +1,4 @@
-#include <voussoir/mesh/generator.h>
+#include <voussoir/mesh_sources/generator.h>
 
 #include "contact_sums.h"
 

@@ -1,6 +1,6 @@
 // A mesh of blocks for the tests of contact.
 
-#include <voussoir/mesh/generator.h>
+#include <voussoir/mesh_sources/generator.h>
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #include <voussoir/fem/point_weights.h>
-#include <voussoir/loads/record.h>
 #include <voussoir/materials/softening_curve.h>
-#include <voussoir/mesh/reader.h>
+#include <voussoir/mesh_sources/reader.h>
+#include <voussoir/signals/record.h>
 
 #include <sys/mman.h>
 #include <sys/resource.h>

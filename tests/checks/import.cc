@@ -1,6 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/mesh/mesh_geometry.h>
-#include <voussoir/mesh/reader.h>
+#include <voussoir/mesh_sources/reader.h>
 
 #include <filesystem>
 #include <fstream>

@@ -1,7 +1,7 @@
 #include <voussoir/base/error.h>
-#include <voussoir/loads/deconvolution.h>
 #include <voussoir/loads/ground_motion.h>
-#include <voussoir/loads/response_spectrum.h>
+#include <voussoir/signals/deconvolution.h>
+#include <voussoir/signals/response_spectrum.h>
 
 #include <fstream>
 

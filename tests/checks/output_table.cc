@@ -1,4 +1,4 @@
-#include <voussoir/output/table.h>
+#include <voussoir/files/table.h>
 
 #include "check.h"
 

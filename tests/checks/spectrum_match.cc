@@ -1,7 +1,7 @@
-#include <voussoir/loads/record.h>
-#include <voussoir/loads/response_spectrum.h>
-#include <voussoir/loads/spectrum_match.h>
-#include <voussoir/loads/spectrum_motion.h>
+#include <voussoir/signals/record.h>
+#include <voussoir/signals/response_spectrum.h>
+#include <voussoir/signals/spectrum_match.h>
+#include <voussoir/signals/spectrum_motion.h>
 
 #include "check.h"
 

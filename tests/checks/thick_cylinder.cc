@@ -1,5 +1,5 @@
 #include <voussoir/materials/material.h>
-#include <voussoir/mesh/generator.h>
+#include <voussoir/mesh_sources/generator.h>
 
 #include <deal.II/fe/fe_values.h>
 

@@ -15,8 +15,8 @@
 #include <voussoir/loads/load.h>
 #include <voussoir/loads/reservoir_parameters.h>
 #include <voussoir/materials/material.h>
-#include <voussoir/mesh/generator.h>
-#include <voussoir/mesh/reader.h>
+#include <voussoir/mesh_sources/generator.h>
+#include <voussoir/mesh_sources/reader.h>
 #include <voussoir/output/observer.h>
 
 namespace Voussoir

@@ -2,7 +2,7 @@
 #define voussoir_fem_crack_bands_h
 
 #include <voussoir/fem/simd.h>
-#include <voussoir/mesh/grid.h>
+#include <voussoir/grid/grid.h>
 
 namespace Voussoir
 {

@@ -2,7 +2,7 @@
 #define voussoir_fem_discretization_h
 
 #include <voussoir/fem/simd.h>
-#include <voussoir/mesh/grid.h>
+#include <voussoir/grid/grid.h>
 
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/quadrature_lib.h>

@@ -1,7 +1,7 @@
 #ifndef voussoir_fem_face_nodes_h
 #define voussoir_fem_face_nodes_h
 
-#include <voussoir/mesh/grid.h>
+#include <voussoir/grid/grid.h>
 
 #include <deal.II/fe/fe_values.h>
 

@@ -1,11 +1,11 @@
 #ifndef voussoir_loads_ground_motion_h
 #define voussoir_loads_ground_motion_h
 
-#include <voussoir/loads/baseline.h>
-#include <voussoir/loads/record.h>
-#include <voussoir/loads/signal.h>
-#include <voussoir/loads/spectrum_match.h>
-#include <voussoir/loads/spectrum_motion.h>
+#include <voussoir/signals/baseline.h>
+#include <voussoir/signals/record.h>
+#include <voussoir/signals/signal.h>
+#include <voussoir/signals/spectrum_match.h>
+#include <voussoir/signals/spectrum_motion.h>
 
 #include <deal.II/base/parameter_handler.h>
 

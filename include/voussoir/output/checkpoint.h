@@ -2,7 +2,7 @@
 #define voussoir_output_checkpoint_h
 
 #include <voussoir/fem/discretization.h>
-#include <voussoir/output/state_file.h>
+#include <voussoir/files/state_file.h>
 
 namespace Voussoir
 {

@@ -1,8 +1,8 @@
 #ifndef voussoir_output_energy_h
 #define voussoir_output_energy_h
 
+#include <voussoir/files/table.h>
 #include <voussoir/output/observer.h>
-#include <voussoir/output/table.h>
 #include <voussoir/time/central_difference.h>
 
 #include <nlohmann/json.hpp>

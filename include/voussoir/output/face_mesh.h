@@ -1,8 +1,8 @@
 #ifndef voussoir_output_face_mesh_h
 #define voussoir_output_face_mesh_h
 
+#include <voussoir/files/vtu_file.h>
 #include <voussoir/output/stress_points.h>
-#include <voussoir/output/vtu_file.h>
 
 #include <map>
 

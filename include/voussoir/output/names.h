@@ -1,7 +1,7 @@
 #ifndef voussoir_output_names_h
 #define voussoir_output_names_h
 
-#include <voussoir/mesh/grid.h>
+#include <voussoir/grid/grid.h>
 
 #include <deal.II/lac/vector.h>
 

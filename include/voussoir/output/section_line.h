@@ -1,7 +1,7 @@
 #ifndef voussoir_output_section_line_h
 #define voussoir_output_section_line_h
 
-#include <voussoir/mesh/face_distance.h>
+#include <voussoir/grid/face_distance.h>
 #include <voussoir/output/stress_points.h>
 
 namespace Voussoir

@@ -1,0 +1,61 @@
+#ifndef voussoir_files_state_file_h
+#define voussoir_files_state_file_h
+
+#include <voussoir/base/keyed_values.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <string>
+
+namespace Voussoir
+{
+  /** The live numbers that a file of a state is written from and read into. */
+  struct StateContent
+  {
+    /** Of nodes, cells and points, spread over the ranks, by name. */
+    std::map<std::string, KeyedValues> values;
+
+    /** What all ranks need, by name; the first rank's are written. */
+    std::map<std::string, nlohmann::json> documents;
+  };
+
+  /**
+   * Writes one HDF5 file from all ranks: the header, the documents in CBOR, and
+   * for each name of the values the sorted keys and the rows of numbers, with a
+   * checksum of each. Rows of zeros are left out. Many ranks write as few do,
+   * and any number of them may read it.
+   *
+   * The file appears under its name when it is whole and on the disk; until
+   * then an older one of that name stays. Throws UserError on all ranks if that
+   * fails.
+   */
+  void
+  write_state(const std::string    &file,
+              const nlohmann::json &header,
+              const StateContent   &content,
+              const MPI_Comm        communicator);
+
+  /** The header; throws UserError on all ranks if there is none. */
+  nlohmann::json
+  read_state_header(const std::string &file, const MPI_Comm communicator);
+
+  /** What is wrong with the file, which all ranks look through together; empty
+   *  if it is whole. */
+  std::string
+  damage_of_state(const std::string &file, const MPI_Comm communicator);
+
+  /**
+   * Reads into the numbers of @p content, whose documents are those that are
+   * wanted; each rank reads its part. Throws UserError on all ranks if the file
+   * is damaged, holds other names, or belongs to another mesh.
+   */
+  void
+  read_state(const std::string &file,
+             StateContent      &content,
+             const MPI_Comm     communicator);
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,67 @@
+#ifndef voussoir_files_table_h
+#define voussoir_files_table_h
+
+#include <voussoir/base/log.h>
+
+namespace Voussoir
+{
+  /** Bytes of the first lines of a file whose first number is less than this
+   *  [s], and of a heading. What is cut or comes later is of a run that was
+   *  interrupted. */
+  std::uintmax_t
+  size_before(const std::string &filename, const double time);
+
+  /** The heading of a file of comma-separated values, or another line of texts.
+   *  Those with a comma, a quotation mark or a line break are quoted as RFC
+   * 4180 has it, so that each stays one column. */
+  std::string
+  csv_heading(const std::vector<std::string> &titles);
+
+  /** A line of such a file, with nine digits; infinite values are empty. */
+  std::string
+  csv_line(const std::vector<double> &values);
+
+  /** All lines of such a file, heading included, from its columns, which have
+   *  the same length. */
+  std::string
+  csv_of_columns(const std::vector<std::string>         &titles,
+                 const std::vector<std::vector<double>> &columns);
+
+  /** A file of comma-separated values over time, with the time in the first
+   *  column. The first rank writes it, what the others say is ignored. Lines
+   *  that cannot be written wait until they can. */
+  class TimeTable
+  {
+  public:
+    /**
+     * Leaves the file it wrote to before, if there was one.
+     *
+     * @param log        takes note of what cannot be written; must live as long
+     *   as this
+     * @param columns    titles with units, without that of the time
+     * @param time_step  [s]
+     * @param start_time of a run that goes on [s]: lines from here on come
+     *   again; others are kept
+     */
+    void
+    open(Log                            &log,
+         const std::string              &filename,
+         const std::vector<std::string> &columns,
+         const double                    time_step,
+         const double                    start_time,
+         const bool                      restarted);
+
+    /** @param time [s]; @p values one for each column. */
+    void
+    write(const double time, const std::vector<double> &values);
+
+    void
+    flush();
+
+  private:
+    Log                         *log = nullptr;
+    std::shared_ptr<GrowingFile> file;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,47 @@
+#ifndef voussoir_grid_face_distance_h
+#define voussoir_grid_face_distance_h
+
+#include <voussoir/grid/grid.h>
+
+#include <deal.II/numerics/rtree.h>
+
+namespace Voussoir
+{
+  /** In deal.II's order [m]. */
+  using FaceCorners = std::array<dealii::Point<3>, 4>;
+
+  /** All faces of some sets, each checked, of all ranks; @p place names the
+   *  entry. */
+  std::vector<FaceCorners>
+  gather_faces(const Grid                     &grid,
+               const std::vector<std::string> &sets,
+               const std::string              &place);
+
+  /**
+   * Distance of points to the faces of some face sets, wherever in the mesh
+   * both are: all ranks hold all faces, in a search tree.
+   */
+  class FaceDistance
+  {
+  public:
+    /** @param sets face sets, each checked; @p place names the entry. */
+    FaceDistance(const Grid                     &grid,
+                 const std::vector<std::string> &sets,
+                 const std::string              &place);
+
+    /**
+     * Distance to the nearest face [m]; exact to plane faces. A warped face
+     * counts as four triangles that meet in its centre.
+     */
+    double
+    operator()(const dealii::Point<3> &point) const;
+
+  private:
+    std::vector<std::array<dealii::Point<3>, 5>> faces; // around, and centre
+
+    /** Boxes around the faces, with their numbers. */
+    dealii::RTree<std::pair<dealii::BoundingBox<3>, unsigned int>> boxes;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,87 @@
+#ifndef voussoir_mesh_sources_arch_dam_sweep_h
+#define voussoir_mesh_sources_arch_dam_sweep_h
+
+#include <voussoir/mesh_sources/arch_dam_section.h>
+
+#include <limits>
+
+namespace Voussoir
+{
+  /**
+   * The lines that the vertices of the cross-section are swept along: through
+   * the dam, and on both sides into the river's direction. They run in layers
+   * from downstream to upstream, level except where a ledge dips: its vertices
+   * have another place in the cross-section of each layer, on a plane in space,
+   * and the others make way.
+   */
+  class ArchDamSweep
+  {
+  public:
+    /**
+     * @param rock_extent  rock on both sides of the dam over its height
+     * @param n_thickness  layers in the dam
+     * @param cell_size    of the layers next to it [m]
+     * @param growth       size ratio of successive layers beyond
+     * @param largest_cell at which they stop growing [m]
+     */
+    ArchDamSweep(const ArchDamCrossSection &section,
+                 const ArchDamSections     &sections,
+                 const double               height,
+                 const double               rock_extent,
+                 const unsigned int         n_thickness,
+                 const double               cell_size,
+                 const double               growth,
+                 const double               largest_cell);
+
+    /** All vertices on the line of a vertex of the section [m]. */
+    std::vector<dealii::Point<3>>
+    operator()(const unsigned int vertex) const;
+
+    /** Layers beside the dam that come nearest to a length [m]. */
+    unsigned int
+    layers_along(const double length) const;
+
+    unsigned int first_in_dam, n_layers;
+
+  private:
+    /** x, y on the sweep of a horizontal line through the dam. */
+    dealii::Point<2>
+    point(const ArchDamSections::Line &line, const unsigned int layer) const;
+
+    /** Finds the vertices of the layers, from the middle of the dam on, in
+     *  steps of at most this length [m]. */
+    void
+    lay_ledges(const ArchDamCrossSection &section, const double step);
+
+    ArchDamCrossSection::LedgeLine
+    ledge_line(const ArchDamCrossSection::Ledge &ledge,
+               const unsigned int                layer,
+               const double                      near) const;
+
+    /** Where a line that leaves the dam at an angle has come after a length. */
+    dealii::Tensor<1, 2>
+    path(const double angle, const double length) const;
+
+    using Vertices = std::vector<ArchDamCrossSection::Vertex>;
+
+    const ArchDamSections &sections;
+    const unsigned int     n_thickness;
+    const double           turning_length, full_length;
+    std::vector<double>    points; // beside the dam, up to 1
+
+    const dealii::QGauss<1> quadrature{8}; // over the turn
+
+    Vertices                           vertices; // at the middle of the dam
+    std::vector<ArchDamSections::Line> lines;    // of them
+
+    // Where ledges dip: the vertices in layers one after the other, and the
+    // first of these.
+    std::vector<Vertices> moved;
+    unsigned int          first_moved = 0;
+
+    double upstream_end   = std::numeric_limits<double>::lowest();
+    double downstream_end = std::numeric_limits<double>::max();
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,26 @@
+#ifndef voussoir_mesh_sources_vtk_reader_h
+#define voussoir_mesh_sources_vtk_reader_h
+
+#include <voussoir/mesh_sources/reader_assembly.h>
+#include <voussoir/mesh_sources/reader_file.h>
+
+#include <iosfwd>
+
+namespace Voussoir
+{
+  /**
+   * Read a VTK legacy file (ASCII or binary, versions 1 to 5) with an
+   * unstructured grid. Its numbers in the cell data array that is called, but
+   * for case and signs such as _, MaterialID, MaterialIDs, Material, BlockID,
+   * Block, CellEntityIDs or Region (the first of these that is there), make
+   * cell sets "material 3" of the hexahedra and face sets "boundary 3" of the
+   * quadrilaterals. Without such an array there are no sets, which @p report
+   * (may be null) says. Throws UserError. (deal.II's GridIn::read_vtk()
+   * reads neither binary files nor version 5, knows one name of the array only
+   * and refuses quadrilaterals inside the mesh, which name interfaces here.)
+   */
+  FileMesh
+  read_vtk(MeshFile &file, std::ostream *report);
+} // namespace Voussoir
+
+#endif

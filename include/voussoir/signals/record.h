@@ -1,0 +1,43 @@
+#ifndef voussoir_signals_record_h
+#define voussoir_signals_record_h
+
+#include <voussoir/signals/time_series.h>
+
+#include <string>
+
+namespace Voussoir
+{
+  /** What g means in records and in peak accelerations [m/s2]. */
+  constexpr double standard_gravity = 9.81;
+
+  /** What the file of an accelerogram does not tell about itself. */
+  struct RecordFormat
+  {
+    /** Unit of the accelerations: "g", "m/s2" or "cm/s2" (gal). */
+    std::string unit = "g";
+
+    /** Of a file with a single column [s]; 0 for all others. */
+    double time_step = 0;
+
+    /** The column to take, counted from 1 without the time column. */
+    unsigned int column = 1;
+  };
+
+  /**
+   * Read an accelerogram and return it in m/s2. Two kinds of file are told
+   * apart by their content:
+   * - AT2 (PEER): header lines that give NPTS and DT in any of the usual
+   *   spellings, then NPTS numbers, any number per line;
+   * - columns: times and one or more accelerations, separated by blanks,
+   *   commas, semicolons or tabs, or one column of accelerations at the
+   *   RecordFormat::time_step. Lines that start with # % ! or // are comments;
+   *   lines before the numbers that start with a word are headings.
+   *
+   * Throws UserError, naming file and line, for whatever is not a complete
+   * series of finite numbers at constant time step.
+   */
+  TimeSeries
+  read_record(const std::string &file, const RecordFormat &format);
+} // namespace Voussoir
+
+#endif

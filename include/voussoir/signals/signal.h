@@ -1,0 +1,183 @@
+#ifndef voussoir_signals_signal_h
+#define voussoir_signals_signal_h
+
+#include <voussoir/signals/time_series.h>
+
+namespace Voussoir
+{
+  /**
+   * One component of a ground motion as a function of time: displacement [m],
+   * velocity [m/s] and acceleration [m/s2], each the exact derivative of the
+   * one before. Any time may be asked for; the ground is at rest at the start.
+   */
+  class Signal
+  {
+  public:
+    virtual ~Signal() = default;
+
+    virtual double
+    displacement(const double time) const = 0;
+
+    virtual double
+    velocity(const double time) const = 0;
+
+    virtual double
+    acceleration(const double time) const = 0;
+
+    /** Time from which on the acceleration is zero [s]; may be infinite. */
+    virtual double
+    end() const = 0;
+  };
+
+  /** Which of the three quantities of a signal has a shape given by formula. */
+  enum class Quantity
+  {
+    displacement,
+    velocity,
+    acceleration
+  };
+
+  /**
+   * The Ricker wavelet (1 - 2 a) exp(-a), a = (pi f (t - t_p))^2, of central
+   * frequency f [Hz] and middle t_p [s], in the displacement, velocity or
+   * acceleration. With t_p >= 1.5 / f the motion before t = 0 is below 1e-6 of
+   * its peak. All three quantities return to zero.
+   */
+  class Ricker : public Signal
+  {
+  public:
+    Ricker(const Quantity quantity,
+           const double   frequency,
+           const double   middle,
+           const double   peak_acceleration);
+
+    double
+    displacement(const double time) const override;
+
+    double
+    velocity(const double time) const override;
+
+    double
+    acceleration(const double time) const override;
+
+    double
+    end() const override;
+
+  private:
+    /** The derivative of that order of exp(-(pi f (t - t_p))^2). */
+    double
+    gaussian(const unsigned int order, const double time) const;
+
+    unsigned int displacement_order;
+    double       middle;
+    /** c = (pi f)^2. */
+    double c;
+    double factor;
+  };
+
+  /**
+   * A sine of given frequency [Hz] and acceleration amplitude [m/s2] that
+   * starts at t = 0 and lasts @p cycles, or for ever with @p cycles = 0.
+   *
+   * With @p ramp_cycles = 0 the acceleration is A sin(w t) from rest, so that
+   * the velocity is A/w (1 - cos(w t)) and the ground moves away at the mean
+   * velocity A/w. With @p ramp_cycles >= 1 the displacement -A/w^2 sin(w t) is
+   * faded in and, before the end, out over so many cycles; the ground comes
+   * back to where it was. While it fades, the acceleration exceeds A by up to
+   * 15 % for one cycle, 2 % for two, 0.5 % for three.
+   */
+  class Sine : public Signal
+  {
+  public:
+    Sine(const double       frequency,
+         const double       amplitude,
+         const unsigned int cycles,
+         const unsigned int ramp_cycles);
+
+    double
+    displacement(const double time) const override;
+
+    double
+    velocity(const double time) const override;
+
+    double
+    acceleration(const double time) const override;
+
+    double
+    end() const override;
+
+  private:
+    /** Fading factor of the displacement: its derivative of that order. */
+    double
+    fade(const unsigned int order, const double time) const;
+
+    double omega;
+    double amplitude;
+    double duration;
+    double ramp;
+  };
+
+  /**
+   * A single push of given duration T [s] that starts at t = 0: the bump
+   * 256 s^4 (1-s)^4, s = t/T, with continuous third derivative, in the
+   * displacement (the ground returns) or in the velocity (it stays displaced by
+   * 128/315 of T times the peak velocity).
+   */
+  class Pulse : public Signal
+  {
+  public:
+    Pulse(const Quantity quantity,
+          const double   duration,
+          const double   peak_acceleration);
+
+    double
+    displacement(const double time) const override;
+
+    double
+    velocity(const double time) const override;
+
+    double
+    acceleration(const double time) const override;
+
+    double
+    end() const override;
+
+  private:
+    /** The derivative of that order (-1: integral) of the bump in time. */
+    double
+    bump(const int order, const double time) const;
+
+    int    displacement_order;
+    double duration;
+    double factor;
+  };
+
+  /**
+   * A motion given by samples: the acceleration is linear between them,
+   * velocity and displacement are its exact integrals. At rest before t = 0;
+   * after the last sample the acceleration is zero, the velocity constant (zero
+   * after a baseline correction).
+   */
+  class Tabulated : public Signal
+  {
+  public:
+    explicit Tabulated(const TimeSeries &acceleration);
+
+    double
+    displacement(const double time) const override;
+
+    double
+    velocity(const double time) const override;
+
+    double
+    acceleration(const double time) const override;
+
+    double
+    end() const override;
+
+  private:
+    Motion motion;
+  };
+} // namespace Voussoir
+
+#endif

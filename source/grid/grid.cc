@@ -1,0 +1,379 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/parameter_file.h>
+#include <voussoir/base/parse_numbers.h>
+#include <voussoir/base/text.h>
+#include <voussoir/grid/grid.h>
+#include <voussoir/mesh/mesh_check.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/distributed/fully_distributed_tria.h>
+#include <deal.II/distributed/tria.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/tria_description.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    std::pair<std::vector<CellData<3>>, SubCellData>
+    cell_data(const CoarseMesh &coarse)
+    {
+      std::vector<CellData<3>> cells(coarse.cells.size());
+      for (std::size_t c = 0; c < cells.size(); ++c)
+        cells[c].vertices.assign(coarse.cells[c].begin(),
+                                 coarse.cells[c].end());
+      return {cells, SubCellData()};
+    }
+
+
+    // The path of a refined cell below its coarse cell, one child number per
+    // level, finest first.
+    std::vector<unsigned int>
+    children_upwards(const Grid::Cell &cell)
+    {
+      std::vector<unsigned int> path;
+      for (Grid::Cell child = cell; child->level() > 0; child = child->parent())
+        {
+          const auto parent = child->parent();
+          for (unsigned int i = 0; i < 8; ++i)
+            if (parent->child(i) == child)
+              path.push_back(i);
+        }
+      return path;
+    }
+
+    // One item of the entry "Local refinement".
+    struct LocalRefinement
+    {
+      std::string  set; // empty: a box
+      Point<3>     lower, upper;
+      unsigned int levels;
+    };
+
+    std::vector<LocalRefinement>
+    parse_local_refinement(const std::string &text)
+    {
+      std::vector<LocalRefinement> items;
+      for (const std::string &item : split_list(text, ';'))
+        {
+          const auto        colon = item.rfind(':');
+          const std::string place = "\"Local refinement\" in section \"Mesh\"";
+          if (colon == std::string::npos)
+            throw UserError(place + ": \"" + item +
+                            "\" has no \": levels\"; write for example "
+                            "\"dam: 1\" or \"box 0 0 0 10 10 10: 1\".");
+          LocalRefinement    result;
+          std::istringstream levels(item.substr(colon + 1));
+          std::string        rest;
+          if (!(levels >> result.levels) || result.levels > 4 ||
+              (levels >> rest))
+            throw UserError(place + ": \"" + item +
+                            "\" must end in a number of levels from 0 to 4.");
+          result.set = Utilities::trim(item.substr(0, colon));
+          if (result.set.rfind("box ", 0) == 0)
+            {
+              const auto corners = parse_numbers(result.set.substr(4));
+              if (!corners || corners->size() != 6)
+                throw UserError(place + ": \"" + item +
+                                "\" needs six coordinates [m] after \"box\".");
+              for (unsigned int d = 0; d < 3; ++d)
+                {
+                  result.lower[d] = (*corners)[d];
+                  result.upper[d] = (*corners)[3 + d];
+                  if (result.lower[d] >= result.upper[d])
+                    throw UserError(place + ": in \"" + item +
+                                    "\" the second corner must lie above the "
+                                    "first in " +
+                                    "xyz"[d] + "; exchange the two.");
+                }
+              result.set.clear();
+            }
+          items.push_back(result);
+        }
+      return items;
+    }
+  } // namespace
+
+
+  void
+  GridParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Global refinement",
+                      global_refinement,
+                      "How many times each cell is cut into eight.",
+                      Patterns::Integer(0, 6));
+    prm.add_parameter(
+      "Local refinement",
+      local_refinement,
+      "Further refinement where it is wanted, items separated by \";\": "
+      "\"set: levels\" for a cell set, or \"box x0 y0 z0 x1 y1 z1: levels\" "
+      "[m] for the cells whose centre lies in the box. Hanging nodes result.");
+    prm.add_parameter("Partition",
+                      partition,
+                      "How the cells are dealt to the ranks; the results are "
+                      "the same.",
+                      Patterns::Selection("p4est|METIS"));
+  }
+
+
+  Grid::Grid(const CoarseMesh                                &coarse,
+             const GridParameters                            &parameters,
+             const std::function<double(const unsigned int)> &cost,
+             const MPI_Comm                                   communicator)
+    : mpi_communicator(communicator)
+    , sets_of_cell(coarse.cells.size())
+    , sets_of_faces(coarse.cells.size())
+  {
+    for (const auto &[name, cells] : coarse.cell_sets)
+      {
+        for (const unsigned int cell : cells)
+          sets_of_cell[cell].push_back(cell_sets.size());
+        cell_sets.push_back(name);
+      }
+    for (const auto &[name, faces] : coarse.face_sets)
+      {
+        for (const CoarseMesh::Face &face : faces)
+          sets_of_faces[face.cell].push_back(
+            {static_cast<unsigned char>(face.face),
+             static_cast<unsigned int>(face_sets.size())});
+        face_sets.push_back(name);
+      }
+    AssertThrow(cell_sets.size() < 256, ExcNotImplemented());
+
+    if (parameters.partition == "METIS")
+      create_metis(coarse, parameters, cost);
+    else
+      create_p4est(coarse, parameters, cost);
+  }
+
+
+  void
+  Grid::create_p4est(const CoarseMesh     &coarse,
+                     const GridParameters &parameters,
+                     const std::function<double(const unsigned int)> &cost)
+  {
+    using Distributed = parallel::distributed::Triangulation<3>;
+    auto triangulation =
+      std::make_unique<Distributed>(mpi_communicator,
+                                    dealii::Triangulation<3>::none,
+                                    Distributed::no_automatic_repartitioning);
+    triangulation->signals.weight.connect(
+      [&](const auto &cell, const auto) -> unsigned int {
+        return static_cast<unsigned int>(1000. * cost(coarse_cell(cell)));
+      });
+    const auto [cells, faces] = cell_data(coarse);
+    triangulation->create_triangulation(coarse.vertices, cells, faces);
+    refine(*triangulation, parameters);
+    triangulation->repartition();
+    triangulation->signals.weight.disconnect_all_slots();
+    mesh = std::move(triangulation);
+  }
+
+
+  void
+  Grid::create_metis(const CoarseMesh     &coarse,
+                     const GridParameters &parameters,
+                     const std::function<double(const unsigned int)> &cost)
+  {
+    dealii::Triangulation<3> serial(
+      dealii::Triangulation<3>::limit_level_difference_at_vertices);
+    const auto [cells, faces] = cell_data(coarse);
+    serial.create_triangulation(coarse.vertices, cells, faces);
+    refine(serial, parameters);
+
+    std::vector<unsigned int> weights;
+    for (const auto &cell : serial.active_cell_iterators())
+      weights.push_back(
+        static_cast<unsigned int>(100. * cost(Grid::coarse_cell(cell))));
+    GridTools::partition_triangulation(Utilities::MPI::n_mpi_processes(
+                                         mpi_communicator),
+                                       weights,
+                                       serial,
+                                       SparsityTools::Partitioner::metis);
+    const auto description = TriangulationDescription::Utilities::
+      create_description_from_triangulation(serial, mpi_communicator);
+
+    auto triangulation =
+      std::make_unique<parallel::fullydistributed::Triangulation<3>>(
+        mpi_communicator);
+    triangulation->create_triangulation(description);
+    mesh = std::move(triangulation);
+  }
+
+
+  void
+  Grid::refine(dealii::Triangulation<3> &triangulation,
+               const GridParameters     &parameters) const
+  {
+    check_size(sets_of_cell.size() * std::pow(8., parameters.global_refinement),
+               1,
+               "\"Global refinement\" in section \"Mesh\"",
+               mpi_communicator);
+    triangulation.refine_global(parameters.global_refinement);
+    for (const LocalRefinement &item :
+         parse_local_refinement(parameters.local_refinement))
+      {
+        if (!item.set.empty())
+          check_cell_set(item.set, "\"Local refinement\" in section \"Mesh\"");
+        for (unsigned int level = 0; level < item.levels; ++level)
+          {
+            for (const auto &cell : triangulation.active_cell_iterators())
+              if (cell->is_locally_owned())
+                {
+                  bool inside = true;
+                  if (!item.set.empty())
+                    inside = in_cell_set(cell, item.set);
+                  else
+                    for (unsigned int d = 0; d < 3; ++d)
+                      inside = inside && cell->center()[d] >= item.lower[d] &&
+                               cell->center()[d] <= item.upper[d];
+                  if (inside)
+                    cell->set_refine_flag();
+                }
+            triangulation.execute_coarsening_and_refinement();
+          }
+      }
+  }
+
+
+  const Grid::Triangulation &
+  Grid::triangulation() const
+  {
+    return *mesh;
+  }
+
+
+  MPI_Comm
+  Grid::communicator() const
+  {
+    return mpi_communicator;
+  }
+
+
+  bool
+  Grid::in_cell_set(const Cell &cell, const std::string &name) const
+  {
+    const auto set = std::find(cell_sets.begin(), cell_sets.end(), name);
+    if (set == cell_sets.end())
+      return false;
+    const auto &sets = sets_of_cell[Grid::coarse_cell(cell)];
+    return std::find(sets.begin(), sets.end(), set - cell_sets.begin()) !=
+           sets.end();
+  }
+
+
+  bool
+  Grid::in_face_set(const Cell        &cell,
+                    const unsigned int face,
+                    const std::string &name) const
+  {
+    for (const FaceInSet &item : sets_of_faces[Grid::coarse_cell(cell)])
+      if (item.face == face && face_sets[item.set] == name)
+        {
+          // face 2d+s of a child lies on that face of its parent if the child
+          // sits on that side, that is, if bit d of its number is s
+          for (const unsigned int child : children_upwards(cell))
+            if (((child >> (face / 2)) & 1) != face % 2)
+              return false;
+          return true;
+        }
+    return false;
+  }
+
+
+  void
+  Grid::for_each_face(const std::string      &name,
+                      const std::function<void(
+                        const dealii::Triangulation<3>::active_cell_iterator &,
+                        const unsigned int)> &visit) const
+  {
+    for (const auto &cell : mesh->active_cell_iterators())
+      if (cell->is_locally_owned() &&
+          !sets_of_faces[Grid::coarse_cell(cell)].empty())
+        for (const unsigned int face : cell->face_indices())
+          if (in_face_set(cell, face, name))
+            visit(cell, face);
+  }
+
+
+  const std::vector<std::string> &
+  Grid::cell_set_names() const
+  {
+    return cell_sets;
+  }
+
+
+  const std::vector<std::string> &
+  Grid::face_set_names() const
+  {
+    return face_sets;
+  }
+
+
+  void
+  Grid::check_cell_set(const std::string &name, const std::string &place) const
+  {
+    if (std::find(cell_sets.begin(), cell_sets.end(), name) == cell_sets.end())
+      throw UserError(place + " names the cell set \"" + name +
+                      "\", which the mesh does not have" +
+                      known_names(name, cell_sets) + ".");
+  }
+
+
+  void
+  Grid::check_face_set(const std::string &name, const std::string &place) const
+  {
+    if (std::find(face_sets.begin(), face_sets.end(), name) == face_sets.end())
+      throw UserError(place + " names the face set \"" + name +
+                      "\", which the mesh does not have" +
+                      known_names(name, face_sets) + ".");
+  }
+
+
+  std::string
+  Grid::describe_balance() const
+  {
+    const auto cells =
+      Utilities::MPI::min_max_avg(mesh->n_locally_owned_active_cells(),
+                                  mpi_communicator);
+    std::ostringstream text;
+    text << mesh->n_global_active_cells() << " cells on "
+         << Utilities::MPI::n_mpi_processes(mpi_communicator)
+         << " ranks (smallest share " << cells.min << ", largest " << cells.max
+         << ")";
+    return text.str();
+  }
+
+
+  unsigned int
+  Grid::coarse_cell(const Cell &cell)
+  {
+    // p4est numbers the coarse cells in a way of its own, and a fully
+    // distributed mesh holds some of them only
+    if (dynamic_cast<const parallel::fullydistributed::Triangulation<3> *>(
+          &cell->get_triangulation()) != nullptr)
+      return cell->id().get_coarse_cell_id();
+    Cell coarse = cell;
+    while (coarse->level() > 0)
+      coarse = coarse->parent();
+    return coarse->index();
+  }
+
+
+  std::uint64_t
+  Grid::global_key(const Cell &cell)
+  {
+    const auto    path = children_upwards(cell);
+    std::uint64_t key  = Grid::coarse_cell(cell);
+    for (auto child = path.rbegin(); child != path.rend(); ++child)
+      key = 8 * key + *child;
+    // the level keeps apart a cell and its own first child
+    return (key << 4) + path.size();
+  }
+} // namespace Voussoir

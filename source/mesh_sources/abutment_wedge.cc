@@ -1,0 +1,172 @@
+#include <voussoir/base/error.h>
+#include <voussoir/mesh/interface_surface.h>
+#include <voussoir/mesh_sources/abutment_wedge.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    constexpr unsigned int none = numbers::invalid_unsigned_int;
+
+    int
+    row(const ArchDamCrossSection::Quad &quad)
+    {
+      return quad.half_row / 2;
+    }
+  } // namespace
+
+
+  void
+  AbutmentWedgeParameters::declare(ParameterHandler &prm)
+  {
+    prm.add_parameter("Elevation",
+                      elevation,
+                      "At which the wedge's bottom meets the bank on the dam's "
+                      "middle surface; columns of cells, and so the joints of "
+                      "that bank, make way for it [m above the base]. 0: no "
+                      "wedge.",
+                      Patterns::Double(0.));
+    prm.add_parameter("Dip",
+                      dip,
+                      "Of the bottom, which is a plane; cells beside it become "
+                      "flat with a steep one [degrees].",
+                      Patterns::Double(0., 45.));
+    prm.add_parameter("Dip direction",
+                      direction,
+                      "In which the bottom falls: 0 across the river into the "
+                      "canyon, 90 downstream, -90 upstream [degrees].",
+                      Patterns::Double(-90., 90.));
+    prm.add_parameter("Width",
+                      width,
+                      "Into the bank, from where the bottom meets the canyon, "
+                      "rounded to columns of cells [m].",
+                      Patterns::Double(1e-3));
+    prm.add_parameter("Length",
+                      length,
+                      "Downstream of the dam, rounded to cells [m].",
+                      Patterns::Double(1e-3));
+    prm.add_parameter("Cut",
+                      cut,
+                      "Length of the gully at the wedge's downstream end, "
+                      "rounded to cells [m].",
+                      Patterns::Double(1e-3));
+  }
+
+
+  ArchDamCrossSection::Ledge
+  AbutmentWedgeParameters::ledge(const unsigned int bank) const
+  {
+    const double radians = numbers::PI / 180.;
+
+    ArchDamCrossSection::Ledge result;
+    result.elevation = elevation;
+    result.width     = width;
+    result.length    = length;
+    result.slope =
+      std::tan(dip * radians) *
+      Tensor<1, 2>({(bank == 0 ? -1. : 1.) * std::cos(direction * radians),
+                    std::sin(direction * radians)});
+    return result;
+  }
+
+
+  AbutmentWedge::AbutmentWedge(const AbutmentWedgeParameters &parameters,
+                               const unsigned int             bank,
+                               const Layers                  &layers,
+                               const ArchDamCrossSection     &section,
+                               const std::string             &place)
+    : bank(bank)
+    , n_layers(layers.n)
+    , end(layers.dam_end)
+    , ledge(section.ledges[bank])
+  {
+    const unsigned int wedge = layers.along(parameters.length),
+                       all   = layers.along(parameters.length + parameters.cut);
+    if (all >= layers.dam_begin)
+      throw UserError("\"Length\" and \"Cut\" in section \"" + place +
+                      "\" reach the downstream end of the rock; shorten the "
+                      "wedge or increase \"Rock extent\".");
+    begin     = layers.dam_begin - wedge;
+    cut_begin = layers.dam_begin - std::max(all, wedge + 1);
+  }
+
+
+  bool
+  AbutmentWedge::is_in_columns(const ArchDamCrossSection::Quad &quad) const
+  {
+    return quad.column >=
+             unsigned(std::min(ledge.foot_column, ledge.side_column)) &&
+           quad.column <
+             unsigned(std::max(ledge.foot_column, ledge.side_column));
+  }
+
+
+  bool
+  AbutmentWedge::contains(const ArchDamCrossSection::Quad &quad,
+                          const unsigned int               layer) const
+  {
+    return !quad.inside && is_in_columns(quad) && row(quad) >= ledge.row &&
+           layer >= begin && layer < end;
+  }
+
+
+  bool
+  AbutmentWedge::is_cut(const ArchDamCrossSection::Quad &quad,
+                        const unsigned int               layer) const
+  {
+    return !quad.inside && is_in_columns(quad) && row(quad) >= ledge.row &&
+           layer >= cut_begin && layer < begin;
+  }
+
+
+  void
+  AbutmentWedge::add_sets(const ArchDamCrossSection       &section,
+                          const std::vector<unsigned int> &cell_number,
+                          CoarseMesh                      &mesh) const
+  {
+    const std::string name = bank == 0 ? "right wedge" : "left wedge";
+    std::vector<std::pair<unsigned int, unsigned int>> place(mesh.cells.size());
+    std::vector<bool> is_rock(mesh.cells.size()), is_wedge(mesh.cells.size());
+    for (unsigned int i = 0; i < cell_number.size(); ++i)
+      if (const unsigned int cell = cell_number[i]; cell != none)
+        {
+          const auto &quad = section.quads[i / n_layers];
+          place[cell]      = {i / n_layers, i % n_layers};
+          is_rock[cell]    = !quad.inside;
+          is_wedge[cell]   = contains(quad, i % n_layers);
+          if (is_wedge[cell])
+            mesh.cell_sets[name].push_back(cell);
+        }
+
+    std::set<std::pair<unsigned int, unsigned int>> named;
+    for (const auto &set : mesh.face_sets)
+      for (const CoarseMesh::Face &face : set.second)
+        named.emplace(face.cell, face.face);
+    const FaceNeighbours neighbours = find_face_neighbours(mesh);
+    for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
+      for (unsigned int face = 0; face < 6; ++face)
+        {
+          const unsigned int other = neighbours[cell][face].cell;
+          if (other == none)
+            {
+              if (named.count({cell, face}) == 0)
+                mesh.face_sets["ground"].push_back({cell, face});
+            }
+          else if (is_wedge[cell] && !is_wedge[other] && is_rock[other])
+            {
+              const auto &quad = section.quads[place[other].first];
+              mesh
+                .face_sets[name + (place[other].second >= end ? " back" :
+                                   row(quad) < ledge.row      ? " bottom" :
+                                                                " side")]
+                .push_back({cell, face});
+            }
+        }
+  }
+} // namespace Voussoir

@@ -1,0 +1,300 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/text.h>
+#include <voussoir/mesh/mesh_check.h>
+#include <voussoir/mesh/mesh_geometry.h>
+#include <voussoir/mesh_sources/arch_dam_mesh.h>
+#include <voussoir/mesh_sources/generator.h>
+#include <voussoir/mesh_sources/grading.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // Columns between the abutments that the shape of a dam needs.
+    constexpr double least_columns = 8.;
+
+
+    /** An arch dam in its canyon. */
+    class ArchDam : public MeshGenerator
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Shape",
+                          shape_name,
+                          "A built-in dam, or \"custom\" for the one that the "
+                          "section \"Custom shape\" describes, which is "
+                          "ignored otherwise.",
+                          Patterns::Selection(
+                            join(ArchDamShape::preset_names(), "|") +
+                            "|custom"));
+        prm.add_parameter("Joints",
+                          n_joints,
+                          "Number of contraction joints, at equal distances "
+                          "along the crest; beside a wedge those of its bank "
+                          "move a little.",
+                          Patterns::Integer(0, 99));
+        prm.add_parameter("Cell size",
+                          cell_size,
+                          "Length of the dam's cells along the crest [m]; "
+                          "rounded so that cells fill the blocks.",
+                          Patterns::Double(1e-3));
+        prm.add_parameter("Cells through thickness",
+                          n_thickness,
+                          "Number of cells from the downstream to the upstream "
+                          "face.",
+                          Patterns::Integer(1, 200));
+        prm.add_parameter("Rock extent",
+                          rock_extent,
+                          "Rock below and on all sides of the dam over its "
+                          "height [-].",
+                          Patterns::Double(1., 20.));
+        prm.add_parameter("Growth",
+                          growth,
+                          "Size ratio of successive layers of rock away from "
+                          "the dam [-].",
+                          Patterns::Double(1., 2.));
+        prm.add_parameter(
+          "Largest rock cell",
+          largest_cell,
+          "At which the rock's cells stop growing [m]; waves need about eight "
+          "cells per wavelength, so 60 m of rock with S waves of 2000 m/s carry "
+          "4 Hz.",
+          Patterns::Double(1.));
+        prm.add_parameter(
+          "Reservoir level",
+          water_level,
+          "Fill the canyon with water up to the row of cells nearest to this "
+          "level, cell set \"reservoir\" [m above the base]; 0: no water.",
+          Patterns::Double(0.));
+        prm.add_parameter("Reservoir length",
+                          relative_water_length,
+                          "From the crown upstream over the dam's height, "
+                          "rounded to whole cells [-]; 0: to the end of the "
+                          "rock.",
+                          Patterns::Double(0., 20.));
+        for (const int bank : {0, 1})
+          {
+            prm.enter_subsection(wedge_section(bank));
+            wedges[bank].declare(prm);
+            prm.leave_subsection();
+          }
+        prm.enter_subsection("Custom shape");
+        custom_shape.declare(prm);
+        prm.leave_subsection();
+      }
+
+      void
+      check() const override
+      {
+        if (water_level > shape().height)
+          {
+            std::ostringstream text;
+            text << "\"Reservoir level\" in section \"Mesh/arch dam\" is "
+                 << water_level << " m, but the dam is only " << shape().height
+                 << " m high; choose a lower level.";
+            throw UserError(text.str());
+          }
+        if (water_level > 0. && relative_water_length > rock_extent)
+          throw UserError("\"Reservoir length\" in section \"Mesh/arch dam\" "
+                          "is more than the \"Rock extent\"; shorten the "
+                          "reservoir or add rock.");
+      }
+
+      CoarseMesh
+      generate() const override;
+
+      std::string
+      describe(const CoarseMesh &mesh) const override;
+
+    private:
+      ArchDamShape
+      shape() const
+      {
+        return shape_name == "custom" ?
+                 custom_shape.checked("Mesh/arch dam/Custom shape") :
+                 ArchDamShape::preset(shape_name);
+      }
+
+      unsigned int
+      columns_per_block(const ArchDamSections &sections) const;
+
+      /** Refuses many more cells than the memory holds. */
+      void
+      check_cells(const ArchDamSections &sections, const double height) const;
+
+      /** Those that are asked for; they lay lines of the section straight. */
+      std::vector<AbutmentWedge>
+      make_wedges(const ArchDamSweep        &sweep,
+                  const ArchDamCrossSection &section) const;
+
+      static std::string
+      wedge_section(const int bank)
+      {
+        return bank == 0 ? "Right wedge" : "Left wedge";
+      }
+
+      std::string  shape_name            = "Baihetan-like";
+      unsigned int n_joints              = 9;
+      double       cell_size             = 16.;
+      unsigned int n_thickness           = 2;
+      double       rock_extent           = 2.;
+      double       growth                = 1.4;
+      double       largest_cell          = 60.;
+      double       water_level           = 0.;
+      double       relative_water_length = 0.;
+      ArchDamShape custom_shape;
+
+      std::array<AbutmentWedgeParameters, 2> wedges; // right and left bank
+    };
+
+
+    std::vector<AbutmentWedge>
+    ArchDam::make_wedges(const ArchDamSweep        &sweep,
+                         const ArchDamCrossSection &section) const
+    {
+      const AbutmentWedge::Layers layers{sweep.first_in_dam,
+                                         sweep.first_in_dam + n_thickness,
+                                         sweep.n_layers,
+                                         [&](const double length) {
+                                           return sweep.layers_along(length);
+                                         }};
+      std::vector<AbutmentWedge>  result;
+      for (const unsigned int bank : {0, 1})
+        if (wedges[bank].elevation > 0.)
+          result.emplace_back(wedges[bank],
+                              bank,
+                              layers,
+                              section,
+                              "Mesh/arch dam/" + wedge_section(bank));
+      return result;
+    }
+
+
+    unsigned int
+    ArchDam::columns_per_block(const ArchDamSections &sections) const
+    {
+      // columns are halved in the cross-section
+      const double crest   = sections.left_end - sections.right_end;
+      const double columns = std::max(least_columns, crest / (2. * cell_size));
+      // more are refused later
+      return std::clamp(std::round(columns / (n_joints + 1.)), 1., 1e9);
+    }
+
+
+    // Rows of the section's grid are as high as its columns are wide, or as
+    // the steeper bank rises over one.
+    void
+    ArchDam::check_cells(const ArchDamSections &sections,
+                         const double           height) const
+    {
+      const double crest     = sections.left_end - sections.right_end;
+      const double n_columns = (n_joints + 1.) * columns_per_block(sections);
+      constexpr unsigned int n_samples = 100;
+      double                 slope     = 1.;
+      for (unsigned int i = 0; i < n_samples; ++i)
+        {
+          const double s = sections.right_end + i * crest / n_samples;
+          slope          = std::max(slope,
+                           std::abs(sections.contour(s + crest / n_samples) -
+                                    sections.contour(s)) /
+                             (crest / n_samples));
+        }
+      const double n_rows = n_columns * height / (slope * crest);
+      const double n_layers =
+        n_thickness +
+        2. *
+          graded_points(rock_extent * height, cell_size, growth, largest_cell)
+            .size();
+      // half of the section is air
+      check_size(0.5 * 4. * n_columns * n_rows * n_layers,
+                 1,
+                 "Section \"Mesh/arch dam\"");
+    }
+
+
+    CoarseMesh
+    ArchDam::generate() const
+    {
+      const ArchDamShape    shape = this->shape();
+      const ArchDamSections sections(shape);
+      check_cells(sections, shape.height);
+      std::array<ArchDamCrossSection::Ledge, 2> ledges;
+      for (const unsigned int bank : {0, 1})
+        {
+          ledges[bank]       = wedges[bank].ledge(bank);
+          ledges[bank].place = "Mesh/arch dam/" + wedge_section(bank);
+        }
+      const ArchDamCrossSection section(sections,
+                                        shape.height,
+                                        n_joints + 1,
+                                        columns_per_block(sections),
+                                        rock_extent,
+                                        growth,
+                                        largest_cell,
+                                        water_level,
+                                        ledges);
+      const ArchDamSweep        sweep(section,
+                               sections,
+                               shape.height,
+                               rock_extent,
+                               n_thickness,
+                               cell_size,
+                               growth,
+                               largest_cell);
+      const unsigned int        water_end =
+        relative_water_length > 0. ?
+                 sweep.first_in_dam + n_thickness +
+            sweep.layers_along(relative_water_length * shape.height) :
+                 sweep.n_layers;
+      return make_arch_dam_mesh(section,
+                                sweep,
+                                make_wedges(sweep, section),
+                                columns_per_block(sections),
+                                water_end);
+    }
+
+    std::string
+    ArchDam::describe(const CoarseMesh &mesh) const
+    {
+      const ArchDamShape shape        = this->shape();
+      const auto         length_along = [&](const double z) {
+        const double left  = shape.half_width(1., z),
+                     right = shape.half_width(-1., z);
+        return shape.arc_length(left, z) - shape.arc_length(-right, z);
+      };
+      double volume = 0., middle_area = 0.;
+      for (const unsigned int cell : mesh.cell_sets.at("dam"))
+        volume += cell_volume(mesh, cell);
+      const QMidpoint<1> midpoint;
+      const QIterated<1> over_height(midpoint, 200);
+      for (unsigned int q = 0; q < over_height.size(); ++q)
+        middle_area += over_height.weight(q) * shape.height *
+                       length_along(over_height.point(q)[0] * shape.height);
+
+      std::ostringstream text;
+      text << std::setprecision(4) << "Dam: " << shape.height
+           << " m high, crest " << length_along(shape.height)
+           << " m long; at the crown " << shape.crown_thickness(shape.height)
+           << " to " << shape.crown_thickness(0.) << " m thick; volume "
+           << volume << " m3; slenderness " << std::setprecision(3)
+           << middle_area * middle_area / (volume * shape.height)
+           << " (Lombardi: area of the middle surface, " << middle_area
+           << " m2, squared, over volume and height)\n";
+      return text.str();
+    }
+
+    const Registry<MeshGenerator>::Add<ArchDam>
+      registered("arch dam", "An arch dam in its canyon.");
+  } // namespace
+} // namespace Voussoir

@@ -1,0 +1,246 @@
+#include <voussoir/base/error.h>
+#include <voussoir/mesh_sources/arch_dam_sweep.h>
+#include <voussoir/mesh_sources/grading.h>
+
+#include <deal.II/base/numbers.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // Length over the dam's height in which the lines of the mesh turn from the
+    // dam's normal into the river's direction.
+    constexpr double relative_turning_length = 0.35;
+
+
+    // Part of a cell by which the foot of a ledge moves at once.
+    constexpr double relative_step = 0.1;
+
+
+    using LedgeLines = std::array<ArchDamCrossSection::LedgeLine, 2>;
+
+
+    // A part of the way from some lines to others.
+    LedgeLines
+    between(const LedgeLines &from, const LedgeLines &to, const double part)
+    {
+      LedgeLines result;
+      for (const unsigned int bank : {0, 1})
+        result[bank] = {(1. - part) * from[bank].foot + part * to[bank].foot,
+                        [&, bank, part](const double s) {
+                          return (1. - part) * from[bank].level(s) +
+                                 part * to[bank].level(s);
+                        }};
+      return result;
+    }
+
+
+    // On the downstream (-1) or the upstream (1) face, or between them.
+    Point<2>
+    face(const ArchDamSections::Line &line, const double side)
+    {
+      return line.centre +
+             0.5 * side * line.thickness *
+               Tensor<1, 2>({std::sin(line.angle), std::cos(line.angle)});
+    }
+  } // namespace
+
+
+  ArchDamSweep::ArchDamSweep(const ArchDamCrossSection &section,
+                             const ArchDamSections     &sections,
+                             const double               height,
+                             const double               rock_extent,
+                             const unsigned int         n_thickness,
+                             const double               cell_size,
+                             const double               growth,
+                             const double               largest_cell)
+    : sections(sections)
+    , n_thickness(n_thickness)
+    , turning_length(relative_turning_length * height)
+    , full_length(rock_extent * height)
+    , points(graded_points(full_length + turning_length,
+                           cell_size,
+                           growth,
+                           largest_cell))
+    , vertices(section.vertices)
+  {
+    for (const auto &vertex : vertices)
+      {
+        lines.push_back(sections.line(vertex.s, vertex.z));
+        upstream_end   = std::max(upstream_end, face(lines.back(), 1.)[1]);
+        downstream_end = std::min(downstream_end, face(lines.back(), -1.)[1]);
+      }
+    upstream_end += full_length;
+    downstream_end -= full_length;
+
+    first_in_dam = points.size() - 1;
+    n_layers     = 2 * first_in_dam + n_thickness;
+    if (section.ledges[0].dips() || section.ledges[1].dips())
+      lay_ledges(section, relative_step * cell_size);
+  }
+
+
+  std::vector<Point<3>>
+  ArchDamSweep::operator()(const unsigned int vertex) const
+  {
+    std::vector<Point<3>> result;
+    auto                  at   = vertices[vertex];
+    auto                  line = lines[vertex];
+    for (unsigned int layer = 0; layer <= n_layers; ++layer)
+      {
+        if (!moved.empty())
+          {
+            const unsigned int i =
+              std::clamp(layer,
+                         first_moved,
+                         first_moved + unsigned(moved.size()) - 1) -
+              first_moved;
+            if (layer == 0 || layer == first_moved + i)
+              {
+                at   = moved[i][vertex];
+                line = sections.line(at.s, at.z);
+              }
+          }
+        const Point<2> x = point(line, layer);
+        result.emplace_back(x[0], x[1], at.z);
+      }
+    return result;
+  }
+
+
+  Point<2>
+  ArchDamSweep::point(const ArchDamSections::Line &line,
+                      const unsigned int           layer) const
+  {
+    if (layer >= first_in_dam && layer <= first_in_dam + n_thickness)
+      return face(line, 2. * (layer - first_in_dam) / n_thickness - 1.);
+    const int          side = layer < first_in_dam ? -1 : 1;
+    const unsigned int j =
+      side < 0 ? first_in_dam - layer : layer - first_in_dam - n_thickness;
+    const Point<2> start  = face(line, side);
+    const double   end    = side < 0 ? downstream_end : upstream_end;
+    const double   length = std::abs(end - start[1]) + turning_length -
+                          path(line.angle, turning_length)[1];
+    Point<2> x = start + side * path(line.angle, points[j] * length);
+    if (j + 1 == points.size())
+      x[1] = end;
+    return x;
+  }
+
+
+  // Step by step from the middle of the dam, so that no cell is overrun. Beyond
+  // the ledges the section stays as it is at their ends.
+  void
+  ArchDamSweep::lay_ledges(const ArchDamCrossSection &section,
+                           const double               step)
+  {
+    std::array<unsigned int, 2> begin{{first_in_dam, first_in_dam}};
+    for (const unsigned int bank : {0, 1})
+      if (section.ledges[bank].dips())
+        begin[bank] -= layers_along(section.ledges[bank].length);
+    const unsigned int middle = first_in_dam + n_thickness / 2,
+                       end    = first_in_dam + n_thickness;
+    first_moved               = std::min(begin[0], begin[1]);
+    moved.resize(end + 1 - first_moved);
+
+    for (const int direction : {-1, 1})
+      {
+        LedgeLines lines{{section.middle_line(0), section.middle_line(1)}};
+        Vertices   current = vertices;
+        for (unsigned int layer = middle; layer >= first_moved && layer <= end;
+             layer += direction)
+          {
+            LedgeLines next = lines;
+            double     way  = 0.;
+            for (const unsigned int bank : {0, 1})
+              if (section.ledges[bank].dips() && layer >= begin[bank])
+                {
+                  next[bank] =
+                    ledge_line(section.ledges[bank], layer, lines[bank].foot);
+                  way =
+                    std::max(way, std::abs(next[bank].foot - lines[bank].foot));
+                }
+            const unsigned int n_steps = 1 + std::floor(way / step);
+            for (unsigned int i = 1; i <= n_steps; ++i)
+              section.follow(between(lines, next, double(i) / n_steps),
+                             layer >= first_in_dam,
+                             current);
+            section.check_shapes(current);
+            moved[layer - first_moved] = current;
+            lines                      = next;
+          }
+      }
+  }
+
+
+  // The foot is where the contour meets the plane: Newton's method from a place
+  // nearby.
+  ArchDamCrossSection::LedgeLine
+  ArchDamSweep::ledge_line(const ArchDamCrossSection::Ledge &ledge,
+                           const unsigned int                layer,
+                           const double                      near) const
+  {
+    constexpr double probe = 0.1, accuracy = 1e-8, largest_step = 10.; // [m]
+    constexpr double least_slope = 0.1;
+
+    const auto level = [this, &ledge, layer](const double s) {
+      return ledge.level(point(sections.line(s, 0.), layer));
+    };
+    const auto above = [&](const double s) {
+      return sections.contour(s) - level(s);
+    };
+    double       foot = near;
+    const double side = near < 0. ? -1. : 1.;
+    for (unsigned int i = 0; i < 100; ++i)
+      {
+        const double slope =
+          (above(foot + probe) - above(foot - probe)) / (2. * probe);
+        const double height = above(foot);
+        if (slope * side < least_slope)
+          break;
+        if (std::abs(height) < accuracy)
+          return {foot, level};
+        foot -= std::clamp(height / slope, -largest_step, largest_step);
+      }
+    throw UserError("The bank is too flat for the \"Dip\" in section \"" +
+                    ledge.place +
+                    "\": the wedge's bottom does not come out of it "
+                    "everywhere; choose a smaller one or another "
+                    "\"Elevation\".");
+  }
+
+
+  unsigned int
+  ArchDamSweep::layers_along(const double length) const
+  {
+    const double total  = points.size() - 1;
+    unsigned int layers = 1;
+    while (layers < total &&
+           std::abs(points[layers + 1] * full_length - length) <
+             std::abs(points[layers] * full_length - length))
+      ++layers;
+    return layers;
+  }
+
+
+  Tensor<1, 2>
+  ArchDamSweep::path(const double angle, const double length) const
+  {
+    const double turned = std::min(length, turning_length);
+    Tensor<1, 2> result({0., length - turned});
+    for (unsigned int q = 0; q < quadrature.size(); ++q)
+      {
+        const double phi = angle * 0.5 *
+                           (1. + std::cos(numbers::PI * quadrature.point(q)[0] *
+                                          turned / turning_length));
+        result += quadrature.weight(q) * turned *
+                  Tensor<1, 2>({std::sin(phi), std::cos(phi)});
+      }
+    return result;
+  }
+} // namespace Voussoir

@@ -1,0 +1,104 @@
+#include <voussoir/base/error.h>
+#include <voussoir/signals/design_spectrum.h>
+
+#include <deal.II/base/patterns.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace Voussoir
+{
+  void
+  DesignSpectrum::declare(dealii::ParameterHandler &prm)
+  {
+    using namespace dealii::Patterns;
+    prm.add_parameter("Shape",
+                      shape,
+                      "hydropower code: the standard design spectrum of the "
+                      "Chinese codes NB 35047 and GB 51247, which rises to a "
+                      "plateau from 0.1 s to the characteristic period and "
+                      "then decays. table: the entries Periods and "
+                      "Amplifications.",
+                      Selection("hydropower code|table"));
+    prm.add_parameter("Maximum amplification",
+                      maximum_amplification,
+                      "Of the code's spectrum: spectral acceleration on the "
+                      "plateau over peak ground acceleration [-]; 2.5 for arch "
+                      "dams, 2.0 for gravity dams.",
+                      Double(1., 10.));
+    prm.add_parameter("Characteristic period",
+                      characteristic_period,
+                      "Of the code's spectrum: end of the plateau [s]; 0.2 to "
+                      "0.3 on rock.",
+                      Double(0.1, 2.));
+    prm.add_parameter("Decay exponent",
+                      decay_exponent,
+                      "Of the code's spectrum: it decays with the period to "
+                      "minus this power [-].",
+                      Double(0., 2.));
+    prm.add_parameter("Periods",
+                      periods,
+                      "Of the table: natural periods [s], increasing.",
+                      List(Double(0.), 2));
+    prm.add_parameter("Amplifications",
+                      amplifications,
+                      "Of the table: spectral acceleration at these periods "
+                      "over peak ground acceleration [-]; linear in between, "
+                      "constant outside.",
+                      List(Double(1e-3), 2));
+  }
+
+
+  void
+  DesignSpectrum::check() const
+  {
+    if (shape != "table")
+      return;
+    if (periods.size() != amplifications.size())
+      throw UserError("\"Periods\" in section \"Ground motion/Spectrum\" has " +
+                      std::to_string(periods.size()) +
+                      " values and \"Amplifications\" has " +
+                      std::to_string(amplifications.size()) +
+                      "; give one amplification for each period.");
+    if (std::adjacent_find(periods.begin(),
+                           periods.end(),
+                           std::greater_equal<double>()) != periods.end())
+      throw UserError("\"Periods\" in section \"Ground motion/Spectrum\" must "
+                      "increase from each value to the next; sort them and "
+                      "remove repeated ones.");
+  }
+
+
+  double
+  DesignSpectrum::amplification(const double period) const
+  {
+    if (shape == "table")
+      return interpolate(periods, amplifications, period);
+
+    // Rise to the plateau at 0.1 s; never below a fifth of the plateau.
+    if (period < 0.1)
+      return 1. + (maximum_amplification - 1.) * period / 0.1;
+    if (period <= characteristic_period)
+      return maximum_amplification;
+    return maximum_amplification *
+           std::max(0.2,
+                    std::pow(characteristic_period / period, decay_exponent));
+  }
+
+
+  double
+  interpolate(const std::vector<double> &x,
+              const std::vector<double> &y,
+              const double               at)
+  {
+    const auto upper = std::upper_bound(x.begin(), x.end(), at);
+    if (upper == x.begin())
+      return y.front();
+    if (upper == x.end())
+      return y.back();
+    const std::size_t i      = upper - x.begin();
+    const double      weight = (at - x[i - 1]) / (x[i] - x[i - 1]);
+    return y[i - 1] + weight * (y[i] - y[i - 1]);
+  }
+} // namespace Voussoir

@@ -12,7 +12,7 @@ needs.
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "report"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "source" / "report"))
 
 from voussoir_report import charts  # noqa: E402
 from voussoir_report.damage import of_cells  # noqa: E402

@@ -313,15 +313,15 @@ namespace Voussoir
     ground_motion.check();
     damping.check(modes.number);
     study.check();
-    const bool rigid_base = wave.enters_through == "rigid base";
-    if (ground_motion.type != "none" && !rigid_base &&
+    const bool rigid_base = wave.enters_through == WaveEntrance::rigid_base;
+    if (ground_motion.type != GroundMotionType::none && !rigid_base &&
         split_list(boundaries.absorbing.face_sets).empty())
       throw UserError("The earthquake of section \"Ground motion\" enters "
                       "through an absorbing boundary, but \"Absorbing\" in "
                       "section \"Boundaries\" names no face sets; name some, "
                       "or set \"Enters through = rigid base\" in section "
                       "\"Wave field\".");
-    if (ground_motion.type != "none" && rigid_base &&
+    if (ground_motion.type != GroundMotionType::none && rigid_base &&
         split_list(boundaries.supports.fixed).empty())
       throw UserError("The earthquake of section \"Ground motion\" enters "
                       "through a rigid base, but \"Fixed\" in section "
@@ -458,7 +458,7 @@ namespace Voussoir
     std::size_t n_staged = 0;
     for (const auto &stage : static_state.stage_names())
       n_staged += stage.size();
-    return ground_motion.type != "none" || !projections.objects.empty() ||
-           loads.objects.size() > n_staged;
+    return ground_motion.type != GroundMotionType::none ||
+           !projections.objects.empty() || loads.objects.size() > n_staged;
   }
 } // namespace Voussoir

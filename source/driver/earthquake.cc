@@ -68,7 +68,9 @@ namespace Voussoir
                axis,
                ": the record times ",
                fit.factor,
-               match.method == "one factor" ? "" : ", changed by wavelets,",
+               match.method == MatchMethod::one_factor ?
+                 "" :
+                 ", changed by wavelets,",
                " is off its target spectrum by ",
                100. * fit.mean_misfit(),
                " % on average and ",
@@ -84,7 +86,8 @@ namespace Voussoir
                " m/s before, ",
                fit.arias_after,
                " m/s after");
-      if (match.method == "each component" && fit.mean_misfit() > accepted)
+      if (match.method == MatchMethod::each_component &&
+          fit.mean_misfit() > accepted)
         log.warn("the ground motion ",
                  axis,
                  " is off its target spectrum by ",
@@ -135,7 +138,7 @@ namespace Voussoir
                        ", as 1 g is 9.81 m/s2");
             if (g < 1e-3)
               log.warn(text.str(), ", which nobody would feel; ", remedy);
-            if (parameters.type == "record")
+            if (parameters.type == GroundMotionType::record)
               check_single_sample(*motion[d], whole, text.str(), log);
             if (reached.acceleration < 0.99 * whole.acceleration)
               log.warn(text.str(),
@@ -256,7 +259,7 @@ namespace Voussoir
   {
     const Case         &parameters    = model.parameters;
     const GroundMotion &ground_motion = parameters.ground_motion;
-    if (ground_motion.type == "none")
+    if (ground_motion.type == GroundMotionType::none)
       return;
     const double        end_time = parameters.time.end_time;
     GroundMotionSignals motion =
@@ -288,11 +291,11 @@ namespace Voussoir
         base = RigidBase(std::move(motion));
         return;
       }
-    if (ground_motion.given_at == "free surface")
+    if (ground_motion.given_at == MotionPlace::free_surface)
       for (const auto &component : motion)
         if (component && std::isinf(component->end()))
           followed_to = end_time;
-    if (parameters.wave.type == "vertical")
+    if (parameters.wave.type == WaveType::vertical)
       check_layers(model, log);
     auto field = make_free_field(model.boundary,
                                  model.discretization,

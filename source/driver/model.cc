@@ -438,8 +438,8 @@ namespace Voussoir
   bool
   Model::rigid_base() const
   {
-    return parameters.ground_motion.type != "none" &&
-           parameters.wave.enters_through == "rigid base";
+    return parameters.ground_motion.type != GroundMotionType::none &&
+           parameters.wave.enters_through == WaveEntrance::rigid_base;
   }
 
 

@@ -184,7 +184,7 @@ namespace Voussoir
       result["contact share of the loop"] =
         Utilities::MPI::min(contact->seconds(), communicator) / loop_seconds;
     if (const GroundMotion &motion = model.parameters.ground_motion;
-        motion.type == "spectrum" || motion.match.wanted())
+        motion.type == GroundMotionType::spectrum || motion.match.wanted())
       result["target spectrum"] = target_spectrum(motion);
     if (!earthquake.fits.empty())
       result["spectrum fit"] = json(earthquake.fits);

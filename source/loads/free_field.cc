@@ -13,20 +13,20 @@ namespace Voussoir
   void
   WaveParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter(
+    add_option(
+      prm,
       "Enters through",
       enters_through,
       "Absorbing boundary: as a wave, by forces on the boundary. Rigid base: "
       "as inertial forces on a model with fixed base; the motion computed is "
-      "then relative to the base.",
-      Patterns::Selection("absorbing boundary|rigid base"));
-    prm.add_parameter(
+      "then relative to the base.");
+    add_option(
+      prm,
       "Type",
       type,
       "Vertical: x and y components travel upwards as S waves, z as a P wave, "
       "through the layers at the model's sides. Oblique waves come in a "
-      "homogeneous half-space; their motion is the one component given.",
-      Patterns::Selection("vertical|oblique P|oblique SV|oblique SH"));
+      "homogeneous half-space; their motion is the one component given.");
     prm.add_parameter("Angle",
                       angle,
                       "Oblique waves: angle between the direction of travel "
@@ -95,9 +95,10 @@ namespace Voussoir
                        const WaveParameters    &wave,
                        GroundMotionSignals    &&motion)
     {
-      const auto   type = wave.type == "oblique P"  ? ObliqueWave::Type::P :
-                          wave.type == "oblique SV" ? ObliqueWave::Type::SV :
-                                                      ObliqueWave::Type::SH;
+      const auto type =
+        wave.type == WaveType::oblique_p  ? ObliqueWave::Type::P :
+        wave.type == WaveType::oblique_sv ? ObliqueWave::Type::SV :
+                                            ObliqueWave::Type::SH;
       const double critical =
         std::asin(rock.s_wave_speed() / rock.p_wave_speed());
       const double angle = wave.angle * numbers::PI / 180.;
@@ -143,18 +144,18 @@ namespace Voussoir
                   const std::string                   &quadrature,
                   const Damping                       &damping,
                   const WaveParameters                &wave,
-                  const std::string                   &given_at,
+                  const MotionPlace                    given_at,
                   GroundMotionSignals                &&motion,
                   const LeapFrog                      &leap_frog,
                   const double                         duration)
   {
-    const bool vertical = wave.type == "vertical";
+    const bool vertical = wave.type == WaveType::vertical;
 
     if (!vertical && boundary.materials_at_boundary().size() != 1)
       throw UserError("\"Type\" in section \"Wave field\" is an oblique wave, "
                       "which needs one material along the whole absorbing "
                       "boundary; use \"vertical\" for layered rock.");
-    if (!vertical && given_at == "free surface")
+    if (!vertical && given_at == MotionPlace::free_surface)
       throw UserError("\"Given at\" in section \"Ground motion\" cannot be "
                       "\"free surface\" with an oblique wave; give the "
                       "incident wave or the motion of an outcrop.");
@@ -177,7 +178,7 @@ namespace Voussoir
       }
 
     // the incident wave at an outcrop is half the motion there
-    if (given_at == "outcrop")
+    if (given_at == MotionPlace::outcrop)
       for (auto &component : motion)
         if (component)
           component = std::make_unique<Scaled>(std::move(component), 0.5);
@@ -207,7 +208,7 @@ namespace Voussoir
                       quadrature,
                       damping,
                       leap_frog);
-    if (given_at == "free surface")
+    if (given_at == MotionPlace::free_surface)
       motion = incident_for_surface(
         column, motion, leap_frog.time_step, duration, wave.maximum_frequency);
     return std::make_unique<ColumnField>(std::move(column),

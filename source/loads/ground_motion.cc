@@ -18,14 +18,6 @@ namespace Voussoir
     const std::array<std::string, 3> axis_names{{"x", "y", "z"}};
     const std::array<std::string, 3> axis_meanings{
       {"across the valley", "along the river", "vertical"}};
-
-    Quantity
-    to_quantity(const std::string &name)
-    {
-      return name == "displacement" ? Quantity::displacement :
-             name == "velocity"     ? Quantity::velocity :
-                                      Quantity::acceleration;
-    }
   } // namespace
 
 
@@ -33,24 +25,23 @@ namespace Voussoir
   GroundMotion::declare(dealii::ParameterHandler &prm)
   {
     using namespace dealii::Patterns;
-    prm.add_parameter("Type",
-                      type,
-                      "The earthquake: none, recorded accelerations from files "
-                      "(record), a Ricker wavelet, a sine, a single pulse, or "
-                      "an artificial motion that follows a design spectrum "
-                      "(spectrum). Its details are in the section of that "
-                      "name; the other ones are not used.",
-                      Selection("none|record|Ricker|sine|pulse|spectrum"));
-    prm.add_parameter(
-      "Given at",
-      given_at,
-      "Where the motion belongs. outcrop: on rock that lies "
-      "bare, twice the wave that rises in the rock below; as in "
-      "most codes. free surface: on top of the modelled ground "
-      "without dam and canyon, from where the wave is followed "
-      "down. incident wave: the rising wave itself at the "
-      "bottom of the model.",
-      Selection("outcrop|free surface|incident wave"));
+    add_option(prm,
+               "Type",
+               type,
+               "The earthquake: none, recorded accelerations from files "
+               "(record), a Ricker wavelet, a sine, a single pulse, or "
+               "an artificial motion that follows a design spectrum "
+               "(spectrum). Its details are in the section of that "
+               "name; the other ones are not used.");
+    add_option(prm,
+               "Given at",
+               given_at,
+               "Where the motion belongs. outcrop: on rock that lies "
+               "bare, twice the wave that rises in the rock below; as in "
+               "most codes. free surface: on top of the modelled ground "
+               "without dam and canyon, from where the wave is followed "
+               "down. incident wave: the rising wave itself at the "
+               "bottom of the model.");
     for (unsigned int c = 0; c < 3; ++c)
       prm.add_parameter("Peak acceleration " + axis_names[c],
                         peak_entries[c],
@@ -102,11 +93,11 @@ namespace Voussoir
                           " to take if it is a table, counted from 1 without "
                           "the time column.",
                         Integer(1));
-    prm.add_parameter("Unit",
-                      unit,
-                      "Of the accelerations in the files; g = 9.81 m/s2, "
-                      "cm/s2 = gal.",
-                      Selection("g|m/s2|cm/s2"));
+    add_option(prm,
+               "Unit",
+               unit,
+               "Of the accelerations in the files; g = 9.81 m/s2, "
+               "cm/s2 = gal.");
     prm.add_parameter("Time step",
                       time_step,
                       "Of tables that have a single column and no time [s]; 0 "
@@ -129,10 +120,10 @@ namespace Voussoir
   GroundMotion::Ricker::declare(dealii::ParameterHandler &prm)
   {
     using namespace dealii::Patterns;
-    prm.add_parameter("Quantity",
-                      quantity,
-                      "What has the shape of the Ricker wavelet.",
-                      Selection("displacement|velocity|acceleration"));
+    add_option(prm,
+               "Quantity",
+               quantity,
+               "What has the shape of the Ricker wavelet.");
     prm.add_parameter("Frequency",
                       frequency,
                       "Central frequency f [Hz]; there is hardly any motion "
@@ -174,11 +165,12 @@ namespace Voussoir
   GroundMotion::Pulse::declare(dealii::ParameterHandler &prm)
   {
     using namespace dealii::Patterns;
-    prm.add_parameter("Quantity",
-                      quantity,
-                      "What has the shape of a single bump. displacement: the "
-                      "ground returns. velocity: it stays displaced.",
-                      Selection("displacement|velocity"));
+    add_option(prm,
+               "Quantity",
+               quantity,
+               "What has the shape of a single bump. displacement: the "
+               "ground returns. velocity: it stays displaced.",
+               {Quantity::displacement, Quantity::velocity});
     prm.add_parameter("Duration",
                       duration,
                       "Length of the bump [s].",
@@ -204,7 +196,7 @@ namespace Voussoir
   bool
   GroundMotion::has_record(const unsigned int component) const
   {
-    return type == "record" && !record.files[component].empty();
+    return type == GroundMotionType::record && !record.files[component].empty();
   }
 
 
@@ -212,8 +204,9 @@ namespace Voussoir
   GroundMotion::moves(const unsigned int component) const
   {
     const std::optional<double> peak = peak_acceleration(component);
-    return type == "record" ? has_record(component) && peak != 0. :
-                              type != "none" && peak.value_or(0.) > 0.;
+    return type == GroundMotionType::record ?
+             has_record(component) && peak != 0. :
+             type != GroundMotionType::none && peak.value_or(0.) > 0.;
   }
 
 
@@ -239,11 +232,11 @@ namespace Voussoir
     std::array<std::optional<double>, 3> peaks;
     for (unsigned int c = 0; c < 3; ++c)
       peaks[c] = peak_acceleration(c);
-    if (type == "none")
+    if (type == GroundMotionType::none)
       return;
 
     for (unsigned int c = 0; c < 3; ++c)
-      if (type == "record" && record.files[c].empty() &&
+      if (type == GroundMotionType::record && record.files[c].empty() &&
           peaks[c].value_or(0.) > 0.)
         throw UserError("\"Peak acceleration " + axis_names[c] +
                         "\" in section \"Ground motion\" is set, but \"File " +
@@ -251,7 +244,7 @@ namespace Voussoir
                         "\" in section \"Ground motion/Record\" is empty; name "
                         "a file or set the peak to 0.");
 
-    if (type == "record" &&
+    if (type == GroundMotionType::record &&
         std::all_of(record.files.begin(),
                     record.files.end(),
                     [](const std::string &file) { return file.empty(); }))
@@ -263,32 +256,33 @@ namespace Voussoir
       throw UserError(
         "\"Peak acceleration x\", y and z in section \"Ground motion\" leave no "
         "motion, which needs one above 0" +
-        std::string(type == "record" ?
+        std::string(type == GroundMotionType::record ?
                       ", or \"as recorded\", of a component with a file" :
                       "") +
         "; set one of them, or \"Type = none\".");
 
-    if (type == "Ricker" && ricker.middle > 0 &&
+    if (type == GroundMotionType::ricker && ricker.middle > 0 &&
         ricker.middle * ricker.frequency < 1.5 - 1e-9)
       throw UserError(
         "\"Middle\" in section \"Ground motion/Ricker\" must be 0 or at least "
         "1.5 / \"Frequency\", so that the ground starts at rest.");
 
-    if (type == "sine" && sine.cycles > 0 && sine.cycles < 2 * sine.ramp_cycles)
+    if (type == GroundMotionType::sine && sine.cycles > 0 &&
+        sine.cycles < 2 * sine.ramp_cycles)
       throw UserError(
         "\"Cycles\" in section \"Ground motion/Sine\" must be 0 or at least "
         "twice \"Ramp cycles\", for the rise and the fall.");
 
-    if (type == "spectrum")
+    if (type == GroundMotionType::spectrum)
       spectrum.check();
 
     if (!match.wanted())
       return;
-    if (type != "record")
+    if (type != GroundMotionType::record)
       throw UserError("\"Method\" in section \"Ground motion/Matching\" "
                       "matches records to a spectrum, but \"Type\" in section "
                       "\"Ground motion\" is \"" +
-                      type + "\"; set \"Method = none\".");
+                      option_name(type) + "\"; set \"Method = none\".");
     for (unsigned int c = 0; c < 3; ++c)
       if (has_record(c) && !peaks[c])
         throw UserError("\"Peak acceleration " + axis_names[c] +
@@ -407,11 +401,11 @@ namespace Voussoir
   GroundMotion::build(const std::string        &folder,
                       std::vector<SpectrumFit> *fits) const
   {
-    if (type == "record" && match.wanted())
+    if (type == GroundMotionType::record && match.wanted())
       return build_matched(folder, fits);
 
     std::array<TimeSeries, 3> artificial;
-    if (type == "spectrum")
+    if (type == GroundMotionType::spectrum)
       artificial = spectrum.generate();
 
     GroundMotionSignals signals;
@@ -423,7 +417,7 @@ namespace Voussoir
         const std::optional<double> own = peak_acceleration(c);
         const double                largest =
           overload_factor * standard_gravity * own.value_or(0.);
-        if (type == "record")
+        if (type == GroundMotionType::record)
           {
             const TimeSeries motion    = read_component(record, c, folder);
             const double     unchanged = peak(motion.values);
@@ -432,24 +426,23 @@ namespace Voussoir
             signals[c] =
               scaled(motion, own ? largest / unchanged : overload_factor);
           }
-        else if (type == "Ricker")
+        else if (type == GroundMotionType::ricker)
           signals[c] =
-            std::make_unique<Voussoir::Ricker>(to_quantity(ricker.quantity),
+            std::make_unique<Voussoir::Ricker>(ricker.quantity,
                                                ricker.frequency,
                                                ricker.middle > 0 ?
                                                  ricker.middle :
                                                  1.5 / ricker.frequency,
                                                largest);
-        else if (type == "sine")
+        else if (type == GroundMotionType::sine)
           signals[c] = std::make_unique<Voussoir::Sine>(sine.frequency,
                                                         largest,
                                                         sine.cycles,
                                                         sine.ramp_cycles);
-        else if (type == "pulse")
-          signals[c] =
-            std::make_unique<Voussoir::Pulse>(to_quantity(pulse.quantity),
-                                              pulse.duration,
-                                              largest);
+        else if (type == GroundMotionType::pulse)
+          signals[c] = std::make_unique<Voussoir::Pulse>(pulse.quantity,
+                                                         pulse.duration,
+                                                         largest);
         else
           signals[c] = scaled(artificial[c], largest);
       }
@@ -504,7 +497,7 @@ namespace Voussoir
                << " m/s, displacement " << rounded(motion.displacement.back())
                << " m\n";
         }
-    if (type != "spectrum")
+    if (type != GroundMotionType::spectrum)
       return text.str();
 
     for (unsigned int c = 0; c < 3; ++c)

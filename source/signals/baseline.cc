@@ -155,15 +155,15 @@ namespace Voussoir
   BaselineCorrection::declare(dealii::ParameterHandler &prm)
   {
     using namespace dealii::Patterns;
-    prm.add_parameter(
+    add_option(
+      prm,
       "Baseline correction",
       method,
       "How the drift of the velocity and displacement is removed that small "
       "errors of the recorded acceleration cause. polynomial: a polynomial of "
       "fourth degree is subtracted from the acceleration, so that the motion "
       "ends at rest where it began. high-pass: the same after a Butterworth "
-      "filter without phase shift. none: the record as it is.",
-      Selection("none|polynomial|high-pass"));
+      "filter without phase shift. none: the record as it is.");
     prm.add_parameter("Corner frequency",
                       corner_frequency,
                       "Of the high-pass filter [Hz].",
@@ -180,7 +180,7 @@ namespace Voussoir
   Motion
   BaselineCorrection::apply(const TimeSeries &acceleration) const
   {
-    if (method == "none")
+    if (method == BaselineMethod::none)
       return integrate(acceleration);
 
     const double duration =
@@ -193,7 +193,7 @@ namespace Voussoir
         std::to_string(duration) +
         " s; shorten the \"Taper\", or set \"Baseline correction = none\".");
 
-    return remove_polynomial(method == "high-pass" ?
+    return remove_polynomial(method == BaselineMethod::high_pass ?
                                high_pass(acceleration, corner_frequency) :
                                acceleration,
                              taper);

@@ -13,14 +13,14 @@ namespace Voussoir
   DesignSpectrum::declare(dealii::ParameterHandler &prm)
   {
     using namespace dealii::Patterns;
-    prm.add_parameter("Shape",
-                      shape,
-                      "hydropower code: the standard design spectrum of the "
-                      "Chinese codes NB 35047 and GB 51247, which rises to a "
-                      "plateau from 0.1 s to the characteristic period and "
-                      "then decays. table: the entries Periods and "
-                      "Amplifications.",
-                      Selection("hydropower code|table"));
+    add_option(prm,
+               "Shape",
+               shape,
+               "hydropower code: the standard design spectrum of the "
+               "Chinese codes NB 35047 and GB 51247, which rises to a "
+               "plateau from 0.1 s to the characteristic period and "
+               "then decays. table: the entries Periods and "
+               "Amplifications.");
     prm.add_parameter("Maximum amplification",
                       maximum_amplification,
                       "Of the code's spectrum: spectral acceleration on the "
@@ -53,7 +53,7 @@ namespace Voussoir
   void
   DesignSpectrum::check() const
   {
-    if (shape != "table")
+    if (shape != SpectrumShape::table)
       return;
     if (periods.size() != amplifications.size())
       throw UserError("\"Periods\" in section \"Ground motion/Spectrum\" has " +
@@ -73,7 +73,7 @@ namespace Voussoir
   double
   DesignSpectrum::amplification(const double period) const
   {
-    if (shape == "table")
+    if (shape == SpectrumShape::table)
       return interpolate(periods, amplifications, period);
 
     // Rise to the plateau at 0.1 s; never below a fifth of the plateau.

@@ -205,7 +205,7 @@ namespace Voussoir
     check_at2_unit(const std::string       &file,
                    const std::vector<Line> &lines,
                    const Header            &header,
-                   const std::string       &unit)
+                   const AccelerationUnit   unit)
     {
       for (std::size_t i = 0; i < header.end; ++i)
         {
@@ -216,13 +216,13 @@ namespace Voussoir
                    lines[i],
                    "the header announces velocity or displacement; give the "
                    "file of the acceleration");
-          if (unit != "g" &&
+          if (unit != AccelerationUnit::g &&
               std::regex_search(beginning(lines[i]),
                                 std::regex("UNITS OF G\\b", std::regex::icase)))
             refuse(file,
                    lines[i],
                    "the header gives the unit g but the entry Unit says " +
-                     unit + "; set Unit = g");
+                     option_name(unit) + "; set Unit = g");
         }
     }
 
@@ -341,9 +341,10 @@ namespace Voussoir
   TimeSeries
   read_record(const std::string &file, const RecordFormat &format)
   {
-    const std::map<std::string, double> units = {{"g", standard_gravity},
-                                                 {"m/s2", 1.},
-                                                 {"cm/s2", .01}};
+    const std::map<AccelerationUnit, double> units = {
+      {AccelerationUnit::g, standard_gravity},
+      {AccelerationUnit::m_per_s2, 1.},
+      {AccelerationUnit::cm_per_s2, .01}};
 
     const std::vector<Line>     lines  = read_lines(file);
     const std::optional<Header> header = find_at2_header(file, lines);

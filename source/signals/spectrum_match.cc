@@ -215,7 +215,8 @@ namespace Voussoir
   SpectrumMatch::declare(dealii::ParameterHandler &prm)
   {
     using namespace dealii::Patterns;
-    prm.add_parameter(
+    add_option(
+      prm,
       "Method",
       method,
       "How records are fitted to a target spectrum, which is the one of "
@@ -223,8 +224,7 @@ namespace Voussoir
       "ratio) times the Peak acceleration of the component. each component: by "
       "wavelets at the times of the peak responses, after a factor. one factor: "
       "all components by the same factor, so that their shapes and ratios stay. "
-      "none: a record is scaled to the Peak acceleration only.",
-      Selection("none|each component|one factor"));
+      "none: a record is scaled to the Peak acceleration only.");
     prm.add_parameter("Shortest period",
                       shortest_period,
                       "Of the oscillators whose responses are fitted [s].",
@@ -244,8 +244,9 @@ namespace Voussoir
                       "motion/Matching\" must be at least 1.1 times the "
                       "\"Shortest period\".");
     target.check();
-    if (target.shape == "table" && (target.periods.front() > shortest_period ||
-                                    target.periods.back() < longest_period))
+    if (target.shape == SpectrumShape::table &&
+        (target.periods.front() > shortest_period ||
+         target.periods.back() < longest_period))
       {
         std::ostringstream text;
         text << "\"Periods\" in section \"Ground motion/Spectrum\" go from "
@@ -263,7 +264,7 @@ namespace Voussoir
   bool
   SpectrumMatch::wanted() const
   {
-    return method != "none";
+    return method != MatchMethod::none;
   }
 
 
@@ -342,13 +343,13 @@ namespace Voussoir
       }
     for (SpectrumFit &fit : fits)
       {
-        if (parameters.method == "one factor")
+        if (parameters.method == MatchMethod::one_factor)
           fit.factor = std::exp(sum_of_all);
         scale(fit.acceleration.values, fit.factor);
         scale(fit.before, fit.factor);
         fit.after        = fit.before;
         fit.arias_before = arias_intensity(fit.acceleration);
-        if (parameters.method == "each component")
+        if (parameters.method == MatchMethod::each_component)
           change_shape(fit, damping_ratio);
         fit.arias_after = arias_intensity(fit.acceleration);
       }

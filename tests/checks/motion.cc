@@ -58,7 +58,7 @@ namespace Voussoir
         }
       const TimeSeries table = read_text("# comment\ntime;x;y\n0;1;10\n"
                                          "0.01;2;20\n0.02;3;30\n",
-                                         {"cm/s2", 0, 2});
+                                         {AccelerationUnit::cm_per_s2, 0, 2});
       verdicts.is_true("second column of a table in gal",
                        std::abs(table.values[2] - 0.3) < 1e-15 &&
                          std::abs(table.time_step - 0.01) < 1e-15);
@@ -93,12 +93,14 @@ namespace Voussoir
     void
     check_baseline(const TimeSeries &elcentro, Verdicts &verdicts)
     {
-      for (const std::string method : {"polynomial", "high-pass"})
+      for (const BaselineMethod method :
+           {BaselineMethod::polynomial, BaselineMethod::high_pass})
         {
           BaselineCorrection baseline;
           baseline.method     = method;
           const Motion motion = baseline.apply(elcentro);
-          verdicts.near(method + ": peak acceleration over the record's",
+          verdicts.near(option_name(method) +
+                          ": peak acceleration over the record's",
                         peak(motion.acceleration) / peak(elcentro.values),
                         1.,
                         0.01);
@@ -347,7 +349,7 @@ namespace Voussoir
     check_section(const std::string &record, Verdicts &verdicts)
     {
       GroundMotion motion;
-      motion.type              = "record";
+      motion.type              = GroundMotionType::record;
       motion.peak_entries      = {{"as recorded", "0.2", "0"}};
       motion.overload_factor   = 1.5;
       motion.record.files      = {{record, record, ""}};

@@ -39,10 +39,10 @@ namespace Voussoir
         const auto  simulation = make_simulation(*parameters, communicator);
         const auto  motion     = parameters->ground_motion.build(file.folder());
         const auto &field      = parameters->wave;
-        const std::map<std::string, ObliqueWave::Type> types{
-          {"oblique P", ObliqueWave::Type::P},
-          {"oblique SV", ObliqueWave::Type::SV},
-          {"oblique SH", ObliqueWave::Type::SH}};
+        const std::map<WaveType, ObliqueWave::Type> types{
+          {WaveType::oblique_p, ObliqueWave::Type::P},
+          {WaveType::oblique_sv, ObliqueWave::Type::SV},
+          {WaveType::oblique_sh, ObliqueWave::Type::SH}};
 
         // the front reaches the first lower corner of the box at t = 0
         const auto &[lower, upper] = simulation->model.boundary.extent();
@@ -67,7 +67,7 @@ namespace Voussoir
 
         const double       azimuth = field.azimuth * numbers::PI / 180.;
         const Tensor<1, 3> factor  = exact.surface_factor();
-        const bool         across  = field.type == "oblique SH";
+        const bool         across  = field.type == WaveType::oblique_sh;
         const double       along =
           across ?
                   factor[1] * std::cos(azimuth) - factor[0] * std::sin(azimuth) :

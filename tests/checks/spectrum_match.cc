@@ -92,7 +92,7 @@ namespace Voussoir
       {
         const DesignSpectrum target;
         SpectrumMatch        parameters;
-        parameters.method = "each component";
+        parameters.method = MatchMethod::each_component;
         std::vector<SpectrumFit> fits(1);
         fits[0].periods = parameters.periods();
         for (const double period : fits[0].periods)
@@ -147,7 +147,7 @@ namespace Voussoir
       one_factor(const TimeSeries &first, const TimeSeries &second) const
       {
         SpectrumMatch parameters;
-        parameters.method          = "one factor";
+        parameters.method          = MatchMethod::one_factor;
         parameters.shortest_period = 0.1;
         parameters.longest_period  = 2.;
         std::vector<SpectrumFit>      fits(2);

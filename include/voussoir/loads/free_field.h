@@ -10,14 +10,46 @@
 
 namespace Voussoir
 {
+  enum class WaveEntrance
+  {
+    absorbing_boundary,
+    rigid_base
+  };
+
+  inline OptionNames<WaveEntrance>
+  option_names(const WaveEntrance)
+  {
+    return {{WaveEntrance::absorbing_boundary, "absorbing boundary"},
+            {WaveEntrance::rigid_base, "rigid base"}};
+  }
+
+
+  enum class WaveType
+  {
+    vertical,
+    oblique_p,
+    oblique_sv,
+    oblique_sh
+  };
+
+  inline OptionNames<WaveType>
+  option_names(const WaveType)
+  {
+    return {{WaveType::vertical, "vertical"},
+            {WaveType::oblique_p, "oblique P"},
+            {WaveType::oblique_sv, "oblique SV"},
+            {WaveType::oblique_sh, "oblique SH"}};
+  }
+
+
   /** The entries of the section "Wave field". */
   struct WaveParameters
   {
-    std::string enters_through    = "absorbing boundary";
-    std::string type              = "vertical";
-    double      angle             = 15.;
-    double      azimuth           = 0.;
-    double      maximum_frequency = 25.;
+    WaveEntrance enters_through    = WaveEntrance::absorbing_boundary;
+    WaveType     type              = WaveType::vertical;
+    double       angle             = 15.;
+    double       azimuth           = 0.;
+    double       maximum_frequency = 25.;
 
     void
     declare(dealii::ParameterHandler &prm);
@@ -98,7 +130,7 @@ namespace Voussoir
                   const std::string                   &quadrature,
                   const Damping                       &damping,
                   const WaveParameters                &wave,
-                  const std::string                   &given_at,
+                  const MotionPlace                    given_at,
                   GroundMotionSignals                &&motion,
                   const LeapFrog                      &leap_frog,
                   const double                         duration);

@@ -1,6 +1,7 @@
 #ifndef voussoir_loads_ground_motion_h
 #define voussoir_loads_ground_motion_h
 
+#include <voussoir/base/option.h>
 #include <voussoir/signals/baseline.h>
 #include <voussoir/signals/record.h>
 #include <voussoir/signals/signal.h>
@@ -19,20 +20,55 @@ namespace Voussoir
   /** Components in x, y, z; null where the ground does not move. */
   using GroundMotionSignals = std::array<std::unique_ptr<Signal>, 3>;
 
+  enum class GroundMotionType
+  {
+    none,
+    record,
+    ricker,
+    sine,
+    pulse,
+    spectrum
+  };
+
+  inline OptionNames<GroundMotionType>
+  option_names(const GroundMotionType)
+  {
+    return {{GroundMotionType::none, "none"},
+            {GroundMotionType::record, "record"},
+            {GroundMotionType::ricker, "Ricker"},
+            {GroundMotionType::sine, "sine"},
+            {GroundMotionType::pulse, "pulse"},
+            {GroundMotionType::spectrum, "spectrum"}};
+  }
+
+
+  /** Where the motion was or would be recorded. */
+  enum class MotionPlace
+  {
+    outcrop,
+    free_surface,
+    incident_wave
+  };
+
+  inline OptionNames<MotionPlace>
+  option_names(const MotionPlace)
+  {
+    return {{MotionPlace::outcrop, "outcrop"},
+            {MotionPlace::free_surface, "free surface"},
+            {MotionPlace::incident_wave, "incident wave"}};
+  }
+
+
   /**
    * Parameters of the prm section "Ground motion": the earthquake as functions
    * of time across the valley (x), along the river (y) and upwards (z).
    */
   struct GroundMotion
   {
-    /** "none", "record", "Ricker", "sine", "pulse" or "spectrum". */
-    std::string type = "none";
+    GroundMotionType type = GroundMotionType::none;
 
-    /**
-     * Where the motion was or would be recorded: "outcrop", "free surface" or
-     * "incident wave". Nothing here depends on it; see its entry.
-     */
-    std::string given_at = "outcrop";
+    /** Nothing here depends on it; see its entry. */
+    MotionPlace given_at = MotionPlace::outcrop;
 
     /** The entries "Peak acceleration x", y and z. */
     std::array<std::string, 3> peak_entries{
@@ -56,7 +92,7 @@ namespace Voussoir
     {
       std::array<std::string, 3>  files;
       std::array<unsigned int, 3> columns{{1, 1, 1}};
-      std::string                 unit       = "g";
+      AccelerationUnit            unit       = AccelerationUnit::g;
       double                      time_step  = 0.;
       double                      start_time = 0.;
       double                      duration   = 0.;
@@ -68,9 +104,9 @@ namespace Voussoir
 
     struct Ricker
     {
-      std::string quantity  = "displacement";
-      double      frequency = 5.;
-      double      middle    = 0.;
+      Quantity quantity  = Quantity::displacement;
+      double   frequency = 5.;
+      double   middle    = 0.;
 
       void
       declare(dealii::ParameterHandler &prm);
@@ -88,8 +124,8 @@ namespace Voussoir
 
     struct Pulse
     {
-      std::string quantity = "displacement";
-      double      duration = 0.5;
+      Quantity quantity = Quantity::displacement;
+      double   duration = 0.5;
 
       void
       declare(dealii::ParameterHandler &prm);
@@ -115,7 +151,7 @@ namespace Voussoir
 
     /**
      * The motion in SI units, all factors included; nothing but null pointers
-     * for the type "none". Paths of records are relative to @p folder, the one
+     * for the type none. Paths of records are relative to @p folder, the one
      * of the parameter file. Throws UserError on unreadable records.
      *
      * @param fits if not null, how records fit the spectrum that they are

@@ -1,23 +1,37 @@
 #ifndef voussoir_signals_baseline_h
 #define voussoir_signals_baseline_h
 
+#include <voussoir/base/option.h>
 #include <voussoir/signals/time_series.h>
 
 #include <deal.II/base/parameter_handler.h>
 
-#include <string>
-
 namespace Voussoir
 {
+  enum class BaselineMethod
+  {
+    none,
+    polynomial,
+    high_pass
+  };
+
+  inline OptionNames<BaselineMethod>
+  option_names(const BaselineMethod)
+  {
+    return {{BaselineMethod::none, "none"},
+            {BaselineMethod::polynomial, "polynomial"},
+            {BaselineMethod::high_pass, "high-pass"}};
+  }
+
+
   /**
    * Baseline correction of an acceleration, so that the motion starts and ends
-   * at rest in its first position; the method "none" leaves it as it is. The
+   * at rest in its first position; the method none leaves it as it is. The
    * equations are in baseline.cc.
    */
   struct BaselineCorrection
   {
-    /** "none", "polynomial" or "high-pass". */
-    std::string method = "polynomial";
+    BaselineMethod method = BaselineMethod::polynomial;
 
     /** Of the high-pass filter [Hz]. */
     double corner_frequency = 0.1;

@@ -1,21 +1,35 @@
 #ifndef voussoir_signals_design_spectrum_h
 #define voussoir_signals_design_spectrum_h
 
+#include <voussoir/base/option.h>
+
 #include <deal.II/base/parameter_handler.h>
 
-#include <string>
 #include <vector>
 
 namespace Voussoir
 {
+  enum class SpectrumShape
+  {
+    hydropower_code,
+    table
+  };
+
+  inline OptionNames<SpectrumShape>
+  option_names(const SpectrumShape)
+  {
+    return {{SpectrumShape::hydropower_code, "hydropower code"},
+            {SpectrumShape::table, "table"}};
+  }
+
+
   /**
    * A design response spectrum: pseudo-acceleration divided by the peak ground
    * acceleration, over the natural period.
    */
   struct DesignSpectrum
   {
-    /** "hydropower code" or "table". */
-    std::string shape = "hydropower code";
+    SpectrumShape shape = SpectrumShape::hydropower_code;
 
     /** Of the code's shape: plateau [-], its end [s], exponent behind it. */
     double maximum_amplification = 2.5;

@@ -1,6 +1,7 @@
 #ifndef voussoir_signals_record_h
 #define voussoir_signals_record_h
 
+#include <voussoir/base/option.h>
 #include <voussoir/signals/time_series.h>
 
 #include <string>
@@ -10,11 +11,26 @@ namespace Voussoir
   /** What g means in records and in peak accelerations [m/s2]. */
   constexpr double standard_gravity = 9.81;
 
+  enum class AccelerationUnit
+  {
+    g,
+    m_per_s2,
+    cm_per_s2
+  };
+
+  inline OptionNames<AccelerationUnit>
+  option_names(const AccelerationUnit)
+  {
+    return {{AccelerationUnit::g, "g"},
+            {AccelerationUnit::m_per_s2, "m/s2"},
+            {AccelerationUnit::cm_per_s2, "cm/s2"}};
+  }
+
+
   /** What the file of an accelerogram does not tell about itself. */
   struct RecordFormat
   {
-    /** Unit of the accelerations: "g", "m/s2" or "cm/s2" (gal). */
-    std::string unit = "g";
+    AccelerationUnit unit = AccelerationUnit::g;
 
     /** Of a file with a single column [s]; 0 for all others. */
     double time_step = 0;

@@ -1,6 +1,7 @@
 #ifndef voussoir_signals_signal_h
 #define voussoir_signals_signal_h
 
+#include <voussoir/base/option.h>
 #include <voussoir/signals/time_series.h>
 
 namespace Voussoir
@@ -36,6 +37,14 @@ namespace Voussoir
     velocity,
     acceleration
   };
+
+  inline OptionNames<Quantity>
+  option_names(const Quantity)
+  {
+    return {{Quantity::displacement, "displacement"},
+            {Quantity::velocity, "velocity"},
+            {Quantity::acceleration, "acceleration"}};
+  }
 
   /**
    * The Ricker wavelet (1 - 2 a) exp(-a), a = (pi f (t - t_p))^2, of central

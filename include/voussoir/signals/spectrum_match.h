@@ -6,16 +6,30 @@
 
 #include <deal.II/base/parameter_handler.h>
 
-#include <string>
 #include <vector>
 
 namespace Voussoir
 {
+  enum class MatchMethod
+  {
+    none,
+    each_component,
+    one_factor
+  };
+
+  inline OptionNames<MatchMethod>
+  option_names(const MatchMethod)
+  {
+    return {{MatchMethod::none, "none"},
+            {MatchMethod::each_component, "each component"},
+            {MatchMethod::one_factor, "one factor"}};
+  }
+
+
   /** Whether and how recorded motions are fitted to a target spectrum. */
   struct SpectrumMatch
   {
-    /** "none", "each component" or "one factor". */
-    std::string method = "none";
+    MatchMethod method = MatchMethod::none;
 
     /** Periods at which the spectra are compared [s]. */
     double shortest_period = 0.03, longest_period = 5.;

@@ -20,7 +20,7 @@ namespace Voussoir
     undamped()
     {
       DampingParameters none;
-      none.model = "none";
+      none.model = DampingModel::none;
       return Damping(none);
     }
 

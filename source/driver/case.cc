@@ -302,7 +302,7 @@ namespace Voussoir
       material->check("Section \"Materials/" + name + "\"");
     if (discretization.one_point(false) && discretization.degree > 1)
       throw UserError("\"Quadrature\" in section \"Discretization\" is \"" +
-                      discretization.quadrature +
+                      option_name(discretization.quadrature) +
                       "\", which cells of \"Degree\" " +
                       std::to_string(discretization.degree) +
                       " cannot do with; set \"Degree = 1\", or take \"Gauss\" "

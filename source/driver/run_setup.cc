@@ -14,7 +14,7 @@ namespace Voussoir
     {
       if (!parameters.modes.empty() && modes.list.empty())
         {
-          parameters.model = "none";
+          parameters.model = DampingModel::none;
           return Damping(parameters);
         }
       Damping damping(parameters);
@@ -34,9 +34,9 @@ namespace Voussoir
 
 
     nlohmann::json
-    summary_of(const Damping &damping, const std::string &name)
+    summary_of(const Damping &damping, const DampingModel model)
     {
-      nlohmann::json result{{"model", name}};
+      nlohmann::json result{{"model", option_name(model)}};
       if (damping.n_branches() > 0)
         {
           result["moduli hold at [Hz]"]       = damping.reference_frequency();
@@ -51,7 +51,7 @@ namespace Voussoir
     check_band(const Model &model, Log &log)
     {
       const DampingParameters &damping = model.parameters.damping;
-      if (damping.model == "none" || damping.ratio == 0. ||
+      if (damping.model == DampingModel::none || damping.ratio == 0. ||
           !damping.modes.empty())
         return;
       const double carried = model.carried_frequency();

@@ -26,13 +26,13 @@ namespace Voussoir
   void
   DampingParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter(
+    add_option(
+      prm,
       "Model",
       model,
       "Maxwell: the same ratio over the whole band, for a small price in the "
       "time step. Rayleigh: the ratio at the two ends of the band, for a large "
-      "price. Mass proportional: the ratio at the lowest frequency only.",
-      Patterns::Selection("Maxwell|Rayleigh|mass proportional|none"));
+      "price. Mass proportional: the ratio at the lowest frequency only.");
     prm.add_parameter("Ratio",
                       ratio,
                       "Fraction of critical damping; materials can scale it.",
@@ -81,10 +81,10 @@ namespace Voussoir
   {
     if (!modes.empty())
       {
-        if (model != "Rayleigh")
+        if (model != DampingModel::rayleigh)
           throw UserError("\"From modes\" in section \"Damping\" is for the "
                           "\"Model\" Rayleigh only, not " +
-                          model + "; leave it empty.");
+                          option_name(model) + "; leave it empty.");
         if (modes.size() != 2 || modes[0] == modes[1])
           throw UserError("\"From modes\" in section \"Damping\" must name "
                           "two different modes, as in \"1, 3\".");
@@ -103,7 +103,7 @@ namespace Voussoir
                       "\"; give a frequency [Hz], 0 for at rest, "
                       "or \"" +
                       first_mode + "\".");
-    if (model != "none" && lowest_frequency >= highest_frequency)
+    if (model != DampingModel::none && lowest_frequency >= highest_frequency)
       throw UserError("In section \"Damping\" the \"Lowest frequency\" must be "
                       "below the \"Highest frequency\".");
   }
@@ -112,7 +112,8 @@ namespace Voussoir
   bool
   DampingParameters::follows_first_mode() const
   {
-    return model == "Maxwell" && ratio > 0. && reference == first_mode;
+    return model == DampingModel::maxwell && ratio > 0. &&
+           reference == first_mode;
   }
 
 
@@ -127,11 +128,11 @@ namespace Voussoir
     : parameters(parameters)
     , reference(parse_number(parameters.reference).value_or(usual_reference))
   {
-    if (parameters.model == "Maxwell" && parameters.ratio > 0.)
+    if (parameters.model == DampingModel::maxwell && parameters.ratio > 0.)
       fit_maxwell();
-    else if (parameters.model == "Rayleigh")
+    else if (parameters.model == DampingModel::rayleigh)
       fit_rayleigh(parameters.lowest_frequency, parameters.highest_frequency);
-    else if (parameters.model == "mass proportional")
+    else if (parameters.model == DampingModel::mass_proportional)
       mass_coefficient =
         4. * numbers::PI * parameters.ratio * parameters.lowest_frequency;
   }
@@ -303,12 +304,12 @@ namespace Voussoir
   void
   Damping::print(std::ostream &out) const
   {
-    if (parameters.model == "none" || parameters.ratio == 0.)
+    if (parameters.model == DampingModel::none || parameters.ratio == 0.)
       {
         out << "Damping: none\n";
         return;
       }
-    out << "Damping: " << parameters.model << ", asked "
+    out << "Damping: " << option_name(parameters.model) << ", asked "
         << 100. * parameters.ratio << " %, achieved\n    ";
     out << std::fixed;
     for (const double f : {0.5, 1., 2., 3., 5., 10., 20., 30.})

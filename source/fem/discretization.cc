@@ -21,7 +21,8 @@ namespace Voussoir
                       "Polynomial degree of the displacement; 1 is fastest per "
                       "unknown, 2 to 4 are more accurate per unknown.",
                       Patterns::Integer(1, 4));
-    prm.add_parameter(
+    add_option(
+      prm,
       "Quadrature",
       quadrature,
       "Integration points of the stiffness: Gauss or Gauss-Lobatto points, "
@@ -34,17 +35,16 @@ namespace Voussoir
       "full integration or several cells through the wall. \"One point where "
       "elastic\" has one point in materials that stay elastic and Gauss points "
       "in those that crack or yield: for a dam in much rock. The mass is "
-      "always lumped at the Gauss-Lobatto nodes.",
-      Patterns::Selection(
-        "Gauss|Gauss-Lobatto|one point|one point where elastic"));
+      "always lumped at the Gauss-Lobatto nodes.");
   }
 
 
   bool
   DiscretizationParameters::one_point(const bool has_memory) const
   {
-    return quadrature == "one point" ||
-           (quadrature == "one point where elastic" && !has_memory);
+    return quadrature == QuadratureRule::one_point ||
+           (quadrature == QuadratureRule::one_point_where_elastic &&
+            !has_memory);
   }
 
 
@@ -52,7 +52,9 @@ namespace Voussoir
   DiscretizationParameters::relative_cost(const bool has_memory) const
   {
     // eight points against one, in a whole step, measured
-    return quadrature == "one point where elastic" && has_memory ? 2.5 : 1.;
+    return quadrature == QuadratureRule::one_point_where_elastic && has_memory ?
+             2.5 :
+             1.;
   }
 
 
@@ -118,7 +120,7 @@ namespace Voussoir
     std::vector<Quadrature<1>> quadratures;
     if (parameters.one_point(true)) // everywhere
       quadratures = {QGauss<1>(1)};
-    else if (parameters.quadrature == "Gauss-Lobatto")
+    else if (parameters.quadrature == QuadratureRule::gauss_lobatto)
       quadratures = {QGaussLobatto<1>(degree + 1)};
     else
       quadratures = {QGauss<1>(degree + 1)};

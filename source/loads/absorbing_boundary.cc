@@ -294,7 +294,7 @@ namespace Voussoir
     const AbsorbingParameters                             &parameters,
     const std::vector<const Material *>                   &materials,
     const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
-    const std::string                                     &quadrature,
+    const QuadratureRule                                   quadrature,
     NodalTerms                                            &terms)
   {
     const BoundaryFaces faces{discretization,
@@ -329,7 +329,7 @@ namespace Voussoir
     // column on the same levels is followed exactly
     const unsigned int  n_points = discretization.degree + 1;
     const Quadrature<2> points =
-      quadrature == "Gauss-Lobatto" ?
+      quadrature == QuadratureRule::gauss_lobatto ?
         static_cast<Quadrature<2>>(QGaussLobatto<2>(n_points)) :
         static_cast<Quadrature<2>>(QGauss<2>(n_points));
     FEFaceValues<3> at_points(discretization.mapping,

@@ -11,10 +11,10 @@ namespace Voussoir
   namespace
   {
     Quadrature<1>
-    stiffness_quadrature(const std::string &name, const unsigned int degree)
+    stiffness_quadrature(const QuadratureRule rule, const unsigned int degree)
     {
       // one point in linear elements does what two do
-      if (name == "Gauss-Lobatto")
+      if (rule == QuadratureRule::gauss_lobatto)
         return QGaussLobatto<1>(degree + 1);
       return QGauss<1>(degree + 1);
     }
@@ -23,7 +23,7 @@ namespace Voussoir
 
   WaveColumn::WaveColumn(const std::vector<Layer> &layers,
                          const unsigned int        degree,
-                         const std::string        &quadrature,
+                         const QuadratureRule      quadrature,
                          const Damping            &damping,
                          const LeapFrog           &leap_frog)
     : degree(degree)

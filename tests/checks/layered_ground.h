@@ -107,9 +107,9 @@ namespace Voussoir
     std::complex<double>
     relative_modulus(const std::complex<double> s) const
     {
-      if (damping.model == "Rayleigh")
+      if (damping.model == DampingModel::rayleigh)
         return 1. + 2. * damping.ratio / (low() + high()) * s;
-      if (damping.model != "Maxwell")
+      if (damping.model != DampingModel::maxwell)
         return 1.;
       const double gamma = std::atan(2. * damping.ratio) / dealii::numbers::PI;
       return std::pow(s / (2. * dealii::numbers::PI *
@@ -121,7 +121,7 @@ namespace Voussoir
     std::complex<double>
     relative_density(const std::complex<double> s) const
     {
-      return damping.model == "Rayleigh" ?
+      return damping.model == DampingModel::rayleigh ?
                1. + 2. * damping.ratio * low() * high() / (low() + high()) / s :
                1.;
     }

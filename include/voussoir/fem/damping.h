@@ -1,6 +1,8 @@
 #ifndef voussoir_fem_damping_h
 #define voussoir_fem_damping_h
 
+#include <voussoir/base/option.h>
+
 #include <deal.II/base/parameter_handler.h>
 
 #include <ostream>
@@ -8,10 +10,28 @@
 
 namespace Voussoir
 {
+  enum class DampingModel
+  {
+    maxwell,
+    rayleigh,
+    mass_proportional,
+    none
+  };
+
+  inline OptionNames<DampingModel>
+  option_names(const DampingModel)
+  {
+    return {{DampingModel::maxwell, "Maxwell"},
+            {DampingModel::rayleigh, "Rayleigh"},
+            {DampingModel::mass_proportional, "mass proportional"},
+            {DampingModel::none, "none"}};
+  }
+
+
   /** The entries of the section "Damping". */
   struct DampingParameters
   {
-    std::string               model             = "Maxwell";
+    DampingModel              model             = DampingModel::maxwell;
     double                    ratio             = 0.05;
     double                    lowest_frequency  = 1.;
     double                    highest_frequency = 20.;

@@ -1,6 +1,7 @@
 #ifndef voussoir_fem_discretization_h
 #define voussoir_fem_discretization_h
 
+#include <voussoir/base/option.h>
 #include <voussoir/fem/simd.h>
 #include <voussoir/grid/grid.h>
 
@@ -20,11 +21,30 @@ namespace Voussoir
 {
   using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
 
+  enum class QuadratureRule
+  {
+    gauss,
+    gauss_lobatto,
+    one_point,
+    one_point_where_elastic
+  };
+
+  inline OptionNames<QuadratureRule>
+  option_names(const QuadratureRule)
+  {
+    return {{QuadratureRule::gauss, "Gauss"},
+            {QuadratureRule::gauss_lobatto, "Gauss-Lobatto"},
+            {QuadratureRule::one_point, "one point"},
+            {QuadratureRule::one_point_where_elastic,
+             "one point where elastic"}};
+  }
+
+
   /** The entries of the section "Discretization". */
   struct DiscretizationParameters
   {
-    unsigned int degree     = 1;
-    std::string  quadrature = "Gauss";
+    unsigned int   degree     = 1;
+    QuadratureRule quadrature = QuadratureRule::gauss;
 
     void
     declare(dealii::ParameterHandler &prm);

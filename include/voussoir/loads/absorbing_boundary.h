@@ -32,7 +32,7 @@ namespace Voussoir
       const AbsorbingParameters                             &parameters,
       const std::vector<const Material *>                   &materials,
       const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
-      const std::string                                     &quadrature,
+      const QuadratureRule                                   quadrature,
       NodalTerms                                            &terms);
 
     const BoundaryGeometry &

@@ -127,7 +127,7 @@ namespace Voussoir
   make_free_field(const AbsorbingBoundary             &boundary,
                   const Discretization                &discretization,
                   const std::vector<const Material *> &materials,
-                  const std::string                   &quadrature,
+                  const QuadratureRule                 quadrature,
                   const Damping                       &damping,
                   const WaveParameters                &wave,
                   const MotionPlace                    given_at,

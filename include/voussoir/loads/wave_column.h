@@ -29,7 +29,7 @@ namespace Voussoir
 
     WaveColumn(const std::vector<Layer> &layers,
                const unsigned int        degree,
-               const std::string        &quadrature,
+               const QuadratureRule      quadrature,
                const Damping            &damping,
                const LeapFrog           &leap_frog);
 

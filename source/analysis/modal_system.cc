@@ -125,8 +125,8 @@ namespace Voussoir
   void
   ModalSystem::tie()
   {
-    const Contact &contact   = *model.contact;
-    const bool     all       = parameters.interfaces == "all tied";
+    const Contact &contact = *model.contact;
+    const bool     all = parameters.interfaces == InterfacesInModes::all_tied;
     const auto     is_closed = [&](const ContactPoint &point) {
       return all || contact.touches(point) || point.force[0] > 0.;
     };
@@ -181,7 +181,7 @@ namespace Voussoir
                    ties ? &*ties : nullptr);
     if (model.reservoir != nullptr)
       water.emplace(*model.reservoir,
-                    parameters.water == "compressible" ?
+                    parameters.water == WaterInModes::compressible ?
                       typical_stiffness(model) :
                       0.);
   }
@@ -217,7 +217,7 @@ namespace Voussoir
     if (model.reservoir != nullptr)
       return true;
     double largest = 0.;
-    if (parameters.water != "none")
+    if (parameters.water != WaterInModes::none)
       for (const NodalTerms::Matrix &added : model.terms.added_mass)
         largest = std::max(largest, added.norm());
     return Utilities::MPI::max(largest, structure.get_mpi_communicator()) > 0.;
@@ -249,7 +249,7 @@ namespace Voussoir
     std::fill(momentum + n, momentum + size(), 0.);
     if (water)
       water->add_momentum(to, momentum + n, from, motion + n);
-    else if (parameters.water != "none")
+    else if (parameters.water != WaterInModes::none)
       for (unsigned int slot = 0; slot < model.terms.nodes.size(); ++slot)
         {
           const unsigned int first = 3 * model.terms.nodes[slot];

@@ -30,22 +30,22 @@ namespace Voussoir
                       massless_materials,
                       "Materials that are elastic but without mass in the "
                       "modes, separated by commas.");
-    prm.add_parameter(
+    add_option(
+      prm,
       "Interfaces",
       interfaces,
       "Where the two sides of interfaces are one body in the modes: where the "
       "static state leaves them closed, sliding or not, or everywhere. "
-      "Elsewhere they are free, without the bars across them.",
-      Patterns::Selection("tied where closed|all tied"));
-    prm.add_parameter(
+      "Elsewhere they are free, without the bars across them.");
+    add_option(
+      prm,
       "Water",
       water,
       "None: an empty reservoir. By reservoir: the added mass of section "
       "\"Reservoir\" or, if its model is compressible, its cells of water as "
       "if these were incompressible. Incompressible: these cells, whatever the "
       "model. Compressible: these cells with the sound in them; the reservoir "
-      "ends in a rigid wall then, and has modes of its own.",
-      Patterns::Selection("none|by reservoir|incompressible|compressible"));
+      "ends in a rigid wall then, and has modes of its own.");
     prm.add_parameter("Relative tolerance",
                       tolerance,
                       "Residual |K phi - omega^2 M phi| over |K phi|; the "
@@ -58,9 +58,10 @@ namespace Voussoir
   ModeParameters::want_cells_of_water(
     const ReservoirParameters &reservoir) const
   {
-    return number > 0 &&
-           (water == "incompressible" || water == "compressible" ||
-            (water == "by reservoir" && reservoir.model == "compressible"));
+    return number > 0 && (water == WaterInModes::incompressible ||
+                          water == WaterInModes::compressible ||
+                          (water == WaterInModes::by_reservoir &&
+                           reservoir.model == ReservoirModel::compressible));
   }
 
 

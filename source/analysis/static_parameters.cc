@@ -19,13 +19,13 @@ namespace Voussoir
       "semicolons, in their order, with the names of loads separated by "
       "commas, as in \"weight; water, silt; temperature\". They stay as they "
       "are at t = 0. Empty: no static stage.");
-    prm.add_parameter(
+    add_option(
+      prm,
       "Supports",
       supports,
       "How the absorbing faces stand in the static stage: fixed, held at right "
       "angles to themselves (roller), or on the springs of the boundary. Their "
-      "reactions stay when the faces begin to absorb.",
-      Patterns::Selection("fixed|roller|springs"));
+      "reactions stay when the faces begin to absorb.");
     prm.add_parameter(
       "Load increments",
       increments,

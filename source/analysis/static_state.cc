@@ -191,11 +191,11 @@ namespace Voussoir
                                          [](const Material &material) {
                                            return material.factor_at_rest();
                                          }))
-      , on_springs(parameters.supports == "springs")
+      , on_springs(parameters.supports == StaticSupports::springs)
       , constraints(model.discretization.make_constraints(
           on_springs ? model.boundaries.supports.list() :
                        model.boundaries.supports_with_absorbing(
-                         parameters.supports == "roller")))
+                         parameters.supports == StaticSupports::roller)))
       , loads(model.discretization.create_vector())
     {
       const Timer clock;

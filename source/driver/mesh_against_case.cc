@@ -165,7 +165,7 @@ namespace Voussoir
       void
       check_water() const
       {
-        if (parameters.reservoir.model != "added mass")
+        if (parameters.reservoir.model != ReservoirModel::added_mass)
           return;
         const std::string sets     = parameters.reservoir.added_mass.face_sets;
         const Faces       swinging = faces_of(mesh, sets);

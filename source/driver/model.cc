@@ -20,7 +20,7 @@ namespace Voussoir
     take_water(const Case &parameters, CoarseMesh &mesh)
     {
       const ReservoirParameters &reservoir = parameters.reservoir;
-      const bool                 wanted = reservoir.model == "compressible" ||
+      const bool wanted = reservoir.model == ReservoirModel::compressible ||
                           parameters.modes.want_cells_of_water(reservoir);
       std::vector<std::string> sets;
       for (const std::string &set : split_list(reservoir.cell_sets))
@@ -177,7 +177,7 @@ namespace Voussoir
                   const ReservoirParameters &water,
                   Log                       &log)
     {
-      return water.model == "added mass" ?
+      return water.model == ReservoirModel::added_mass ?
                add_westergaard_mass(
                  discretization, water.added_mass, water.density, terms, log) :
                AddedMass();
@@ -191,7 +191,7 @@ namespace Voussoir
                    NodalTerms           &terms,
                    Log                  &log)
     {
-      if (parameters.reservoir.model != "compressible")
+      if (parameters.reservoir.model != ReservoirModel::compressible)
         return nullptr;
       return std::make_shared<const Reservoir>(water_mesh,
                                                parameters.grid,
@@ -235,7 +235,8 @@ namespace Voussoir
           const double level = Utilities::string_to_double(
             parameters.file.given(section + "/Level"));
           (type == "water" ? waters : silts)[section] = level;
-          if (type == "water" && parameters.reservoir.model == "added mass" &&
+          if (type == "water" &&
+              parameters.reservoir.model == ReservoirModel::added_mass &&
               split_list(
                 parameters.file.given(section + "/Face sets", default_faces)) ==
                 split_list(mass.face_sets) &&
@@ -459,7 +460,7 @@ namespace Voussoir
              " of degree ",
              discretization.degree);
     report_materials(log);
-    if (parameters.reservoir.model == "added mass")
+    if (parameters.reservoir.model == ReservoirModel::added_mass)
       log.line("Reservoir: added mass of ",
                added_mass.mass,
                " kg against motion along the river, (",
@@ -495,7 +496,7 @@ namespace Voussoir
   {
     const AbsorbingParameters &absorbing = parameters.boundaries.absorbing;
     if (split_list(absorbing.face_sets).empty() ||
-        absorbing.type == "viscous" || absorbing.radius > 0.)
+        absorbing.type == AbsorbingType::viscous || absorbing.radius > 0.)
       return;
     const auto &[lower, upper] = boundary.extent();
     Tensor<1, 3> outside;

@@ -18,20 +18,20 @@ namespace Voussoir
     prm.add_parameter("Absorbing",
                       face_sets,
                       "Face sets that let waves out, and the earthquake in.");
-    prm.add_parameter(
+    add_option(
+      prm,
       "Absorbing type",
       type,
       "Dashpots alone, or springs beside them, which keep the model in place "
-      "and suit waves that spread from the dam.",
-      Patterns::Selection("viscous|viscous-spring"));
-    prm.add_parameter(
+      "and suit waves that spread from the dam.");
+    add_option(
+      prm,
       "Coefficients",
       coefficients,
       "Normal and tangential spring per area, with the distance r: paper "
       "E/2r, G/2r; Liu 3D 4/3 G/r, 2/3 G/r; Liu 2D G/r, G/2r; Deeks-Randolph "
       "G/r, G/2r; Du-Zhao (lambda+2G)/1.8r, G/1.8r with dashpots 1.1 rho c. "
-      "The others have dashpots rho c.",
-      Patterns::Selection("paper|Liu 3D|Liu 2D|Deeks-Randolph|Du-Zhao"));
+      "The others have dashpots rho c.");
     prm.add_parameter("Source point",
                       source,
                       "Where scattered waves come from, x, y, z [m]: the "
@@ -70,15 +70,15 @@ namespace Voussoir
       const double E = rock.young_modulus;
       const double M = rock.lame_lambda() + 2. * G;
       // physics A2: normal spring r, tangential spring r, factor on rho c
-      const std::map<std::string, std::array<double, 3>> sets{
-        {"paper", {{E / 2., G / 2., 1.}}},
-        {"Liu 3D", {{4. / 3. * G, 2. / 3. * G, 1.}}},
-        {"Liu 2D", {{G, G / 2., 1.}}},
-        {"Deeks-Randolph", {{G, G / 2., 1.}}},
-        {"Du-Zhao", {{M / 1.8, G / 1.8, 1.1}}}};
+      const std::map<SpringCoefficients, std::array<double, 3>> sets{
+        {SpringCoefficients::paper, {{E / 2., G / 2., 1.}}},
+        {SpringCoefficients::liu_3d, {{4. / 3. * G, 2. / 3. * G, 1.}}},
+        {SpringCoefficients::liu_2d, {{G, G / 2., 1.}}},
+        {SpringCoefficients::deeks_randolph, {{G, G / 2., 1.}}},
+        {SpringCoefficients::du_zhao, {{M / 1.8, G / 1.8, 1.1}}}};
       const auto &[normal, tangential, dashpot] =
         sets.at(parameters.coefficients);
-      const bool   viscous = parameters.type == "viscous";
+      const bool   viscous = parameters.type == AbsorbingType::viscous;
       const double springs = viscous ? 0. : 1.;
       const double factor  = viscous ? 1. : dashpot;
       return {springs * normal,

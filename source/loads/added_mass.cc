@@ -143,16 +143,16 @@ namespace Voussoir
 
 
     NodalTerms::Matrix
-    direction_of(const Tensor<1, 3> &n,
-                 const std::string  &direction,
-                 const Axes         &axes)
+    direction_of(const Tensor<1, 3>      &n,
+                 const AddedMassDirection direction,
+                 const Axes              &axes)
     {
       const auto along = [&](const Tensor<1, 3> &axis) {
         return (n * axis) * (n * axis) * symmetrize(outer_product(axis, axis));
       };
-      return direction == "river" ?
+      return direction == AddedMassDirection::river ?
                along(axes.river) :
-             direction == "uncoupled" ?
+             direction == AddedMassDirection::uncoupled ?
                along(axes.river) + along(axes.up) + along(axes.across) :
                symmetrize(outer_product(n, n));
     }
@@ -173,14 +173,14 @@ namespace Voussoir
       "Factor on the added mass; some practice takes half of it "
       "for arch dams.",
       Patterns::Double(0., 1.));
-    prm.add_parameter(
+    add_option(
+      prm,
       "Direction",
       direction,
       "Normal: the water resists motion along the face's normal, which couples "
       "x, y and z on slanted faces. Uncoupled: motion along the river, across "
       "and upwards, each by itself. River: motion along the river only, the "
-      "way that the water pushes.",
-      Patterns::Selection("normal|uncoupled|river"));
+      "way that the water pushes.");
   }
 
 

@@ -194,7 +194,8 @@ namespace Voussoir
                               end_area,
                               bottom_dashpots,
                               inverse_storage,
-                              parameters.far_reservoir == "channel"},
+                              parameters.far_reservoir ==
+                                FarReservoir::channel},
           log);
         largest_step = std::min(largest_step, end->stable_step());
       }

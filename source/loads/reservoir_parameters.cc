@@ -8,14 +8,14 @@ namespace Voussoir
   void
   ReservoirParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter(
+    add_option(
+      prm,
       "Model",
       model,
       "How the water moves with the dam. Added mass: incompressible, for low "
       "dams or first estimates. Compressible: cells of water in which sound "
       "travels; it matters where the dam's frequencies come near to sound "
-      "speed / (4 depth), 1.25 Hz at 289 m.",
-      Patterns::Selection("none|added mass|compressible"));
+      "speed / (4 depth), 1.25 Hz at 289 m.");
     prm.add_parameter("Density",
                       density,
                       "Density of the water [kg/m3]." +
@@ -42,7 +42,8 @@ namespace Voussoir
       end,
       "Compressible: face sets of the water, upright, through which sound "
       "leaves upstream; other ends reflect.");
-    prm.add_parameter(
+    add_option(
+      prm,
       "Far reservoir",
       far_reservoir,
       "Compressible: what lies behind the radiating end. Channel: the section "
@@ -50,8 +51,7 @@ namespace Voussoir
       "frequency, sound speed / (4 depth) where the bottom is level, but what "
       "its bottom absorbs. Plane waves: a dashpot of density times sound speed, as in most "
       "programs, which takes some there, too. Both leave alone what the motion "
-      "of floor and banks makes along the whole reservoir.",
-      Patterns::Selection("channel|plane waves"));
+      "of floor and banks makes along the whole reservoir.");
     prm.add_parameter("Dam",
                       dam,
                       "Compressible: face sets of the dam. All other walls of "

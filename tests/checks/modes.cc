@@ -89,7 +89,7 @@ namespace Voussoir
                        residual,
                        parameters->modes.tolerance);
         // where sound travels in the water, its pressures belong to the modes
-        if (parameters->modes.water == "compressible")
+        if (parameters->modes.water == WaterInModes::compressible)
           return;
         const auto [mass, stiffness] = orthogonality(*simulation);
         verdicts.below("orthogonality in the mass", mass, 1e-8);
@@ -184,7 +184,7 @@ namespace Voussoir
                         (0.5 - s * c / (2. * k) + s * s),
                       2. * tolerance);
         ModeParameters without_water = parameters->modes;
-        without_water.water          = "none";
+        without_water.water          = WaterInModes::none;
         const auto dry = compute_modes(*simulation, *parameters, without_water);
         verdicts.near("without water, mode 1 over c/L",
                       2. * numbers::PI * dry.list[0].frequency / base,

@@ -2,6 +2,7 @@
 #define voussoir_analysis_modes_h
 
 #include <voussoir/base/log.h>
+#include <voussoir/base/option.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/constraints/contact.h>
 #include <voussoir/fem/internal_force.h>
@@ -13,14 +14,46 @@
 
 namespace Voussoir
 {
+  enum class InterfacesInModes
+  {
+    tied_where_closed,
+    all_tied
+  };
+
+  inline OptionNames<InterfacesInModes>
+  option_names(const InterfacesInModes)
+  {
+    return {{InterfacesInModes::tied_where_closed, "tied where closed"},
+            {InterfacesInModes::all_tied, "all tied"}};
+  }
+
+
+  enum class WaterInModes
+  {
+    none,
+    by_reservoir,
+    incompressible,
+    compressible
+  };
+
+  inline OptionNames<WaterInModes>
+  option_names(const WaterInModes)
+  {
+    return {{WaterInModes::none, "none"},
+            {WaterInModes::by_reservoir, "by reservoir"},
+            {WaterInModes::incompressible, "incompressible"},
+            {WaterInModes::compressible, "compressible"}};
+  }
+
+
   /** The entries of the section "Modes". */
   struct ModeParameters
   {
-    unsigned int number = 0;
-    std::string  held_materials, massless_materials;
-    std::string  interfaces = "tied where closed";
-    std::string  water      = "by reservoir";
-    double       tolerance  = 1e-5;
+    unsigned int      number = 0;
+    std::string       held_materials, massless_materials;
+    InterfacesInModes interfaces = InterfacesInModes::tied_where_closed;
+    WaterInModes      water      = WaterInModes::by_reservoir;
+    double            tolerance  = 1e-5;
 
     void
     declare(dealii::ParameterHandler &prm);

@@ -2,6 +2,7 @@
 #define voussoir_analysis_static_state_h
 
 #include <voussoir/base/log.h>
+#include <voussoir/base/option.h>
 #include <voussoir/constraints/contact.h>
 #include <voussoir/fem/internal_force.h>
 #include <voussoir/loads/boundary_parameters.h>
@@ -15,15 +16,31 @@ namespace Voussoir
   /** The loads of a case by their names. */
   using NamedLoads = std::vector<std::pair<std::string, Load *>>;
 
+  enum class StaticSupports
+  {
+    fixed,
+    roller,
+    springs
+  };
+
+  inline OptionNames<StaticSupports>
+  option_names(const StaticSupports)
+  {
+    return {{StaticSupports::fixed, "fixed"},
+            {StaticSupports::roller, "roller"},
+            {StaticSupports::springs, "springs"}};
+  }
+
+
   /** The entries of the section "Static state". */
   struct StaticParameters
   {
-    std::string  stages;
-    std::string  supports   = "fixed";
-    unsigned int increments = 4; // of a stage that depends on its path
-    double       tolerance  = 1e-8;
-    double       rest       = 1e-6;
-    std::string  kept       = "static_states"; // folder
+    std::string    stages;
+    StaticSupports supports   = StaticSupports::fixed;
+    unsigned int   increments = 4; // of a stage that depends on its path
+    double         tolerance  = 1e-8;
+    double         rest       = 1e-6;
+    std::string    kept       = "static_states"; // folder
 
     /** Loads that are not active. */
     std::vector<std::string> left_out;

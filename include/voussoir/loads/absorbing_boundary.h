@@ -1,19 +1,54 @@
 #ifndef voussoir_loads_absorbing_boundary_h
 #define voussoir_loads_absorbing_boundary_h
 
+#include <voussoir/base/option.h>
 #include <voussoir/fem/nodal_terms.h>
 #include <voussoir/loads/free_field.h>
 
 namespace Voussoir
 {
+  enum class AbsorbingType
+  {
+    viscous,
+    viscous_spring
+  };
+
+  inline OptionNames<AbsorbingType>
+  option_names(const AbsorbingType)
+  {
+    return {{AbsorbingType::viscous, "viscous"},
+            {AbsorbingType::viscous_spring, "viscous-spring"}};
+  }
+
+
+  enum class SpringCoefficients
+  {
+    paper,
+    liu_3d,
+    liu_2d,
+    deeks_randolph,
+    du_zhao
+  };
+
+  inline OptionNames<SpringCoefficients>
+  option_names(const SpringCoefficients)
+  {
+    return {{SpringCoefficients::paper, "paper"},
+            {SpringCoefficients::liu_3d, "Liu 3D"},
+            {SpringCoefficients::liu_2d, "Liu 2D"},
+            {SpringCoefficients::deeks_randolph, "Deeks-Randolph"},
+            {SpringCoefficients::du_zhao, "Du-Zhao"}};
+  }
+
+
   /** The entries of the section "Boundaries" on the absorbing faces. */
   struct AbsorbingParameters
   {
-    std::string      face_sets;
-    std::string      type         = "viscous-spring";
-    std::string      coefficients = "Liu 3D";
-    dealii::Point<3> source;      // [m]
-    double           radius = 0.; // [m], or zero
+    std::string        face_sets;
+    AbsorbingType      type         = AbsorbingType::viscous_spring;
+    SpringCoefficients coefficients = SpringCoefficients::liu_3d;
+    dealii::Point<3>   source;      // [m]
+    double             radius = 0.; // [m], or zero
 
     void
     declare(dealii::ParameterHandler &prm);

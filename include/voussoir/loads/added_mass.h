@@ -2,19 +2,36 @@
 #define voussoir_loads_added_mass_h
 
 #include <voussoir/base/log.h>
+#include <voussoir/base/option.h>
 #include <voussoir/fem/nodal_terms.h>
 
 #include <deal.II/base/parameter_handler.h>
 
 namespace Voussoir
 {
+  enum class AddedMassDirection
+  {
+    normal,
+    uncoupled,
+    river
+  };
+
+  inline OptionNames<AddedMassDirection>
+  option_names(const AddedMassDirection)
+  {
+    return {{AddedMassDirection::normal, "normal"},
+            {AddedMassDirection::uncoupled, "uncoupled"},
+            {AddedMassDirection::river, "river"}};
+  }
+
+
   /** The entries of the section "Reservoir/added mass". */
   struct AddedMassParameters
   {
-    std::string face_sets = "upstream face";
-    double      level     = 0.;
-    double      reduction = 1.;
-    std::string direction = "normal";
+    std::string        face_sets = "upstream face";
+    double             level     = 0.;
+    double             reduction = 1.;
+    AddedMassDirection direction = AddedMassDirection::normal;
 
     void
     declare(dealii::ParameterHandler &prm);

@@ -113,13 +113,13 @@ namespace Voussoir
                       safety_factor,
                       "Time step over the largest stable one.",
                       Patterns::Double(0.01, 1.));
-    prm.add_parameter(
+    add_option(
+      prm,
       "Scheme",
       scheme,
       "Central difference: dashpots and mass damping act on the velocity at "
       "the step, at no cost in the time step. Paper: on that of the half step "
-      "before, as in PSDAP.",
-      Patterns::Selection("central difference|paper"));
+      "before, as in PSDAP.");
   }
 
 

@@ -451,7 +451,7 @@ namespace Voussoir
     log.line("Mesh: ",
              grid.describe_balance(),
              ", partition by ",
-             parameters.grid.partition,
+             option_name(parameters.grid.partition),
              ", at most ",
              discretization.largest_interface(),
              " nodes of a rank owned by others");

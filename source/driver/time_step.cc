@@ -107,7 +107,7 @@ namespace Voussoir
                      const double                 interval,
                      Log                         &log)
     : undamped_limit(0.)
-    , central(model.parameters.time.scheme != "paper")
+    , central(model.parameters.time.scheme != TimeScheme::paper)
   {
     std::vector<double> density;
     for (const Material *material : model.materials)

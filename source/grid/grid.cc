@@ -114,11 +114,11 @@ namespace Voussoir
       "Further refinement where it is wanted, items separated by \";\": "
       "\"set: levels\" for a cell set, or \"box x0 y0 z0 x1 y1 z1: levels\" "
       "[m] for the cells whose centre lies in the box. Hanging nodes result.");
-    prm.add_parameter("Partition",
-                      partition,
-                      "How the cells are dealt to the ranks; the results are "
-                      "the same.",
-                      Patterns::Selection("p4est|METIS"));
+    add_option(prm,
+               "Partition",
+               partition,
+               "How the cells are dealt to the ranks; the results are "
+               "the same.");
   }
 
 
@@ -146,7 +146,7 @@ namespace Voussoir
       }
     AssertThrow(cell_sets.size() < 256, ExcNotImplemented());
 
-    if (parameters.partition == "METIS")
+    if (parameters.partition == Partition::metis)
       create_metis(coarse, parameters, cost);
     else
       create_p4est(coarse, parameters, cost);

@@ -1,6 +1,7 @@
 // Concrete that cracks in tension and is crushed in compression.
 
 #include <voussoir/base/error.h>
+#include <voussoir/base/option.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/split_damage.h>
@@ -11,6 +12,38 @@ namespace Voussoir
 
   namespace
   {
+    enum class TensionLaw
+    {
+      exponential,
+      linear,
+      gb_50010,
+      table
+    };
+
+    OptionNames<TensionLaw>
+    option_names(const TensionLaw)
+    {
+      return {{TensionLaw::exponential, "exponential"},
+              {TensionLaw::linear, "linear"},
+              {TensionLaw::gb_50010, "GB 50010"},
+              {TensionLaw::table, "table"}};
+    }
+
+
+    enum class CompressionLaw
+    {
+      gb_50010,
+      table
+    };
+
+    OptionNames<CompressionLaw>
+    option_names(const CompressionLaw)
+    {
+      return {{CompressionLaw::gb_50010, "GB 50010"},
+              {CompressionLaw::table, "table"}};
+    }
+
+
     /**
      * A SplitDamage (after Faria, Oliver, Cervera 1998, with a split that has a
      * potential) of the effective stress s = C : (e - e_p). Each damage is
@@ -32,9 +65,9 @@ namespace Voussoir
       double irreversible_tension  = 0.;
       double irreversible_crushing = 0.;
 
-      std::string tension_law     = "exponential";
-      std::string compression_law = "GB 50010";
-      std::string tension_table, compression_table;
+      TensionLaw     tension_law     = TensionLaw::exponential;
+      CompressionLaw compression_law = CompressionLaw::gb_50010;
+      std::string    tension_table, compression_table;
 
       double alpha = 0.; // of Lubliner's surface
 
@@ -69,25 +102,23 @@ namespace Voussoir
                           "under fast loading [s]; 0 for no effect of rate." +
                             usually(Usual::relaxation_time),
                           Patterns::Double(0.));
-        prm.add_parameter("Tension law",
-                          tension_law,
-                          "Stress over the opening of a crack: exponential, "
-                          "linear, the curve of the Chinese code GB 50010 "
-                          "scaled to the fracture energy, or an own table, "
-                          "which has its own strength and energy.",
-                          Patterns::Selection(
-                            "exponential|linear|GB 50010|table"));
+        add_option(prm,
+                   "Tension law",
+                   tension_law,
+                   "Stress over the opening of a crack: exponential, "
+                   "linear, the curve of the Chinese code GB 50010 "
+                   "scaled to the fracture energy, or an own table, "
+                   "which has its own strength and energy.");
         prm.add_parameter("Tension table",
                           tension_table,
                           "Openings [m] and stresses [Pa], as in \"0: 2.9e6, "
                           "66e-6: 1.9e6, 480e-6: 0\".");
-        prm.add_parameter(
-          "Compression law",
-          compression_law,
-          "The curve of GB 50010, linear up to 0.4 fc, its part "
-          "beyond the peak scaled to the crushing energy, or an "
-          "own table.",
-          Patterns::Selection("GB 50010|table"));
+        add_option(prm,
+                   "Compression law",
+                   compression_law,
+                   "The curve of GB 50010, linear up to 0.4 fc, its part "
+                   "beyond the peak scaled to the crushing energy, or an "
+                   "own table.");
         prm.add_parameter("Compression table",
                           compression_table,
                           "Inelastic strains and stresses [Pa], as in \"0: "
@@ -138,7 +169,7 @@ namespace Voussoir
       {
         std::vector<SofteningCurve::Node> nodes;
         const double                      ft = tensile_strength;
-        if (tension_law == "table")
+        if (tension_law == TensionLaw::table)
           {
             for (const auto &[opening, stress] :
                  SofteningCurve::parse(tension_table,
@@ -146,9 +177,9 @@ namespace Voussoir
               nodes.push_back({stress, 0., opening});
             return nodes;
           }
-        if (tension_law == "linear")
+        if (tension_law == TensionLaw::linear)
           nodes = {{ft, 0., 0.}, {0., 0., 1.}};
-        else if (tension_law == "exponential")
+        else if (tension_law == TensionLaw::exponential)
           return SofteningCurve::exponential(ft, fracture_energy);
         else
           {
@@ -173,7 +204,7 @@ namespace Voussoir
       compression_nodes(const std::string &place) const
       {
         std::vector<SofteningCurve::Node> nodes;
-        if (compression_law == "table")
+        if (compression_law == CompressionLaw::table)
           {
             for (const auto &[strain, stress] :
                  SofteningCurve::parse(compression_table,

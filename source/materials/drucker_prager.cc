@@ -1,5 +1,6 @@
 // Rock that yields on a cone.
 
+#include <voussoir/base/option.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/perfect_plasticity.h>
@@ -11,6 +12,20 @@ namespace Voussoir
 
   namespace
   {
+    enum class ConeFit
+    {
+      compression,
+      plane_strain
+    };
+
+    OptionNames<ConeFit>
+    option_names(const ConeFit)
+    {
+      return {{ConeFit::compression, "compression"},
+              {ConeFit::plane_strain, "plane strain"}};
+    }
+
+
     /**
      * Drucker and Prager (1952) with tension cut-off,
      *   sqrt(J2) + a I1 <= k ,   I1 <= 3 pt .
@@ -20,7 +35,7 @@ namespace Voussoir
      */
     struct DruckerPrager : PerfectPlasticity
     {
-      std::string fit = "compression";
+      ConeFit fit = ConeFit::compression;
 
       double slope      = 0.; // a
       double limit      = 0.; // k [Pa]
@@ -37,14 +52,14 @@ namespace Voussoir
                           "cone it has no effect." +
                             usually(Usual::cut_off),
                           Patterns::Double(1.));
-        prm.add_parameter(
+        add_option(
+          prm,
           "Fit",
           fit,
           "Where the cone is as strong as the Mohr-Coulomb law with its "
           "cohesion and angles: in triaxial compression, or in plane strain, "
           "there with equal angles of friction and dilation. The second cone "
-          "is nowhere stronger.",
-          Patterns::Selection("compression|plane strain"));
+          "is nowhere stronger.");
       }
 
       /** Slope of the cone of an angle, and k / c. */
@@ -53,7 +68,7 @@ namespace Voussoir
       {
         const double angle = degrees * numbers::PI / 180.,
                      sine  = std::sin(angle);
-        const double scale = fit == "compression" ?
+        const double scale = fit == ConeFit::compression ?
                                std::sqrt(3.) * (3. - sine) / 2. :
                                std::sqrt(9. + 3. * sine * sine);
         return {sine / scale, 3. * std::cos(angle) / scale};

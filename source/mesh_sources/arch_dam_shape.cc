@@ -33,7 +33,7 @@ namespace Voussoir
     {
       ArchDamShape shapai;
       shapai.height             = 132.;
-      shapai.arch               = "circle";
+      shapai.arch               = ArchCurve::circle;
       shapai.crest_radius       = 155.4;
       shapai.base_radius        = 155.4;
       shapai.radius_exponent    = 1.;
@@ -70,10 +70,7 @@ namespace Voussoir
   {
     const Patterns::Double positive(1e-3);
     prm.add_parameter("Height", height, "H, base to crest [m].", positive);
-    prm.add_parameter("Arch",
-                      arch,
-                      "Centre line of the horizontal arches.",
-                      Patterns::Selection("parabola|circle"));
+    add_option(prm, "Arch", arch, "Centre line of the horizontal arches.");
     prm.add_parameter("Crest radius",
                       crest_radius,
                       "Radius of curvature at the crown, at the crest [m].",
@@ -184,7 +181,7 @@ namespace Voussoir
               refuse(row,
                      "is narrower than the arch below it; the canyon must not "
                      "overhang.");
-            if (this->arch == "circle" &&
+            if (this->arch == ArchCurve::circle &&
                 arch.half_width[bank] > 0.9 * arch.radius[bank])
               refuse(
                 row,
@@ -209,8 +206,9 @@ namespace Voussoir
           throw UserError("In section \"" + section +
                           "\" the \"Crest half width\" must be larger than the "
                           "\"Base half width\" on both banks.");
-        if (arch == "circle" && (crest_width[bank] > 0.9 * crest_radius ||
-                                 base_width[bank] > 0.9 * base_radius))
+        if (arch == ArchCurve::circle &&
+            (crest_width[bank] > 0.9 * crest_radius ||
+             base_width[bank] > 0.9 * base_radius))
           throw UserError("In section \"" + section +
                           "\" a circle cannot span the canyon: let the half "
                           "widths be at most 0.9 times the radius, at the "
@@ -328,7 +326,7 @@ namespace Voussoir
   {
     const double R     = radius(x, z);
     const double crown = crown_face(z) - 0.5 * crown_thickness(z);
-    if (arch == "parabola")
+    if (arch == ArchCurve::parabola)
       return crown - x * x / (2. * R);
 
     const double limit  = circle_limit * R;
@@ -342,7 +340,7 @@ namespace Voussoir
   ArchDamShape::angle(const double x, const double z) const
   {
     const double R = radius(x, z);
-    if (arch == "parabola")
+    if (arch == ArchCurve::parabola)
       return std::atan(x / R);
     return std::asin(std::max(-circle_limit, std::min(circle_limit, x / R)));
   }
@@ -352,7 +350,7 @@ namespace Voussoir
   ArchDamShape::arc_length(const double x, const double z) const
   {
     const double R = radius(x, z);
-    if (arch == "parabola")
+    if (arch == ArchCurve::parabola)
       {
         const double t = x / R;
         return 0.5 * R * (t * std::sqrt(1. + t * t) + std::asinh(t));

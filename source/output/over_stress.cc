@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
+#include <voussoir/base/option.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/files/table.h>
@@ -130,6 +131,20 @@ namespace Voussoir
     };
 
 
+    enum class ComparedStress
+    {
+      principal,
+      arch_and_cantilever
+    };
+
+    OptionNames<ComparedStress>
+    option_names(const ComparedStress)
+    {
+      return {{ComparedStress::principal, "principal"},
+              {ComparedStress::arch_and_cantilever, "arch and cantilever"}};
+    }
+
+
     /**
      * Over-stress of the faces of a dam after a linear analysis: how far, how
      * long and on what area the tension exceeds the strength, and whether that
@@ -144,12 +159,12 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Face sets", sets, "Faces to look at.");
-        prm.add_parameter("Stress",
-                          stress,
-                          "What is compared with the strength: the largest "
-                          "principal stress, or the larger one of arch and "
-                          "cantilever stress.",
-                          Patterns::Selection("principal|arch and cantilever"));
+        add_option(prm,
+                   "Stress",
+                   stress,
+                   "What is compared with the strength: the largest "
+                   "principal stress, or the larger one of arch and "
+                   "cantilever stress.");
         prm.add_parameter(
           "Tensile strength",
           strengths,
@@ -189,7 +204,7 @@ namespace Voussoir
       check(const ObservedModel &model) const override
       {
         const auto mesh = make_mesh(model);
-        if (stress != "principal")
+        if (stress != ComparedStress::principal)
           mesh->check_not_level(place);
         const auto face_sets = split_list(sets);
         if (strengths.size() != 1 && strengths.size() != face_sets.size())
@@ -230,7 +245,7 @@ namespace Voussoir
         strength_of_node.clear();
         for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
           {
-            if (stress != "principal")
+            if (stress != ComparedStress::principal)
               directions.push_back(mesh->arch_and_cantilever(node));
             const unsigned int set = mesh->sets_and_nodes()[node].first;
             strength_of_node.push_back(
@@ -394,7 +409,7 @@ namespace Voussoir
           {
             const unsigned int n =
               std::min<std::size_t>(Lanes::size(), tensors.size() - first);
-            if (stress == "principal")
+            if (stress == ComparedStress::principal)
               {
                 SymmetricTensor3<Lanes> together;
                 for (unsigned int lane = 0; lane < n; ++lane)
@@ -612,7 +627,7 @@ namespace Voussoir
       }
 
       std::string         sets   = "upstream face, downstream face";
-      std::string         stress = "principal";
+      ComparedStress      stress = ComparedStress::principal;
       std::vector<double> strengths{0.};
       std::vector<double>
              ratios{1., 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.};

@@ -116,13 +116,13 @@ namespace Voussoir
   {
     const auto alone =
       all_clusters(mesh, grid, degree, interfaces, MPI_COMM_SELF);
-    for (const std::string partition : {"p4est", "METIS"})
+    for (const Partition partition : {Partition::p4est, Partition::metis})
       {
         GridParameters together = grid;
         together.partition      = partition;
         verdicts.below(
           "  degree " + std::to_string(degree) + ", difference to one rank, " +
-            partition,
+            option_name(partition),
           difference(
             alone,
             all_clusters(mesh, together, degree, interfaces, communicator)),

@@ -3,6 +3,7 @@
 
 #include <voussoir/analysis/modes.h>
 #include <voussoir/analysis/static_state.h>
+#include <voussoir/base/option.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/constraints/interface_parameters.h>
 #include <voussoir/constraints/projection.h>
@@ -50,13 +51,27 @@ namespace Voussoir
             const bool                can_rest);
   };
 
+  enum class TimeScheme
+  {
+    central_difference,
+    paper
+  };
+
+  inline OptionNames<TimeScheme>
+  option_names(const TimeScheme)
+  {
+    return {{TimeScheme::central_difference, "central difference"},
+            {TimeScheme::paper, "paper"}};
+  }
+
+
   /** The entries of the section "Time". */
   struct TimeParameters
   {
-    double      end_time      = 10.;
-    double      time_step     = 0.;
-    double      safety_factor = 0.95;
-    std::string scheme        = "central difference";
+    double     end_time      = 10.;
+    double     time_step     = 0.;
+    double     safety_factor = 0.95;
+    TimeScheme scheme        = TimeScheme::central_difference;
 
     void
     declare(dealii::ParameterHandler &prm);

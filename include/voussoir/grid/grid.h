@@ -1,6 +1,7 @@
 #ifndef voussoir_grid_grid_h
 #define voussoir_grid_grid_h
 
+#include <voussoir/base/option.h>
 #include <voussoir/mesh/coarse_mesh.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -11,13 +12,26 @@
 
 namespace Voussoir
 {
+  enum class Partition
+  {
+    p4est,
+    metis
+  };
+
+  inline OptionNames<Partition>
+  option_names(const Partition)
+  {
+    return {{Partition::p4est, "p4est"}, {Partition::metis, "METIS"}};
+  }
+
+
   /** The entries of the section "Mesh" that do not depend on where it comes
    *  from. */
   struct GridParameters
   {
     unsigned int global_refinement = 0;
     std::string  local_refinement;
-    std::string  partition = "p4est";
+    Partition    partition = Partition::p4est;
 
     void
     declare(dealii::ParameterHandler &prm);

@@ -1,6 +1,8 @@
 #ifndef voussoir_mesh_sources_arch_dam_shape_h
 #define voussoir_mesh_sources_arch_dam_shape_h
 
+#include <voussoir/base/option.h>
+
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/point.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -11,6 +13,19 @@
 
 namespace Voussoir
 {
+  enum class ArchCurve
+  {
+    parabola,
+    circle
+  };
+
+  inline OptionNames<ArchCurve>
+  option_names(const ArchCurve)
+  {
+    return {{ArchCurve::parabola, "parabola"}, {ArchCurve::circle, "circle"}};
+  }
+
+
   /**
    * The shape of an arch dam and of the canyon it closes, as a few numbers.
    *
@@ -62,7 +77,7 @@ namespace Voussoir
     arc_length(const double x, const double z) const;
 
     double              height          = 289.;
-    std::string         arch            = "parabola";
+    ArchCurve           arch            = ArchCurve::parabola;
     double              crest_radius    = 309.;
     double              base_radius     = 150.;
     double              radius_exponent = 0.7;

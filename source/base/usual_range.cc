@@ -9,7 +9,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <regex>
 #include <sstream>
 
 namespace Voussoir
@@ -26,15 +25,37 @@ namespace Voussoir
     {
       double from, to;
       bool   or_zero = false; // where it means "none"
+
+      bool
+      contains(const double value) const
+      {
+        return (from <= value && value <= to) || (or_zero && value == 0.);
+      }
+
+      /** As "0 or 5 to 65". */
+      std::string
+      words() const
+      {
+        std::ostringstream text;
+        text << (or_zero ? "0 or " : "") << from << " to " << to;
+        return text.str();
+      }
+
+      /** The end of a description. */
+      std::string
+      sentence() const
+      {
+        return " Usually " + words() + '.';
+      }
     };
 
 
     // In the unit of the entries. It holds soil, concrete, rock and steel, so
     // that a value outside is a mistake rather than a rare material.
-    const Range &
-    range_of(const Usual quantity)
+    const std::map<Usual, Range> &
+    ranges()
     {
-      static const std::map<Usual, Range> ranges{
+      static const std::map<Usual, Range> all{
         {Usual::modulus, {1e7, 1e12}},
         {Usual::density, {500., 10000.}},
         {Usual::expansion, {1e-6, 1e-4, true}},
@@ -71,24 +92,47 @@ namespace Voussoir
         {Usual::compression_coefficient, {100., 1e4}},
         {Usual::demand_capacity_ratio, {1., 20.}},
         {Usual::accumulated_time, {0., 60.}}};
-      return ranges.at(quantity);
+      return all;
     }
 
 
-    // From a description that usually() ends.
-    const std::regex last_sentence(
-      R"re(.*?(?:\[([^\]]*)\])?[^\]]* Usually (0 or )?(\S+) to (\S+)\.)re");
+    // ParameterHandler keeps nothing of ours with an entry but its description,
+    // so the sentence at its end stands for the range. Null: it has none.
+    const Range *
+    range_of(const std::string &description)
+    {
+      static const auto by_sentence = [] {
+        std::map<std::string, Range> result;
+        for (const auto &quantity : ranges())
+          result.emplace(quantity.second.sentence(), quantity.second);
+        return result;
+      }();
+      const auto end = description.rfind(" Usually ");
+      if (end == std::string::npos)
+        return nullptr;
+      const auto range = by_sentence.find(description.substr(end));
+      return range == by_sentence.end() ? nullptr : &range->second;
+    }
+
+
+    // " Pa" of a description with "[Pa]", nothing of one with "[-]".
+    std::string
+    unit_of(const std::string &description)
+    {
+      const auto end   = description.rfind(']'),
+                 begin = description.rfind('[', end);
+      if (end == std::string::npos || begin == std::string::npos)
+        return "";
+      const std::string unit = description.substr(begin + 1, end - begin - 1);
+      return unit == "-" ? "" : " " + unit;
+    }
   } // namespace
 
 
   std::string
   usually(const Usual quantity)
   {
-    const Range       &range = range_of(quantity);
-    std::ostringstream text;
-    text << " Usually " << (range.or_zero ? "0 or " : "") << range.from
-         << " to " << range.to << '.';
-    return text.str();
+    return ranges().at(quantity).sentence();
   }
 
 
@@ -100,22 +144,20 @@ namespace Voussoir
                              const std::string &section,
                              const std::string &description,
                              const std::string &text) {
-      std::smatch parts;
-      if (description.find(" Usually ") == std::string::npos ||
-          !std::regex_match(description, parts, last_sentence))
+      const Range *range = range_of(description);
+      if (range == nullptr)
         return;
-      const double value = Utilities::string_to_double(text),
-                   from  = Utilities::string_to_double(parts[3]),
-                   to    = Utilities::string_to_double(parts[4]);
-      if ((from <= value && value <= to) || (parts[2].matched && value == 0.))
+      const double value = Utilities::string_to_double(text);
+      if (range->contains(value))
         return;
-      const std::string  unit = parts[1] == "-" ? "" : " " + parts[1].str();
+      const std::string  unit = unit_of(description);
       std::ostringstream sentence;
       sentence << "\"" << entry << "\" in section \"" << section << "\" is "
-               << value << unit << ", but usually it is " << parts[2]
-               << parts[3] << " to " << parts[4] << unit;
-      if (std::abs(value) > absurd * std::max(std::abs(from), to) ||
-          (value > 0. && value < from / absurd))
+               << value << unit << ", but usually it is " << range->words()
+               << unit;
+      if (std::abs(value) >
+            absurd * std::max(std::abs(range->from), range->to) ||
+          (value > 0. && value < range->from / absurd))
         throw UserError(sentence.str() +
                         ", and nothing can be computed with it; correct it.");
       result.push_back(sentence.str() + "; look at the unit");

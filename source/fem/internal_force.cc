@@ -9,10 +9,11 @@ namespace Voussoir
     // Calls run(material, cells) for the runs of batches of one material.
     template <typename Run>
     void
-    for_each_run(const Discretization &discretization,
-                 const unsigned int    first,
-                 const unsigned int    last,
-                 const Run            &run)
+    for_each_run(const Discretization      &discretization,
+                 const std::vector<double> &factors,
+                 const unsigned int         first,
+                 const unsigned int         last,
+                 const Run                 &run)
     {
       const auto &material_of_batch = discretization.material_of_batch;
       for (unsigned int begin = first; begin < last;)
@@ -26,7 +27,8 @@ namespace Voussoir
               CellRange{discretization.matrix_free,
                         begin,
                         end,
-                        discretization.has_one_point(material)});
+                        discretization.has_one_point(material),
+                        factors[material]});
           begin = end;
         }
     }
@@ -42,13 +44,16 @@ namespace Voussoir
     // batches of one material.
     template <typename Run>
     CellLoop
-    on_runs(const Discretization &discretization, const Run &run)
+    on_runs(const Discretization      &discretization,
+            const std::vector<double> &factors,
+            const Run                 &run)
     {
       return [&](const Discretization::MatrixFree &,
                  Vector                                      &dst,
                  const Vector                                &src,
                  const std::pair<unsigned int, unsigned int> &range) {
         for_each_run(discretization,
+                     factors,
                      range.first,
                      range.second,
                      [&](const unsigned int material, const CellRange &cells) {
@@ -119,75 +124,71 @@ namespace Voussoir
 
 
   void
-  InternalForce::sweep(Vector          &force,
-                       const Vector    &displacement,
-                       const Vector    *damping_memory,
-                       const Vector    &undamped,
-                       MaterialMemory  &memory,
-                       const PointStep &step,
-                       const RangeWork &before,
-                       const RangeWork &after) const
+  InternalForce::sweep(Vector           &force,
+                       const SweepInput &input,
+                       MaterialMemory   &memory,
+                       const RangeWork  &before,
+                       const RangeWork  &after) const
   {
+    using Damping  = SweepInput::Damping;
     const auto run = [&](const unsigned int material,
                          const CellRange   &cells,
                          Vector            &dst,
-                         const Vector      &src) {
+                         const Vector &) {
       if (PointHistory *history = memory.of(material))
-        kernels[material]->add_response(cells,
-                                        factors[material],
-                                        dst,
-                                        src,
-                                        damping_memory,
-                                        undamped,
-                                        *history,
-                                        step);
+        kernels[material]->add_response(cells, input, dst, *history);
       else
-        kernels[material]->add_force(
-          cells, factors[material], dst, src, damping_memory);
+        kernels[material]->add_force(cells, input, dst);
     };
-    const CellLoop loop = on_runs(discretization, run);
+    const CellLoop loop = on_runs(discretization, factors, run);
 
     // The library overlaps the exchange of one source vector with the cell
     // work; the others are exchanged beforehand.
-    const bool reads_undamped = &undamped != &displacement && !memory.empty();
+    const bool reads_undamped =
+      input.damping != Damping::none && !memory.empty();
     if (reads_undamped)
-      undamped.update_ghost_values();
-    if (damping_memory == nullptr)
+      input.displacement.update_ghost_values();
+    if (input.damping != Damping::by_material)
       discretization.matrix_free.cell_loop(
-        loop, force, displacement, before, after);
+        loop, force, input.filtered, before, after);
     else
       {
         before(0, force.locally_owned_size());
-        damping_memory->update_ghost_values();
+        input.damping_memory->update_ghost_values();
         discretization.matrix_free.cell_loop(
-          loop, force, displacement, {}, after);
-        damping_memory->zero_out_ghost_values();
+          loop, force, input.filtered, {}, after);
+        input.damping_memory->zero_out_ghost_values();
       }
     if (reads_undamped)
-      undamped.zero_out_ghost_values();
+      input.displacement.zero_out_ghost_values();
   }
 
 
   void
-  InternalForce::apply(Vector       &force,
-                       const Vector &displacement,
-                       const Vector *damping_memory) const
+  InternalForce::apply(Vector &force, const SweepInput &input) const
   {
-    if (damping_memory != nullptr)
-      damping_memory->update_ghost_values();
+    const bool by_material = input.damping == SweepInput::Damping::by_material;
+    if (by_material)
+      input.damping_memory->update_ghost_values();
     const auto run = [&](const unsigned int material,
                          const CellRange   &cells,
                          Vector            &dst,
-                         const Vector      &src) {
-      kernels[material]->add_force(
-        cells, factors[material], dst, src, damping_memory);
+                         const Vector &) {
+      kernels[material]->add_force(cells, input, dst);
     };
-    discretization.matrix_free.cell_loop(on_runs(discretization, run),
+    discretization.matrix_free.cell_loop(on_runs(discretization, factors, run),
                                          force,
-                                         displacement,
+                                         input.filtered,
                                          true);
-    if (damping_memory != nullptr)
-      damping_memory->zero_out_ghost_values();
+    if (by_material)
+      input.damping_memory->zero_out_ghost_values();
+  }
+
+
+  void
+  InternalForce::apply(Vector &force, const Vector &displacement) const
+  {
+    apply(force, SweepInput::undamped(displacement));
   }
 
 
@@ -197,12 +198,8 @@ namespace Voussoir
                          MaterialMemory &memory) const
   {
     sweep(force,
-          displacement,
-          nullptr,
-          displacement,
+          SweepInput::undamped(displacement),
           memory,
-          // the laws follow at once
-          {std::numeric_limits<double>::max()},
           [&](const unsigned int begin, const unsigned int end) {
             std::fill(force.begin() + begin, force.begin() + end, 0.);
           },
@@ -216,14 +213,12 @@ namespace Voussoir
                                   const Work     &work) const
   {
     for_each_run(discretization,
+                 factors,
                  0,
                  discretization.matrix_free.n_cell_batches(),
                  [&](const unsigned int material, const CellRange &cells) {
                    if (PointHistory *history = memory.of(material))
-                     work(*kernels[material],
-                          cells,
-                          *history,
-                          factors[material]);
+                     work(*kernels[material], cells, *history);
                  });
   }
 
@@ -246,8 +241,7 @@ namespace Voussoir
     for_each_history(memory,
                      [&](const CellKernel &kernel,
                          const CellRange  &cells,
-                         PointHistory     &history,
-                         const double) {
+                         PointHistory     &history) {
                        kernel.set_thermal_strain(cells, history, temperature);
                      });
     temperature.zero_out_ghost_values();
@@ -260,8 +254,9 @@ namespace Voussoir
     for_each_history(memory,
                      [](const CellKernel &kernel,
                         const CellRange  &cells,
-                        PointHistory     &history,
-                        const double) { kernel.hand_over(cells, history); });
+                        PointHistory     &history) {
+                       kernel.hand_over(cells, history);
+                     });
   }
 
 
@@ -278,10 +273,8 @@ namespace Voussoir
     for_each_history(memory,
                      [&](const CellKernel &kernel,
                          const CellRange  &cells,
-                         PointHistory     &history,
-                         const double      stress_factor) {
+                         PointHistory     &history) {
                        kernel.set_static_state(cells,
-                                               stress_factor,
                                                history,
                                                displacement,
                                                temperature);
@@ -299,9 +292,9 @@ namespace Voussoir
                          const CellRange   &cells,
                          Vector            &dst,
                          const Vector      &src) {
-      kernels[material]->add_thermal_force(cells, factors[material], dst, src);
+      kernels[material]->add_thermal_force(cells, dst, src);
     };
-    discretization.matrix_free.cell_loop(on_runs(discretization, run),
+    discretization.matrix_free.cell_loop(on_runs(discretization, factors, run),
                                          force,
                                          temperature);
   }
@@ -319,6 +312,7 @@ namespace Voussoir
         vector->update_ghost_values();
     Sum sum{};
     for_each_run(discretization,
+                 factors,
                  0,
                  discretization.matrix_free.n_cell_batches(),
                  [&](const unsigned int material, const CellRange &cells) {
@@ -342,7 +336,6 @@ namespace Voussoir
     return sum<ElasticEnergy>(
       read, [&](const unsigned int material, const CellRange &cells) {
         return kernels[material]->elastic_energy(cells,
-                                                 factors[material],
                                                  motion,
                                                  memory.of(material));
       });
@@ -355,8 +348,9 @@ namespace Voussoir
                                   const InitialState   &initial,
                                   const Damping        &damping) const
   {
+    const bool has_static_state = initial.displacement.size() > 0;
     std::vector<const Vector *> read{&displacement};
-    if (initial.displacement.size() > 0)
+    if (has_static_state)
       read.push_back(&initial.displacement);
     return sum<InelasticEnergy>(
       read, [&](const unsigned int material, const CellRange &cells) {
@@ -364,13 +358,13 @@ namespace Voussoir
         if (history == nullptr)
           return InelasticEnergy();
         return kernels[material]->inelastic_energy(cells,
-                                                   factors[material],
-                                                   damping.branch_stiffness(),
-                                                   *history,
-                                                   displacement,
-                                                   initial.material_memory.of(
-                                                     material),
-                                                   initial.displacement);
+                                                   {displacement,
+                                                    has_static_state,
+                                                    initial.displacement,
+                                                    initial.material_memory.of(
+                                                      material),
+                                                    damping.branch_stiffness()},
+                                                   *history);
       });
   }
 
@@ -381,12 +375,13 @@ namespace Voussoir
                               const MaterialMemory &memory,
                               const bool            by_damping_factor) const
   {
-    const double of_rank = sum<double>(
-      {&u, &v}, [&](const unsigned int material, const CellRange &cells) {
-        const CellKernel &kernel = *kernels[material];
-        return (by_damping_factor ? kernel.damping_factor() : 1.) *
-               kernel.work(cells, factors[material], u, v, memory.of(material));
-      });
+    const double of_rank =
+      sum<double>({&u, &v},
+                  [&](const unsigned int material, const CellRange &cells) {
+                    const CellKernel &kernel = *kernels[material];
+                    return (by_damping_factor ? kernel.damping_factor() : 1.) *
+                           kernel.work(cells, u, v, memory.of(material));
+                  });
     return Utilities::MPI::sum(of_rank, discretization.grid.communicator());
   }
 
@@ -400,8 +395,8 @@ namespace Voussoir
                                                    batch,
                                                    batch + 1,
                                                    discretization.has_one_point(
-                                                     material)},
-                                                  factors[material],
+                                                     material),
+                                                   factors[material]},
                                                   masses);
   }
 } // namespace Voussoir

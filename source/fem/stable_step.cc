@@ -73,7 +73,8 @@ namespace Voussoir
       const auto   apply = [&](Vector &dst, const Vector &src) {
         memory.equ(gamma, src);
         stiffer.equ(1. + 2. * limits.mesh_viscosity / dt, src);
-        force.apply(dst, stiffer, &memory);
+        force.apply(dst,
+                    {src, stiffer, SweepInput::Damping::by_material, &memory});
         limits.add_diagonal(dst, src, dt);
       };
       return 2. / std::sqrt(largest_eigenvalue(start, mass.inverse, apply));

@@ -77,14 +77,18 @@ namespace Voussoir
       update(const State &state)
       {
         filtered.update(state);
-        Evaluation cells(matrix_free);
+        const Vector    *memory = filtered.memory();
+        const SweepInput input{state.displacement,
+                               filtered.displacement(),
+                               memory != nullptr ?
+                                 SweepInput::Damping::by_material :
+                                 SweepInput::Damping::common,
+                               memory};
+        Evaluation       cells(matrix_free);
         for (Batch &batch : batches)
           {
             cells.reinit(batch.number);
-            CellKernels::read_filtered(cells,
-                                       filtered.displacement(),
-                                       filtered.memory(),
-                                       batch.damping_factor);
+            CellKernels::read_filtered(cells, input, batch.damping_factor);
             Lanes high, low;
             for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
               {

@@ -157,11 +157,12 @@ namespace Voussoir
     // v+ = v- - dt M^-1 (f - F_0), u_(n+1) = u_n + dt v+
     equation.internal_force.sweep(
       force,
-      effective,
-      uniform ? nullptr : &memory,
-      state.displacement,
+      {state.displacement,
+       effective,
+       uniform ? SweepInput::Damping::common : SweepInput::Damping::by_material,
+       &memory,
+       point_step},
       state.material_memory,
-      point_step,
       [&](const unsigned int begin, const unsigned int end) {
         update_memory(state, begin, end);
       },

@@ -70,11 +70,12 @@ namespace Voussoir
             MaterialMemory memory = run.state.material_memory;
             internal_force.sweep(
               force,
-              filtered,
-              nullptr,
-              run.state.displacement,
+              {run.state.displacement,
+               filtered,
+               SweepInput::Damping::common,
+               nullptr,
+               {run.time_step.length}},
               memory,
-              {run.time_step.length},
               [&](const unsigned int begin, const unsigned int end) {
                 std::fill(force.begin() + begin, force.begin() + end, 0.);
               },

@@ -4,6 +4,8 @@
 #include <voussoir/fem/leap_frog.h>
 #include <voussoir/fem/point_history.h>
 
+#include <limits>
+
 namespace Voussoir
 {
   /** A run of cell batches, [begin, end), that are all of one material. */
@@ -11,16 +13,50 @@ namespace Voussoir
   {
     const Discretization::MatrixFree &matrix_free;
     unsigned int                      begin, end;
-    bool                              one_point; // of integration
+    bool                              one_point;     // of integration
+    double                            stress_factor; // k of this stage [1]
   };
 
   /** A step of time as points with memory see it. */
   struct PointStep
   {
-    double length;                 // [s]
+    // [s]; unless given, laws with viscosity follow at once
+    double length            = std::numeric_limits<double>::max();
     double closing_viscosity = 0.; // c of DampedResponse [s]
     double branches          = 0.; // sum of the D_i of Maxwell damping [1]
     double relaxation        = 1.; // of the energy of the slowest branch [1]
+  };
+
+
+  /**
+   * What a sweep over the cells reads. With the damping memory w, which filters
+   * follow the displacement u, the strain of elastic points is
+   *   B (x + s w) ,
+   * where x stands for u and what damping adds to it alike in all materials. A
+   * law with memory goes by B u as well: damping does not reach into cracks.
+   */
+  struct SweepInput
+  {
+    /** Where the damping memory is. */
+    enum class Damping
+    {
+      none,       // there is none, and x is u
+      common,     // in x, with the factor s that all materials have
+      by_material // in w, and each material has its own s
+    };
+
+    const Vector &displacement; // u [m]
+    const Vector &filtered;     // x [m]
+    Damping       damping;
+    const Vector *damping_memory = nullptr; // w [m], if `by_material`
+    PointStep     step           = {};      // of points with memory
+
+    /** Strain of the displacement alone, which laws follow at once. */
+    static SweepInput
+    undamped(const Vector &displacement)
+    {
+      return {displacement, displacement, Damping::none};
+    }
   };
 
 
@@ -37,6 +73,18 @@ namespace Voussoir
     const std::vector<Vector> &memory;          // w_i of the branches [m]
     const Damping             &damping;
     const double               time_step; // dt [s]
+  };
+
+
+  /** What the energy of the points depends on that have left the elastic range.
+   */
+  struct InelasticMotion
+  {
+    const Vector       &displacement;        // u [m]
+    bool                has_static_state;    // before it
+    const Vector       &static_displacement; // u_s [m], if it has
+    const PointHistory *static_history;      // null: elastic till then
+    double              branches; // sum of the D_i of Maxwell damping [1]
   };
 
 
@@ -93,16 +141,13 @@ namespace Voussoir
 
     /**
      * Adds the elastic force to @p force [N],
-     *   f = sum B^T k D : B (u + s w) ,
-     * with the displacement u [m], the damping memory w [m] (null: none) and
-     * the damping factor s of this material.
+     *   f = sum B^T k D : B (x + s w) ,
+     * with the symbols of SweepInput.
      */
     virtual void
-    add_force(const CellRange &cells,
-              const double     stress_factor,
-              Vector          &force,
-              const Vector    &displacement,
-              const Vector    *damping_memory) const = 0;
+    add_force(const CellRange  &cells,
+              const SweepInput &input,
+              Vector           &force) const = 0;
 
     /** Numbers that each integration point remembers; 0 for a linear law. */
     virtual unsigned int
@@ -111,20 +156,12 @@ namespace Voussoir
     /**
      * Like add_force, but by the law with its memory, which goes one step on;
      * see DampedResponse. While the law is elastic, this is add_force.
-     *
-     * @param undamped  u_0 [m], by whose strain the law goes; it is @p
-     *   displacement itself, or differs from it by damping memory that it
-     *   contains
      */
     virtual void
-    add_response(const CellRange &cells,
-                 const double     stress_factor,
-                 Vector          &force,
-                 const Vector    &displacement,
-                 const Vector    *damping_memory,
-                 const Vector    &undamped,
-                 PointHistory    &history,
-                 const PointStep &step) const = 0;
+    add_response(const CellRange  &cells,
+                 const SweepInput &input,
+                 Vector           &force,
+                 PointHistory     &history) const = 0;
 
     /** Lets the history know the temperature T [K] of each node in the static
      *  state: the strain offset e_0 = - alpha T I. */
@@ -147,7 +184,6 @@ namespace Voussoir
      */
     virtual void
     set_static_state(const CellRange &cells,
-                     const double     stress_factor,
                      PointHistory    &history,
                      const Vector    &displacement,
                      const Vector    &temperature) const = 0;
@@ -156,26 +192,17 @@ namespace Voussoir
      *  know their imbalance, null: all. */
     virtual ElasticEnergy
     elastic_energy(const CellRange    &cells,
-                   const double        stress_factor,
                    const DampedMotion &motion,
                    PointHistory       *history) const = 0;
 
     /**
      * Energy since the static state of the points that have left the elastic
      * range, less what the forces of that state do.
-     *
-     * @param branches         sum of the D_i of Maxwell damping [1]
-     * @param u_static         displacement of the static state, or empty
-     * @param history_at_start memory of that state; null if there is none
      */
     virtual InelasticEnergy
-    inelastic_energy(const CellRange    &cells,
-                     const double        stress_factor,
-                     const double        branches,
-                     const PointHistory &history,
-                     const Vector       &displacement,
-                     const PointHistory *history_at_start,
-                     const Vector       &u_static) const = 0;
+    inelastic_energy(const CellRange       &cells,
+                     const InelasticMotion &motion,
+                     const PointHistory    &history) const = 0;
 
     /**
      * Adds the force that a free expansion needs to be held back [N],
@@ -184,7 +211,6 @@ namespace Voussoir
      */
     virtual void
     add_thermal_force(const CellRange &cells,
-                      const double     stress_factor,
                       Vector          &force,
                       const Vector    &temperature) const = 0;
 
@@ -196,7 +222,6 @@ namespace Voussoir
      */
     virtual double
     work(const CellRange    &cells,
-         const double        stress_factor,
          const Vector       &u,
          const Vector       &v,
          const PointHistory *history) const = 0;
@@ -209,7 +234,6 @@ namespace Voussoir
      */
     virtual Lanes
     element_eigenvalues(const CellRange                    &batch,
-                        const double                        stress_factor,
                         const dealii::AlignedVector<Lanes> &masses) const = 0;
 
     /** Factor s on the damping memory, relative to the damping model. */

@@ -57,29 +57,27 @@ namespace Voussoir
       std::function<void(const unsigned int, const unsigned int)>;
 
     /**
-     * force = f(displacement + s damping_memory) by the materials' laws, which
-     * have the strain of @p undamped without damping and whose @p memory goes
-     * one @p step on (if it is empty, with the elastic moduli), with @p before
-     * and @p after called once for every owned entry: before it is first read,
-     * after its last contribution has arrived (on one rank; across ranks the
-     * library orders the exchange accordingly). @p before may still change the
-     * source vectors.
+     * force = f(x + s w), with the symbols of SweepInput, by the materials'
+     * laws, whose @p memory goes one step on (if it is empty, with the elastic
+     * moduli), with @p before and @p after called once for every owned entry:
+     * before it is first read, after its last contribution has arrived (on one
+     * rank; across ranks the library orders the exchange accordingly).
+     * @p before may still change the vectors of the input.
      */
     void
-    sweep(Vector          &force,
-          const Vector    &displacement,
-          const Vector    *damping_memory,
-          const Vector    &undamped,
-          MaterialMemory  &memory,
-          const PointStep &step,
-          const RangeWork &before,
-          const RangeWork &after) const;
+    sweep(Vector           &force,
+          const SweepInput &input,
+          MaterialMemory   &memory,
+          const RangeWork  &before,
+          const RangeWork  &after) const;
 
-    /** force = K (displacement + s damping_memory) with the elastic moduli. */
+    /** force = K (x + s w) with the elastic moduli. */
     void
-    apply(Vector       &force,
-          const Vector &displacement,
-          const Vector *damping_memory = nullptr) const;
+    apply(Vector &force, const SweepInput &input) const;
+
+    /** force = K displacement with the elastic moduli. */
+    void
+    apply(Vector &force, const Vector &displacement) const;
 
     /** force = f(displacement) by the laws; their memory takes it in. */
     void
@@ -141,8 +139,8 @@ namespace Voussoir
                         const dealii::AlignedVector<Lanes> &masses) const;
 
   private:
-    /** Calls work(kernel, cells, history, factors) for the cells of all
-     *  materials with a memory. */
+    /** Calls work(kernel, cells, history) for the cells of all materials with
+     *  a memory. */
     template <typename Work>
     void
     for_each_history(MaterialMemory &memory, const Work &work) const;

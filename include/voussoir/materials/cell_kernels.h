@@ -58,22 +58,21 @@ namespace Voussoir
       return sum;
     }
 
-    /** Reads u + s w (null: u) of the cell. */
+    /** Reads x + s w of the cell. */
     template <typename Cell>
     void
-    read_filtered(Cell         &cell,
-                  const Vector &displacement,
-                  const Vector *damping_memory,
-                  const double  damping_factor)
+    read_filtered(Cell             &cell,
+                  const SweepInput &input,
+                  const double      damping_factor)
     {
-      cell.read_dof_values(displacement);
-      if (damping_memory == nullptr)
+      cell.read_dof_values(input.filtered);
+      if (input.damping != SweepInput::Damping::by_material)
         return;
       std::array<Lanes, 3 * 125> values; // up to degree 4
       const unsigned int         n = cell.dofs_per_cell;
       for (unsigned int i = 0; i < n; ++i)
         values[i] = cell.begin_dof_values()[i];
-      cell.read_dof_values(*damping_memory);
+      cell.read_dof_values(*input.damping_memory);
       for (unsigned int i = 0; i < n; ++i)
         cell.begin_dof_values()[i] =
           values[i] + damping_factor * cell.begin_dof_values()[i];
@@ -83,19 +82,18 @@ namespace Voussoir
     /** CellKernel::add_force. */
     template <typename Law>
     void
-    add_force(const Law       &law,
-              const CellRange &cells,
-              const double     stress_factor,
-              Vector          &force,
-              const Vector    &displacement,
-              const Vector    *damping_memory,
-              const double     damping_factor)
+    add_force(const Law        &law,
+              const CellRange  &cells,
+              const double      damping_factor,
+              const SweepInput &input,
+              Vector           &force)
     {
+      const double stress_factor = cells.stress_factor;
       with_cells(cells, [&](auto &&cell) {
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
           {
             cell.reinit(batch);
-            read_filtered(cell, displacement, damping_memory, damping_factor);
+            read_filtered(cell, input, damping_factor);
             cell.evaluate(dealii::EvaluationFlags::gradients);
             for (const unsigned int q : cell.quadrature_point_indices())
               cell.submit_symmetric_gradient(
@@ -111,23 +109,20 @@ namespace Voussoir
     /** CellKernel::add_response. */
     template <typename Law>
     void
-    add_response(const Law       &law,
-                 const CellRange &cells,
-                 const double     stress_factor,
-                 Vector          &force,
-                 const Vector    &displacement,
-                 const Vector    *damping_memory,
-                 const double     damping_factor,
-                 const Vector    &undamped,
-                 PointHistory    &history,
-                 const PointStep &step)
+    add_response(const Law        &law,
+                 const CellRange  &cells,
+                 const double      damping_factor,
+                 const SweepInput &input,
+                 Vector           &force,
+                 PointHistory     &history)
     {
+      const double              stress_factor = cells.stress_factor;
+      const PointStep          &step          = input.step;
       const DampedResponse<Law> response(law,
                                          stress_factor,
                                          damping_factor * step.branches);
       const auto               &matrix_free = cells.matrix_free;
-      const bool                damped =
-        damping_memory != nullptr || &undamped != &displacement;
+      const bool damped = input.damping != SweepInput::Damping::none;
       with_cells(cells, [&](auto &&cell) {
         // damping does not reach into cracks
         std::decay_t<decltype(cell)> undamped_cell(matrix_free);
@@ -136,7 +131,7 @@ namespace Voussoir
           {
             const Lanes widest = history.bands(batch).widest;
             cell.reinit(batch);
-            read_filtered(cell, displacement, damping_memory, damping_factor);
+            read_filtered(cell, input, damping_factor);
             cell.evaluate(dealii::EvaluationFlags::gradients);
             bool knows_own = !damped;
             for (const unsigned int q : cell.quadrature_point_indices())
@@ -153,7 +148,7 @@ namespace Voussoir
                     if (!knows_own)
                       {
                         own.reinit(batch);
-                        own.gather_evaluate(undamped,
+                        own.gather_evaluate(input.displacement,
                                             dealii::EvaluationFlags::gradients);
                         knows_own = true;
                       }
@@ -220,14 +215,13 @@ namespace Voussoir
     void
     set_static_state(const Law       &law,
                      const CellRange &cells,
-                     const double     stress_factor,
                      const double     static_factor,
                      const double     expansion,
                      PointHistory    &history,
                      const Vector    &displacement,
                      const Vector    &temperature)
     {
-      const DampedResponse<Law> response(law, stress_factor);
+      const DampedResponse<Law> response(law, cells.stress_factor);
       with_cells(cells, [&](auto &&cell) {
         std::decay_t<decltype(cell)> warmth(cells.matrix_free);
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
@@ -270,14 +264,14 @@ namespace Voussoir
     ElasticEnergy
     elastic_energy(const Law          &law,
                    const CellRange    &cells,
-                   const double        stress_factor,
                    const double        damping_factor,
                    const DampedMotion &motion,
                    PointHistory       *history)
     {
-      const auto       &matrix_free = cells.matrix_free;
-      const double      dt          = motion.time_step;
-      const Damping    &damping     = motion.damping;
+      const auto       &matrix_free   = cells.matrix_free;
+      const double      stress_factor = cells.stress_factor;
+      const double      dt            = motion.time_step;
+      const Damping    &damping       = motion.damping;
       const MaxwellStep maxwell(damping, dt);
       const double      branches = damping.branch_stiffness();
       const double      viscosity =
@@ -373,17 +367,15 @@ namespace Voussoir
     /** CellKernel::inelastic_energy. */
     template <typename Law>
     InelasticEnergy
-    inelastic_energy(const Law          &law,
-                     const CellRange    &cells,
-                     const double        stress_factor,
-                     const double        branches,
-                     const PointHistory &history,
-                     const Vector       &displacement,
-                     const PointHistory *history_at_start,
-                     const Vector       &u_static)
+    inelastic_energy(const Law             &law,
+                     const CellRange       &cells,
+                     const double           damping_factor,
+                     const InelasticMotion &motion,
+                     const PointHistory    &history)
     {
-      const DampedResponse<Law> response(law, stress_factor, branches);
-      const bool                from_static_state = u_static.size() > 0;
+      const DampedResponse<Law> response(law,
+                                         cells.stress_factor,
+                                         damping_factor * motion.branches);
       InelasticEnergy           total;
       with_cells(cells, [&](auto &&cell) {
         std::decay_t<decltype(cell)> cell_static(cells.matrix_free);
@@ -397,12 +389,12 @@ namespace Voussoir
                              }))
               continue;
             cell.reinit(batch);
-            cell.gather_evaluate(displacement,
+            cell.gather_evaluate(motion.displacement,
                                  dealii::EvaluationFlags::gradients);
-            if (from_static_state)
+            if (motion.has_static_state)
               {
                 cell_static.reinit(batch);
-                cell_static.gather_evaluate(u_static,
+                cell_static.gather_evaluate(motion.static_displacement,
                                             dealii::EvaluationFlags::gradients);
               }
             Lanes stored = 0., of_damping = 0.;
@@ -410,7 +402,7 @@ namespace Voussoir
               if (history.is_active(batch, q))
                 {
                   SymmetricTensor3<Lanes> static_strain;
-                  if (from_static_state)
+                  if (motion.has_static_state)
                     static_strain = cell_static.get_symmetric_gradient(q);
                   const auto energy =
                     response.energy(cell.get_symmetric_gradient(q),
@@ -418,7 +410,7 @@ namespace Voussoir
                                     batch,
                                     q,
                                     history,
-                                    history_at_start);
+                                    motion.static_history);
                   stored += energy.stored * cell.JxW(q);
                   of_damping += energy.of_damping * cell.JxW(q);
                 }
@@ -435,11 +427,11 @@ namespace Voussoir
     void
     add_thermal_force(const Law       &law,
                       const CellRange &cells,
-                      const double     stress_factor,
                       const double     expansion,
                       Vector          &force,
                       const Vector    &temperature)
     {
+      const double stress_factor = cells.stress_factor;
       with_cells(cells, [&](auto &&cell) {
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
           {
@@ -468,13 +460,13 @@ namespace Voussoir
     double
     work(const Law          &law,
          const CellRange    &cells,
-         const double        stress_factor,
          const Vector       &u,
          const Vector       &v,
          const PointHistory *history)
     {
-      const auto &matrix_free = cells.matrix_free;
-      double      total       = 0.;
+      const auto  &matrix_free   = cells.matrix_free;
+      const double stress_factor = cells.stress_factor;
+      double       total         = 0.;
       with_cells(cells, [&](auto &&cell_u) {
         std::decay_t<decltype(cell_u)> cell_v(matrix_free);
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
@@ -482,26 +474,21 @@ namespace Voussoir
             cell_u.reinit(batch);
             cell_u.read_dof_values(u);
             cell_u.evaluate(dealii::EvaluationFlags::gradients);
-            auto *other = &cell_u;
-            if (&u != &v)
-              {
-                cell_v.reinit(batch);
-                cell_v.read_dof_values(v);
-                cell_v.evaluate(dealii::EvaluationFlags::gradients);
-                other = &cell_v;
-              }
+            cell_v.reinit(batch);
+            cell_v.read_dof_values(v);
+            cell_v.evaluate(dealii::EvaluationFlags::gradients);
             Lanes sum = 0.;
             for (const unsigned int q : cell_u.quadrature_point_indices())
               {
                 const Lanes part =
                   stress_factor * law.stress(cell_u.get_symmetric_gradient(q)) *
-                  other->get_symmetric_gradient(q) * cell_u.JxW(q);
+                  cell_v.get_symmetric_gradient(q) * cell_u.JxW(q);
                 sum += where_elastic(history, batch, q, part);
               }
             if constexpr (is_one_point<decltype(cell_u)>)
               {
                 stabilise(cell_u, law, stress_factor);
-                sum += cell_u.stabilisation_work(*other);
+                sum += cell_u.stabilisation_work(cell_v);
               }
             total += sum_of_cells(matrix_free, batch, sum);
           }
@@ -516,10 +503,10 @@ namespace Voussoir
     Lanes
     element_eigenvalues(const Law                          &law,
                         const CellRange                    &batch,
-                        const double                        stress_factor,
                         const dealii::AlignedVector<Lanes> &masses)
     {
-      Lanes eigenvalue = 0.;
+      const double stress_factor = batch.stress_factor;
+      Lanes        eigenvalue    = 0.;
       with_cells(batch, [&](auto &&cell) {
         cell.reinit(batch.begin);
         const unsigned int           n = masses.size();

@@ -125,44 +125,23 @@ namespace Voussoir
     }
 
     void
-    add_force(const CellRange &cells,
-              const double     stress_factor,
-              Vector          &force,
-              const Vector    &displacement,
-              const Vector    *damping_memory) const override
+    add_force(const CellRange  &cells,
+              const SweepInput &input,
+              Vector           &force) const override
     {
-      CellKernels::add_force(law,
-                             cells,
-                             stress_factor,
-                             force,
-                             displacement,
-                             damping_memory,
-                             damping);
+      CellKernels::add_force(law, cells, damping, input, force);
     }
 
     // only laws with memory are asked for the next five
 
     void
-    add_response(const CellRange &cells,
-                 const double     stress_factor,
-                 Vector          &force,
-                 const Vector    &displacement,
-                 const Vector    *damping_memory,
-                 const Vector    &undamped,
-                 PointHistory    &history,
-                 const PointStep &step) const override
+    add_response(const CellRange  &cells,
+                 const SweepInput &input,
+                 Vector           &force,
+                 PointHistory     &history) const override
     {
       if constexpr (has_memory)
-        CellKernels::add_response(law,
-                                  cells,
-                                  stress_factor,
-                                  force,
-                                  displacement,
-                                  damping_memory,
-                                  damping,
-                                  undamped,
-                                  history,
-                                  step);
+        CellKernels::add_response(law, cells, damping, input, force, history);
     }
 
     void
@@ -184,7 +163,6 @@ namespace Voussoir
 
     void
     set_static_state(const CellRange &cells,
-                     const double     stress_factor,
                      PointHistory    &history,
                      const Vector    &displacement,
                      const Vector    &temperature) const override
@@ -192,7 +170,6 @@ namespace Voussoir
       if constexpr (has_memory)
         CellKernels::set_static_state(law,
                                       cells,
-                                      stress_factor,
                                       static_factor,
                                       expansion,
                                       history,
@@ -202,66 +179,47 @@ namespace Voussoir
 
     ElasticEnergy
     elastic_energy(const CellRange    &cells,
-                   const double        stress_factor,
                    const DampedMotion &motion,
                    PointHistory       *history) const override
     {
-      return CellKernels::elastic_energy(
-        law, cells, stress_factor, damping, motion, history);
+      return CellKernels::elastic_energy(law, cells, damping, motion, history);
     }
 
     InelasticEnergy
-    inelastic_energy(const CellRange    &cells,
-                     const double        stress_factor,
-                     const double        branches,
-                     const PointHistory &history,
-                     const Vector       &displacement,
-                     const PointHistory *history_at_start,
-                     const Vector       &u_static) const override
+    inelastic_energy(const CellRange       &cells,
+                     const InelasticMotion &motion,
+                     const PointHistory    &history) const override
     {
       if constexpr (has_memory)
-        return CellKernels::inelastic_energy(law,
-                                             cells,
-                                             stress_factor,
-                                             damping * branches,
-                                             history,
-                                             displacement,
-                                             history_at_start,
-                                             u_static);
+        return CellKernels::inelastic_energy(
+          law, cells, damping, motion, history);
       else
         return {};
     }
 
     void
     add_thermal_force(const CellRange &cells,
-                      const double     stress_factor,
                       Vector          &force,
                       const Vector    &temperature) const override
     {
-      CellKernels::add_thermal_force(
-        law, cells, stress_factor, expansion, force, temperature);
+      CellKernels::add_thermal_force(law, cells, expansion, force, temperature);
     }
 
     double
     work(const CellRange    &cells,
-         const double        stress_factor,
          const Vector       &u,
          const Vector       &v,
          const PointHistory *history) const override
     {
-      return CellKernels::work(law, cells, stress_factor, u, v, history);
+      return CellKernels::work(law, cells, u, v, history);
     }
 
     Lanes
     element_eigenvalues(
       const CellRange                    &batch,
-      const double                        stress_factor,
       const dealii::AlignedVector<Lanes> &masses) const override
     {
-      return CellKernels::element_eigenvalues(law,
-                                              batch,
-                                              stress_factor,
-                                              masses);
+      return CellKernels::element_eigenvalues(law, batch, masses);
     }
 
   private:

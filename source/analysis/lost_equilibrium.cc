@@ -74,8 +74,7 @@ namespace Voussoir
       for (const ContactPoint &point : contact.points())
         {
           const unsigned int s = point.surface;
-          held[s] += !contact.is_joined(point) ||
-                     point.status == ContactStatus::sticking;
+          held[s] += !point.joined || point.status == ContactStatus::sticking;
           opening[s] = std::max(opening[s], point.gap[0]);
           slip[s] = std::max(slip[s], std::hypot(point.gap[1], point.gap[2]));
         }

@@ -11,9 +11,6 @@ namespace Voussoir
 
   namespace
   {
-    // Before it is grouted, an interface is too wide for its sides to meet [m].
-    constexpr double not_grouted = 1e3;
-
     /** Rows n, t1 (level), t2 (upwards). */
     Tensor<2, 3>
     frame_of(const Tensor<1, 3> &normal)
@@ -63,12 +60,12 @@ namespace Voussoir
             // their order in a cluster is the same on all partitions
             point_keys.push_back(256 * cluster.key + points.size());
             ContactPoint point;
-            point.surface        = pair.interface;
-            point.first          = pair.first;
-            point.second         = pair.second;
-            point.frame          = frame_of(pair.normal);
-            point.area           = pair.area;
-            point.initial_gap[0] = not_grouted;
+            point.surface = pair.interface;
+            point.first   = pair.first;
+            point.second  = pair.second;
+            point.frame   = frame_of(pair.normal);
+            point.area    = pair.area;
+            point.joined  = false;
             points.push_back(point);
             point_positions.push_back(cluster.position);
             forces_unique.push_back(cluster.pairs.size() <
@@ -193,6 +190,7 @@ namespace Voussoir
           continue;
         const Tensor<1, 3> motion = point.frame * (displacement[point.second] -
                                                    displacement[point.first]);
+        point.joined              = true;
         point.gap                 = Tensor<1, 3>({joined.initial_gap, 0., 0.});
         point.initial_gap         = point.gap - motion;
         point.history             = {joined.initial_gap, 0.};
@@ -215,8 +213,7 @@ namespace Voussoir
     for (unsigned int k = 0; k < solver->points.size(); ++k)
       {
         ContactPoint &point = solver->points[k];
-        if (interface_of_surface[point.surface] == interface &&
-            is_joined(point))
+        if (interface_of_surface[point.surface] == interface && point.joined)
           {
             point.uplift = uplift[k];
             solver->update_limits(point);
@@ -466,16 +463,9 @@ namespace Voussoir
 
 
   bool
-  Contact::is_joined(const ContactPoint &point) const
-  {
-    return point.initial_gap[0] < not_grouted;
-  }
-
-
-  bool
   Contact::touches(const ContactPoint &point) const
   {
-    return point.gap[0] <= 1e-6 * cell_size;
+    return point.joined && point.gap[0] <= 1e-6 * cell_size;
   }
 
 

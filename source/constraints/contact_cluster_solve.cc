@@ -104,7 +104,8 @@ namespace Voussoir
     for (unsigned int i = 0; i < cluster.n_nodes; ++i)
       size = std::max(size, displacement[cluster.first_node + i].norm());
     for (unsigned int k = 0; k < cluster.n_points; ++k)
-      widest = std::max(widest, gaps[k].norm());
+      if (points[cluster.first_point + k].joined)
+        widest = std::max(widest, gaps[k].norm());
     for (unsigned int i = 0; i < 3 * cluster.n_points; ++i)
       softest =
         std::max(softest, cluster.flexibility[i * (3 * cluster.n_points + 1)]);
@@ -138,12 +139,27 @@ namespace Voussoir
                              const double   size,
                              Effort        &effort)
   {
+    std::vector<unsigned int>  joined;
+    std::vector<Tensor<1, 3>>  gaps_to_close;
     std::vector<ContactLimits> limits;
     for (unsigned int k = 0; k < cluster.n_points; ++k)
-      limits.push_back(points[cluster.first_point + k].limits);
+      if (points[cluster.first_point + k].joined)
+        {
+          joined.push_back(k);
+          gaps_to_close.push_back(gaps[k]);
+          limits.push_back(points[cluster.first_point + k].limits);
+        }
+    std::vector<double> flexibility;
+    for (const unsigned int k : joined)
+      for (unsigned int d = 0; d < 3; ++d)
+        for (const unsigned int l : joined)
+          for (unsigned int e = 0; e < 3; ++e)
+            flexibility.push_back(
+              cluster
+                .flexibility[(3 * k + d) * 3 * cluster.n_points + 3 * l + e]);
     const ContactForces found =
-      solve_contact(cluster.flexibility,
-                    {gaps.begin(), gaps.begin() + cluster.n_points},
+      solve_contact(flexibility,
+                    gaps_to_close,
                     limits,
                     10. * round_off * size); // of several sweeps
     ++effort.paths;
@@ -152,10 +168,11 @@ namespace Voussoir
       ++effort.unsolved;
     if (found.residual == 1.) // the forces of the sweeps are better than none
       return;
-    for (unsigned int k = 0; k < cluster.n_points; ++k)
+    for (unsigned int i = 0; i < joined.size(); ++i)
       {
-        points[cluster.first_point + k].force  = found.points[k].force;
-        points[cluster.first_point + k].status = found.points[k].status;
+        ContactPoint &point = points[cluster.first_point + joined[i]];
+        point.force         = found.points[i].force;
+        point.status        = found.points[i].status;
       }
   }
 
@@ -401,7 +418,8 @@ namespace Voussoir
                 W[d * n + j] * points[cluster.first_point + j / 3].force[j % 3];
             system(3 * k + d, 3 * k + d) = 1.;
           }
-        if (D == 0.) // both nodes are held
+        // both nodes are held, or nothing is between them yet
+        if (D == 0. || !points[cluster.first_point + k].joined)
           continue;
         const NewtonPoint rows{
           k, points[cluster.first_point + k], W, gap, 1. / D, system, change};

@@ -44,7 +44,7 @@ namespace Voussoir
         point.second += number_of_nodes;
         point.history.opening =
           std::max(point.history.opening, point.initial_gap[0]);
-        if (point.initial_gap[0] > 0.)
+        if (!point.joined || point.initial_gap[0] > 0.)
           point.status = ContactStatus::open;
         update_limits(point);
         points.push_back(point);
@@ -235,7 +235,9 @@ namespace Voussoir
   void
   ContactSolver::solve_point(const unsigned int number, const Tensor<1, 3> &gap)
   {
-    ContactPoint      &point = points[number];
+    ContactPoint &point = points[number];
+    if (!point.joined)
+      return;
     const ContactForce found =
       point_flexibility[number] >= 0. ?
         solve_contact(gap, point_flexibility[number], point.limits) :
@@ -305,6 +307,11 @@ namespace Voussoir
       point.frame * (displacement[point.second] - displacement[point.first]) +
       point.initial_gap;
     const Tensor<1, 3> velocity = (1. / time_step) * (point.gap - before);
+    if (!point.joined)
+      {
+        point.velocity = velocity;
+        return 0.;
+      }
 
     // work at the mean of the velocities before and after, as in the balance of
     // central differences

@@ -150,7 +150,12 @@ namespace Voussoir
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
         ContactPoint &point = contact.solver->points[k];
-        Tensor<1, 3>  b     = point.gap - multiplier[k] / spring[k];
+        if (!point.joined)
+          {
+            tangent[k] = Tensor<2, 3>();
+            continue;
+          }
+        Tensor<1, 3> b = point.gap - multiplier[k] / spring[k];
         b[1] -= point.stick_point[0];
         b[2] -= point.stick_point[1];
         closing[k] = closing_force(point.limits, b, spring[k]);
@@ -181,7 +186,7 @@ namespace Voussoir
   StaticContact::stiffen(const double share)
   {
     for (unsigned int k = 0; k < spring.size(); ++k)
-      if (contact.is_joined(contact.points()[k]))
+      if (contact.points()[k].joined)
         tangent[k] =
           (1. - share) * tangent[k] +
           share * spring[k] * Tensor<2, 3>(unit_symmetric_tensor<3>());
@@ -305,6 +310,8 @@ namespace Voussoir
     const ContactPoint &point  = contact.points()[k];
     const bool          open   = point.status == ContactStatus::open;
     InterfaceHistory    result = before[k].history;
+    if (!point.joined)
+      return result;
     if (open)
       result.opening = std::max(result.opening, point.gap[0]);
     if (point.status != ContactStatus::sticking && !point.limits.locked &&

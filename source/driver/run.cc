@@ -246,7 +246,7 @@ namespace Voussoir
     for (const ContactPoint &point : contact->points())
       {
         const double slip = std::hypot(point.gap[1], point.gap[2]);
-        if (contact->is_joined(point) && slip > farthest)
+        if (point.joined && slip > farthest)
           {
             farthest = slip;
             surface  = point.surface;

@@ -27,7 +27,7 @@ namespace Voussoir
       bool result = false;
       if (model.contact != nullptr)
         for (const ContactPoint &point : model.contact->points())
-          result = result || !model.contact->is_joined(point);
+          result = result || !point.joined;
       return Utilities::MPI::logical_or(
         result, model.discretization.grid.communicator());
     }

@@ -125,11 +125,6 @@ namespace Voussoir
     const std::vector<dealii::Point<3>> &
     positions() const;
 
-    /** Whether the sides of a point may meet; before its interface is grouted
-     *  they may not. */
-    bool
-    is_joined(const ContactPoint &point) const;
-
     /** Whether its sides touch, to a millionth of a cell. */
     bool
     touches(const ContactPoint &point) const;

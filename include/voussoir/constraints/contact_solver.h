@@ -40,6 +40,10 @@ namespace Voussoir
     double               area   = 0.; // [m2]
     double               uplift = 0.; // pressure inside [Pa]
 
+    // before its interface is grouted, its sides move as if the other were not
+    // there
+    bool joined = true;
+
     /**
      * Friction follows the pressure p by its mean q, dq/dt = (p - q)/T, over
      * some times T in which waves pass a cell. Under a law without this delay
@@ -184,7 +188,8 @@ namespace Voussoir
       return std::sqrt(v[1] * v[1] + v[2] * v[2]);
     }
 
-    /** Finds the contact force of a point from the gap without it. */
+    /** Finds the contact force of a point from the gap without it; there is
+     *  none before its interface is grouted. */
     void
     solve_point(const unsigned int number, const dealii::Tensor<1, 3> &gap);
 
@@ -262,8 +267,8 @@ namespace Voussoir
     void
     make_matrices(Cluster &cluster) const;
 
-    /** Takes the motion after the step into the history; returns the
-     *  penetration. */
+    /** Takes the motion after the step into the history, that of a joined
+     *  point; returns the penetration. */
     double
     update(ContactPoint                            &point,
            const std::vector<dealii::Tensor<1, 3>> &displacement);

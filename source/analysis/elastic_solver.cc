@@ -182,7 +182,7 @@ namespace Voussoir
   {
     Vector stiffness = diagonal();
     clear_held(stiffness);
-    static_contact.emplace(contact, stiffness);
+    static_contact.emplace(contact.points_of_interfaces(), stiffness);
     static_contact->tie(displacement);
 
     const auto add = [&](const auto          first,

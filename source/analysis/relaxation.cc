@@ -123,7 +123,7 @@ namespace Voussoir
       for (const ContactPoint &point : contact->points())
         apart = std::max(apart, (point.gap - point.initial_gap).norm());
     return Utilities::MPI::max(apart, discretization.grid.communicator()) >
-             (contact != nullptr ? contact->cell_size : 0.) ||
+             (contact != nullptr ? contact->cell_size() : 0.) ||
            largest_amount(displacement) > 0.01 * extent;
   }
 

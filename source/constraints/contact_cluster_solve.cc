@@ -3,6 +3,7 @@
 #include <voussoir/constraints/contact_path.h>
 #include <voussoir/constraints/contact_solver.h>
 
+#include <deal.II/lac/exceptions.h>
 #include <deal.II/lac/lapack_full_matrix.h>
 
 #include <algorithm>
@@ -43,7 +44,7 @@ namespace Voussoir
   // that do the same, those with the most even stresses are taken (weights by
   // area).
   void
-  ContactSolver::make_matrices(Cluster &cluster) const
+  ContactSolver::make_matrices(const Points &points, Cluster &cluster) const
   {
     const unsigned int       n = 3 * cluster.n_points;
     LAPACKFullMatrix<double> matrix(n);
@@ -93,11 +94,12 @@ namespace Voussoir
 
 
   void
-  ContactSolver::solve_cluster(const Cluster                   &cluster,
+  ContactSolver::solve_cluster(Points                          &points,
+                               const Cluster                   &cluster,
                                const std::vector<Tensor<1, 3>> &displacement,
                                Effort                          &effort)
   {
-    if (find_gaps(cluster, displacement) && hold_all(cluster))
+    if (find_gaps(points, cluster, displacement) && hold_all(points, cluster))
       return;
 
     double size = 0., widest = 0., softest = 0.;
@@ -118,24 +120,25 @@ namespace Voussoir
       return softest * last.largest > too_large * widest;
     };
 
-    find_moves(cluster); // from the forces of the step before
+    find_moves(points, cluster); // from the forces of the step before
     unsigned int n_sweeps = 0;
     for (; n_sweeps < max_sweeps && !found() && !run_away(); ++n_sweeps)
       last = n_sweeps % sweeps_per_jump == sweeps_per_jump - 1 ?
-               sweep_after_jump(cluster, last) :
-               sweep(cluster);
+               sweep_after_jump(points, cluster, last) :
+               sweep(points, cluster);
     effort.sweeps = std::max(effort.sweeps, n_sweeps);
     effort.all_sweeps += n_sweeps;
     ++effort.clusters;
     if (!found() || run_away())
-      follow_path(cluster, size, effort);
+      follow_path(points, cluster, size, effort);
     else if (last.largest > 0.)
       effort.residual = std::max(effort.residual, last.change / last.largest);
   }
 
 
   void
-  ContactSolver::follow_path(const Cluster &cluster,
+  ContactSolver::follow_path(Points        &points,
+                             const Cluster &cluster,
                              const double   size,
                              Effort        &effort)
   {
@@ -178,7 +181,8 @@ namespace Voussoir
 
 
   bool
-  ContactSolver::find_gaps(const Cluster                   &cluster,
+  ContactSolver::find_gaps(const Points                    &points,
+                           const Cluster                   &cluster,
                            const std::vector<Tensor<1, 3>> &displacement)
   {
     bool stick = true, given = false;
@@ -206,7 +210,7 @@ namespace Voussoir
 
 
   bool
-  ContactSolver::hold_all(const Cluster &cluster)
+  ContactSolver::hold_all(Points &points, const Cluster &cluster)
   {
     const unsigned int n = 3 * cluster.n_points;
     for (unsigned int k = 0; k < cluster.n_points; ++k)
@@ -252,7 +256,7 @@ namespace Voussoir
 
 
   void
-  ContactSolver::find_moves(const Cluster &cluster)
+  ContactSolver::find_moves(const Points &points, const Cluster &cluster)
   {
     std::fill_n(moves.begin(), cluster.n_nodes, Tensor<1, 3>());
     for (unsigned int k = 0; k < cluster.n_points; ++k)
@@ -263,7 +267,7 @@ namespace Voussoir
 
 
   ContactSolver::Sweep
-  ContactSolver::sweep(const Cluster &cluster)
+  ContactSolver::sweep(Points &points, const Cluster &cluster)
   {
     Sweep  result{0., 0., 0.};
     double sum = 0.;
@@ -272,7 +276,8 @@ namespace Voussoir
         const unsigned int number = cluster.first_point + k;
         ContactPoint      &point  = points[number];
         const Tensor<1, 3> before = point.force;
-        solve_point(number,
+        solve_point(point,
+                    number,
                     gaps[k] + relative_move(cluster, point) -
                       relative_motion(number, before));
         const Tensor<1, 3> change = point.force - before;
@@ -292,18 +297,20 @@ namespace Voussoir
 
 
   ContactSolver::Sweep
-  ContactSolver::sweep_after_jump(const Cluster &cluster, const Sweep &before)
+  ContactSolver::sweep_after_jump(Points        &points,
+                                  const Cluster &cluster,
+                                  const Sweep   &before)
   {
     for (unsigned int k = 0; k < cluster.n_points; ++k)
       holding[k] = points[cluster.first_point + k].force;
-    iterate_newton(cluster, before.largest);
-    find_moves(cluster);
-    Sweep result = sweep(cluster);
+    iterate_newton(points, cluster, before.largest);
+    find_moves(points, cluster);
+    Sweep result = sweep(points, cluster);
     if (!(result.change <= before.change)) // it led astray
       {
         for (unsigned int k = 0; k < cluster.n_points; ++k)
           points[cluster.first_point + k].force = holding[k];
-        find_moves(cluster);
+        find_moves(points, cluster);
         result.change = before.change;
         result.moved  = before.moved;
       }
@@ -312,11 +319,12 @@ namespace Voussoir
 
 
   void
-  ContactSolver::iterate_newton(const Cluster &cluster,
+  ContactSolver::iterate_newton(Points        &points,
+                                const Cluster &cluster,
                                 const double   largest_force)
   {
     for (unsigned int i = 0; i < max_newton_steps; ++i)
-      if (newton_step(cluster) <= accuracy * largest_force)
+      if (newton_step(points, cluster) <= accuracy * largest_force)
         return;
   }
 
@@ -400,7 +408,7 @@ namespace Voussoir
   // exceeds the tension, and slides if the tangential one exceeds its limit L,
   // against which it then is F_t = L trial / |trial|.
   double
-  ContactSolver::newton_step(const Cluster &cluster)
+  ContactSolver::newton_step(Points &points, const Cluster &cluster)
   {
     const unsigned int       n = 3 * cluster.n_points;
     LAPACKFullMatrix<double> system(n);

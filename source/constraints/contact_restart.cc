@@ -11,10 +11,10 @@ namespace Voussoir
   Contact::checkpoint_values()
   {
     KeyedValues values{memory_width, {}};
-    point_memory.resize(solver->points.size());
+    point_memory.resize(interfaces.points.size());
     for (unsigned int k = 0; k < point_memory.size(); ++k)
       {
-        const ContactPoint &point = solver->points[k];
+        const ContactPoint &point = interfaces.points[k];
         point_memory[k]           = {
                     {point.force[0],       point.force[1],
                      point.force[2],       point.stick_point[0],
@@ -26,7 +26,7 @@ namespace Voussoir
                      point.gap[0],         point.gap[1],
                      point.gap[2],         point.velocity[0],
                      point.velocity[1],    point.velocity[2]}};
-        values.items.emplace_back(point_keys[k], point_memory[k].data());
+        values.items.emplace_back(interfaces.keys[k], point_memory[k].data());
       }
     return values;
   }
@@ -36,7 +36,7 @@ namespace Voussoir
   Contact::energies()
   {
     std::vector<double *> list;
-    for (ContactSurface &surface : solver->surfaces)
+    for (ContactSurface &surface : interfaces.surfaces)
       {
         ContactEnergy &energy = surface.energy;
         list.insert(list.end(),
@@ -54,17 +54,17 @@ namespace Voussoir
   Contact::save() const
   {
     nlohmann::json energies;
-    for (const ContactSurface &surface : solver->surfaces)
+    for (const ContactSurface &surface : interfaces.surfaces)
       energies.push_back(
         sum_over_ranks(std::vector<double>{surface.energy.impact,
                                            surface.energy.friction,
                                            surface.energy.bond,
                                            surface.energy.bars,
                                            surface.energy.uplift},
-                       communicator));
+                       interfaces.communicator));
     const ContactSolver::Effort made = effort();
     return {{"energies", energies},
-            {"water", has_water},
+            {"water", interfaces.has_water},
             {"penetration", made.penetration},
             {"residual", made.residual},
             {"sweeps", made.sweeps},
@@ -78,15 +78,10 @@ namespace Voussoir
   void
   Contact::load(const nlohmann::json &saved)
   {
-    // where the static state has been grouted bars and uplift act
-    for (unsigned int i = 0; i < interfaces.list.size(); ++i)
+    interfaces.join_all(saved.at("water"));
+    for (unsigned int k = 0; k < interfaces.points.size(); ++k)
       {
-        has_water[i] = saved.at("water").at(i).get<bool>();
-        join(i);
-      }
-    for (unsigned int k = 0; k < solver->points.size(); ++k)
-      {
-        ContactPoint      &point  = solver->points[k];
+        ContactPoint      &point  = interfaces.points[k];
         const PointMemory &memory = point_memory[k];
         for (unsigned int d = 0; d < 3; ++d)
           {
@@ -101,19 +96,19 @@ namespace Voussoir
         point.largest_slip    = memory[8];
         point.status          = static_cast<ContactStatus>(memory[13]);
         point.mean_pressure   = memory[12];
-        solver->update_limits(point);
+        interfaces.update_limits(point);
       }
 
     // sums are taken over the ranks: the first one gets all
-    for (ContactSurface &surface : solver->surfaces)
+    for (ContactSurface &surface : interfaces.surfaces)
       surface.energy = {};
     total = {};
-    if (Utilities::MPI::this_mpi_process(communicator) != 0)
+    if (Utilities::MPI::this_mpi_process(interfaces.communicator) != 0)
       return;
-    for (unsigned int s = 0; s < solver->surfaces.size(); ++s)
+    for (unsigned int s = 0; s < interfaces.surfaces.size(); ++s)
       {
-        const std::vector<double> e = saved.at("energies").at(s);
-        solver->surfaces[s].energy  = {e[0], e[1], e[2], e[3], e[4]};
+        const std::vector<double> e   = saved.at("energies").at(s);
+        interfaces.surfaces[s].energy = {e[0], e[1], e[2], e[3], e[4]};
       }
     total.penetration = saved.at("penetration");
     total.residual    = saved.at("residual");
@@ -128,15 +123,15 @@ namespace Voussoir
   void
   Contact::resume()
   {
-    for (unsigned int k = 0; k < solver->points.size(); ++k)
+    for (unsigned int k = 0; k < interfaces.points.size(); ++k)
       {
-        ContactPoint &point = solver->points[k];
+        ContactPoint &point = interfaces.points[k];
         for (unsigned int d = 0; d < 3; ++d)
           {
             point.gap[d]      = point_memory[k][14 + d];
             point.velocity[d] = point_memory[k][17 + d];
           }
-        solver->update_limits(point);
+        interfaces.update_limits(point);
       }
   }
 } // namespace Voussoir

@@ -18,66 +18,16 @@ namespace Voussoir
             return false;
       return true;
     }
-
-
-    double
-    lasting_friction(const ContactPoint &point, const double coefficient)
-    {
-      return coefficient * (1. - point.at_once) * point.mean_pressure;
-    }
   } // namespace
 
 
-  ContactSolver::ContactSolver(const std::vector<ContactSurface> &surfaces)
-    : surfaces(surfaces)
-  {}
-
-
   void
-  ContactSolver::add_cluster(const unsigned int               n_nodes,
-                             const std::vector<ContactPoint> &added)
-  {
-    const unsigned int first_point = points.size();
-    for (ContactPoint point : added)
-      {
-        point.first += number_of_nodes;
-        point.second += number_of_nodes;
-        point.history.opening =
-          std::max(point.history.opening, point.initial_gap[0]);
-        if (!point.joined || point.initial_gap[0] > 0.)
-          point.status = ContactStatus::open;
-        update_limits(point);
-        points.push_back(point);
-      }
-    if (added.size() == 1)
-      {
-        Assert(clusters.empty(), ExcMessage("Clusters of one point first"));
-        ++n_single;
-      }
-    else
-      {
-        const unsigned int n_points = added.size();
-        clusters.push_back(
-          {number_of_nodes, n_nodes, first_point, n_points, {}, {}});
-        gaps.resize(std::max<std::size_t>(gaps.size(), n_points));
-        moves.resize(std::max<std::size_t>(moves.size(), n_nodes));
-        holding.resize(gaps.size());
-      }
-    number_of_nodes += n_nodes;
-  }
-
-
-  unsigned int
-  ContactSolver::n_nodes() const
-  {
-    return number_of_nodes;
-  }
-
-
-  void
-  ContactSolver::prepare_step(const std::vector<Tensor<2, 3>> &inverse_mass,
+  ContactSolver::prepare_step(ContactPoints                   &contact,
+                              const std::vector<Tensor<2, 3>> &inverse_mass,
                               const double                     step)
   {
+    const unsigned int number_of_nodes = contact.n_nodes();
+    Points            &points          = contact.points;
     AssertDimension(inverse_mass.size(), number_of_nodes);
     time_step = step;
     node_flexibility.assign(number_of_nodes, -1.);
@@ -97,7 +47,7 @@ namespace Voussoir
         ContactPoint &point = points[k];
         point.at_once =
           point.delay > 0. ? -std::expm1(-time_step / point.delay) : 1.;
-        update_limits(point);
+        contact.update_limits(point);
         const double first  = node_flexibility[point.first],
                      second = node_flexibility[point.second];
         if (first >= 0. && second >= 0.)
@@ -111,94 +61,28 @@ namespace Voussoir
               transpose(point.frame));
           }
       }
-    for (Cluster &cluster : clusters)
-      make_matrices(cluster);
-  }
 
-
-  void
-  ContactSolver::find_gaps(const std::vector<Tensor<1, 3>> &displacement)
-  {
-    for (ContactPoint &point : points)
+    clusters.clear();
+    for (const ContactPoints::Cluster &cluster : contact.clusters())
       {
-        point.gap = point.frame *
-                      (displacement[point.second] - displacement[point.first]) +
-                    point.initial_gap;
-        update_limits(point);
+        clusters.push_back({cluster, {}, {}});
+        make_matrices(points, clusters.back());
+        gaps.resize(std::max<std::size_t>(gaps.size(), cluster.n_points));
+        moves.resize(std::max<std::size_t>(moves.size(), cluster.n_nodes));
       }
-  }
-
-
-  void
-  ContactSolver::start(const std::vector<Tensor<1, 3>> &displacement,
-                       const std::vector<Tensor<1, 3>> &velocity)
-  {
-    find_gaps(displacement);
-    for (ContactPoint &point : points)
-      point.velocity =
-        point.frame * (velocity[point.second] - velocity[point.first]);
-  }
-
-
-  void
-  ContactSolver::update_limits(ContactPoint &point) const
-  {
-    const ContactSurface   &surface  = surfaces[point.surface];
-    const InterfaceStrength strength = surface.law->strength(point.history);
-    point.limits                     = {strength.tension * point.area,
-                                        strength.bond * point.area,
-                                        strength.cohesion * point.area,
-                                        strength.friction,
-                                        point.history.opening,
-                                        surface.key_depth > 0. && point.gap[0] < surface.key_depth,
-                                        lasting_friction(point, strength.friction),
-                                        point.at_once};
-    double bars                      = 0.;
-    if (surface.bar_stiffness > 0.)
-      bars = surface.bar_stiffness *
-             (point.gap[0] - point.initial_gap[0] - point.bar_extension);
-    point.given_force = (point.uplift - bars) * point.area;
-  }
-
-
-  void
-  ContactSolver::catch_up_with_pressure(ContactPoint &point) const
-  {
-    point.mean_pressure = std::max(point.force[0], 0.);
-    update_limits(point);
-  }
-
-
-  void
-  ContactSolver::yield_bars(ContactPoint &point) const
-  {
-    const ContactSurface &surface = surfaces[point.surface];
-    if (surface.bar_stiffness == 0.)
-      return;
-    const double extension = point.gap[0] - point.initial_gap[0],
-                 elastic   = surface.bar_strength / surface.bar_stiffness;
-    point.bar_extension =
-      std::max(extension - elastic,
-               std::min(extension + elastic, point.bar_extension));
-  }
-
-
-  Tensor<1, 3>
-  ContactSolver::total_force(const ContactPoint &point)
-  {
-    Tensor<1, 3> force = point.force;
-    force[0] += point.given_force;
-    return force * point.frame;
+    holding.resize(gaps.size());
   }
 
 
   double
-  ContactSolver::bar_share_of_stable_step(const unsigned int number) const
+  ContactSolver::bar_share_of_stable_step(const ContactPoints &contact,
+                                          const unsigned int   number) const
   {
-    Tensor<1, 3> unit;
+    const ContactPoint &point = contact.points[number];
+    Tensor<1, 3>        unit;
     unit[0] = 1.;
-    return 0.25 * surfaces[points[number].surface].bar_stiffness *
-           points[number].area * relative_motion(number, unit)[0];
+    return 0.25 * contact.surfaces[point.surface].bar_stiffness * point.area *
+           relative_motion(number, unit)[0];
   }
 
 
@@ -233,9 +117,10 @@ namespace Voussoir
 
 
   void
-  ContactSolver::solve_point(const unsigned int number, const Tensor<1, 3> &gap)
+  ContactSolver::solve_point(ContactPoint       &point,
+                             const unsigned int  number,
+                             const Tensor<1, 3> &gap)
   {
-    ContactPoint &point = points[number];
     if (!point.joined)
       return;
     const ContactForce found =
@@ -248,10 +133,13 @@ namespace Voussoir
 
 
   ContactSolver::Effort
-  ContactSolver::solve(std::vector<Tensor<1, 3>> &displacement,
+  ContactSolver::solve(ContactPoints             &contact,
+                       std::vector<Tensor<1, 3>> &displacement,
                        std::vector<Tensor<1, 3>> &force)
   {
-    Effort effort;
+    Points            &points   = contact.points;
+    const unsigned int n_single = contact.n_single();
+    Effort             effort;
     for (unsigned int k = 0; k < n_single; ++k)
       {
         ContactPoint &point = points[k];
@@ -264,24 +152,24 @@ namespace Voussoir
             given[0] = point.given_force;
             gap += relative_motion(k, given);
           }
-        solve_point(k, gap);
-        force[point.second] = total_force(point);
+        solve_point(point, k, gap);
+        force[point.second] = ContactPoints::total_force(point);
         force[point.first]  = -force[point.second];
         displacement[point.second] += motion(point.second, force[point.second]);
         displacement[point.first] += motion(point.first, force[point.first]);
         effort.penetration =
-          std::max(effort.penetration, update(point, displacement));
+          std::max(effort.penetration, update(contact, point, displacement));
       }
 
     for (const Cluster &cluster : clusters)
       {
-        solve_cluster(cluster, displacement, effort);
+        solve_cluster(points, cluster, displacement, effort);
         for (unsigned int i = 0; i < cluster.n_nodes; ++i)
           force[cluster.first_node + i] = Tensor<1, 3>();
         for (unsigned int k = 0; k < cluster.n_points; ++k)
           {
             const ContactPoint &point = points[cluster.first_point + k];
-            const Tensor<1, 3>  total = total_force(point);
+            const Tensor<1, 3>  total = ContactPoints::total_force(point);
             force[point.second] += total;
             force[point.first] -= total;
           }
@@ -289,19 +177,21 @@ namespace Voussoir
           displacement[cluster.first_node + i] +=
             motion(cluster.first_node + i, force[cluster.first_node + i]);
         for (unsigned int k = 0; k < cluster.n_points; ++k)
-          effort.penetration =
-            std::max(effort.penetration,
-                     update(points[cluster.first_point + k], displacement));
+          effort.penetration = std::max(effort.penetration,
+                                        update(contact,
+                                               points[cluster.first_point + k],
+                                               displacement));
       }
     return effort;
   }
 
 
   double
-  ContactSolver::update(ContactPoint                    &point,
+  ContactSolver::update(ContactPoints                   &contact,
+                        ContactPoint                    &point,
                         const std::vector<Tensor<1, 3>> &displacement)
   {
-    ContactSurface    &surface = surfaces[point.surface];
+    ContactSurface    &surface = contact.surfaces[point.surface];
     const Tensor<1, 3> before  = point.gap;
     point.gap =
       point.frame * (displacement[point.second] - displacement[point.first]) +
@@ -343,14 +233,14 @@ namespace Voussoir
         point.largest_slip =
           std::max(point.largest_slip, tangential_norm(point.gap));
       }
-    yield_bars(point);
+    contact.yield_bars(point);
     point.mean_pressure +=
       point.at_once * (std::max(F[0], 0.) - point.mean_pressure);
-    point.limits.lasting = lasting_friction(point, point.limits.friction);
+    point.limits.lasting = point.lasting_friction(point.limits.friction);
     // keys may have closed
     if (point.status != ContactStatus::sticking || surface.bar_stiffness > 0. ||
         (surface.key_depth > 0. && !point.limits.locked))
-      update_limits(point);
+      contact.update_limits(point);
     return std::max(0., -point.gap[0]);
   }
 } // namespace Voussoir

@@ -89,25 +89,26 @@ namespace Voussoir
   } // namespace
 
 
-  StaticContact::StaticContact(Contact &contact, const Vector &stiffness)
-    : contact(contact)
-    , multiplier(contact.points().size())
+  StaticContact::StaticContact(InterfacePoints &interfaces,
+                               const Vector    &stiffness)
+    : interfaces(interfaces)
+    , multiplier(interfaces.points.size())
     , last_change(multiplier.size())
     , cohesion(multiplier.size())
     , closing(multiplier.size())
     , tangent(multiplier.size())
-    , at_nodes(contact.solver->n_nodes())
+    , at_nodes(interfaces.n_nodes())
     , forces(at_nodes.size())
-    , at_owned(contact.nodes().size())
+    , at_owned(interfaces.exchange().owned_nodes().size())
     , held(at_nodes.size())
   {
-    contact.exchange->to_clusters(stiffness, at_nodes);
+    interfaces.exchange().to_clusters(stiffness, at_nodes);
     for (unsigned int i = 0; i < at_nodes.size(); ++i)
       for (unsigned int d = 0; d < 3; ++d)
         held[i][d] = at_nodes[i][d] == 0.;
     for (unsigned int k = 0; k < multiplier.size(); ++k)
       {
-        const ContactPoint &point = contact.points()[k];
+        const ContactPoint &point = interfaces.points[k];
         const double first   = at_nodes[point.first].norm() / std::sqrt(3.),
                      second  = at_nodes[point.second].norm() / std::sqrt(3.);
         const double stiffer = std::max(first, second);
@@ -122,7 +123,7 @@ namespace Voussoir
   void
   StaticContact::start_stage()
   {
-    before = contact.points();
+    before = interfaces.points;
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
         multiplier[k]  = before[k].force;
@@ -137,8 +138,8 @@ namespace Voussoir
   void
   StaticContact::find_gaps(const Vector &displacement)
   {
-    contact.exchange->to_clusters(displacement, at_nodes);
-    contact.solver->find_gaps(at_nodes);
+    interfaces.exchange().to_clusters(displacement, at_nodes);
+    interfaces.find_gaps(at_nodes);
   }
 
 
@@ -149,7 +150,7 @@ namespace Voussoir
     std::fill(forces.begin(), forces.end(), Tensor<1, 3>());
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
-        ContactPoint &point = contact.solver->points[k];
+        ContactPoint &point = interfaces.points[k];
         if (!point.joined)
           {
             tangent[k] = Tensor<2, 3>();
@@ -171,10 +172,10 @@ namespace Voussoir
 
         Tensor<2, 3> in_frame = tangent_of(found, b, limits, spring[k]);
         in_frame[0][0] +=
-          point.area * contact.solver->surfaces[point.surface].bar_stiffness;
+          point.area * interfaces.surfaces[point.surface].bar_stiffness;
         tangent[k] = in_global_axes(in_frame, point.frame);
 
-        const Tensor<1, 3> total = ContactSolver::total_force(point);
+        const Tensor<1, 3> total = ContactPoints::total_force(point);
         forces[point.second] += total;
         forces[point.first] -= total;
       }
@@ -186,7 +187,7 @@ namespace Voussoir
   StaticContact::stiffen(const double share)
   {
     for (unsigned int k = 0; k < spring.size(); ++k)
-      if (contact.points()[k].joined)
+      if (interfaces.points[k].joined)
         tangent[k] =
           (1. - share) * tangent[k] +
           share * spring[k] * Tensor<2, 3>(unit_symmetric_tensor<3>());
@@ -199,9 +200,9 @@ namespace Voussoir
     find_gaps(displacement);
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
-        const ContactPoint &point = contact.points()[k];
+        const ContactPoint &point = interfaces.points[k];
         tangent[k]                = Tensor<2, 3>();
-        if (contact.touches(point))
+        if (interfaces.touches(point))
           tangent[k] = spring[k] * Tensor<2, 3>(unit_symmetric_tensor<3>());
       }
   }
@@ -210,11 +211,11 @@ namespace Voussoir
   void
   StaticContact::add_tangent(Vector &force, const Vector &displacement) const
   {
-    contact.exchange->to_clusters(displacement, at_nodes);
+    interfaces.exchange().to_clusters(displacement, at_nodes);
     std::fill(forces.begin(), forces.end(), Tensor<1, 3>());
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
-        const ContactPoint &point = contact.points()[k];
+        const ContactPoint &point = interfaces.points[k];
         const Tensor<1, 3>  f =
           tangent[k] * (at_nodes[point.second] - at_nodes[point.first]);
         forces[point.second] += f;
@@ -227,8 +228,8 @@ namespace Voussoir
   void
   StaticContact::add_forces(Vector &force) const
   {
-    contact.exchange->to_owners(forces, at_owned);
-    contact.exchange->add(force, 1., at_owned);
+    interfaces.exchange().to_owners(forces, at_owned);
+    interfaces.exchange().add(force, 1., at_owned);
   }
 
 
@@ -238,9 +239,9 @@ namespace Voussoir
     std::vector<Pair> result;
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
-        const ContactPoint &point = contact.points()[k];
-        result.push_back({contact.global_nodes[point.first],
-                          contact.global_nodes[point.second],
+        const ContactPoint &point = interfaces.points[k];
+        result.push_back({interfaces.cluster_nodes[point.first],
+                          interfaces.cluster_nodes[point.second],
                           tangent[k],
                           held[point.first],
                           held[point.second]});
@@ -257,7 +258,7 @@ namespace Voussoir
     std::vector<unsigned int> number(4);
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
-        ContactPoint &point = contact.solver->points[k];
+        ContactPoint &point = interfaces.points[k];
         changed += (point.force - multiplier[k]).norm_square();
         whole += point.force.norm_square();
         // those that swing to and fro meet in the middle; those of cohesion
@@ -280,8 +281,8 @@ namespace Voussoir
             point.history = {std::max(point.history.opening, now.opening),
                              std::max(point.history.slip, now.slip)};
           }
-        contact.solver->yield_bars(point);
-        contact.solver->update_limits(point);
+        interfaces.yield_bars(point);
+        interfaces.update_limits(point);
 
         number[0] += limits.bond != point.limits.bond ||
                      limits.tension != point.limits.tension ||
@@ -291,7 +292,7 @@ namespace Voussoir
         number[2] += point.status == ContactStatus::sliding;
         number[3] += 1;
       }
-    const MPI_Comm communicator = contact.communicator;
+    const MPI_Comm communicator = interfaces.communicator;
     const auto     sums =
       sum_over_ranks(std::vector<double>{changed, whole}, communicator);
     change.force  = sums[1] > 0. ? std::sqrt(sums[0] / sums[1]) : 0.;
@@ -307,7 +308,7 @@ namespace Voussoir
   InterfaceHistory
   StaticContact::history_at(const unsigned int k) const
   {
-    const ContactPoint &point  = contact.points()[k];
+    const ContactPoint &point  = interfaces.points[k];
     const bool          open   = point.status == ContactStatus::open;
     InterfaceHistory    result = before[k].history;
     if (!point.joined)
@@ -327,7 +328,7 @@ namespace Voussoir
   {
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
-        ContactPoint &point = contact.solver->points[k];
+        ContactPoint &point = interfaces.points[k];
         // of what was tried on the way here only this happened
         point.history = history_at(k);
         if (point.status != ContactStatus::sticking && !point.limits.locked)
@@ -338,7 +339,7 @@ namespace Voussoir
               std::max(point.largest_slip,
                        std::hypot(point.gap[1], point.gap[2]));
           }
-        contact.solver->catch_up_with_pressure(point);
+        interfaces.catch_up_with_pressure(point);
       }
   }
 
@@ -346,6 +347,6 @@ namespace Voussoir
   void
   StaticContact::restore()
   {
-    contact.solver->points = before;
+    interfaces.points = before;
   }
 } // namespace Voussoir

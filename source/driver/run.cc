@@ -256,7 +256,7 @@ namespace Voussoir
       Utilities::MPI::all_gather(log.communicator(),
                                  std::make_pair(farthest, surface));
     std::tie(farthest, surface) = *std::max_element(all.begin(), all.end());
-    warned_of_slips             = farthest > 0.5 * contact->cell_size;
+    warned_of_slips             = farthest > 0.5 * contact->cell_size();
     if (!warned_of_slips)
       return;
     std::ostringstream text;

@@ -334,7 +334,7 @@ namespace Voussoir
       {
         const auto effort = contact->effort();
         return {{"largest penetration over cell size",
-                 effort.penetration / contact->cell_size},
+                 effort.penetration / contact->cell_size()},
                 {"largest residual", effort.residual},
                 {"most sweeps", effort.sweeps},
                 {"mean sweeps",

@@ -70,7 +70,7 @@ namespace Voussoir
         if (simulation->run.contact)
           keep_largest(penetration,
                        simulation->run.contact->effort().penetration /
-                         simulation->run.contact->cell_size);
+                         simulation->run.contact->cell_size());
         return result;
       }
 

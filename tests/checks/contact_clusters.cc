@@ -293,10 +293,10 @@ namespace Voussoir
       double tension, bond, cohesion, friction, opening;
       bool   locked;
 
-      Law(const ContactSolver &solver, const ContactPoint &point)
+      Law(const ContactPoints &contact, const ContactPoint &point)
         : opening(point.history.opening)
       {
-        const ContactSurface   &surface = solver.surfaces[point.surface];
+        const ContactSurface   &surface = contact.surfaces[point.surface];
         const InterfaceStrength s       = surface.law->strength(point.history);
         tension                         = s.tension * point.area;
         bond                            = s.bond * point.area;
@@ -410,7 +410,8 @@ namespace Voussoir
         const ConstantStrength smooth;
         ContactSurface         surface;
         surface.law = &smooth;
-        ContactSolver             solver({surface});
+        ContactPoints             contact({surface});
+        ContactSolver             solver;
         std::vector<ContactPoint> walls(2);
         for (unsigned int k = 0; k < 2; ++k)
           {
@@ -420,12 +421,15 @@ namespace Voussoir
             walls[k].area           = 1.;
             walls[k].initial_gap[0] = -0.1;
           }
-        solver.add_cluster(3, walls);
-        solver.prepare_step(
-          {unit_symmetric_tensor<3>(), Tensor<2, 3>(), Tensor<2, 3>()}, 1.);
+        contact.add_cluster(3, walls);
+        solver.prepare_step(contact,
+                            {unit_symmetric_tensor<3>(),
+                             Tensor<2, 3>(),
+                             Tensor<2, 3>()},
+                            1.);
         std::vector<Tensor<1, 3>> displacement(3), force(3);
-        solver.start(displacement, displacement);
-        return solver.solve(displacement, force).unsolved;
+        contact.start(displacement, displacement);
+        return solver.solve(contact, displacement, force).unsolved;
       }
 
       /** What is worst over several steps of many clusters. */
@@ -448,11 +452,12 @@ namespace Voussoir
             surfaces[s].key_depth = random.one_in(5) ? 0.3 : 0.;
           }
         const unsigned int n_nodes = cluster.inverse_mass.size();
-        ContactSolver      solver(surfaces);
-        solver.add_cluster(n_nodes, cluster.points);
-        solver.prepare_step(cluster.inverse_mass, 1.);
+        ContactPoints      contact(surfaces);
+        ContactSolver      solver;
+        contact.add_cluster(n_nodes, cluster.points);
+        solver.prepare_step(contact, cluster.inverse_mass, 1.);
         std::vector<Tensor<1, 3>> displacement(n_nodes), force(n_nodes);
-        solver.start(displacement, displacement);
+        contact.start(displacement, displacement);
         const double size = random.one_in(8) ? 1e-6 : 1.;
         for (unsigned int step = 0; step < 3; ++step)
           {
@@ -462,12 +467,12 @@ namespace Voussoir
                 size *
                 (cluster.inverse_mass[i] *
                  (cluster.exact ? random.small_integers() : random.vector()));
-            const auto before    = solver.points;
+            const auto before    = contact.points;
             const auto predicted = displacement;
-            const auto effort    = solver.solve(displacement, force);
+            const auto effort    = solver.solve(contact, displacement, force);
             worst.paths += effort.paths;
             worst.unsolved += effort.unsolved;
-            check(cluster, before, predicted, solver, displacement, worst);
+            check(cluster, before, predicted, contact, displacement, worst);
           }
       }
 
@@ -475,7 +480,7 @@ namespace Voussoir
       check(const Cluster                   &cluster,
             const std::vector<ContactPoint> &before,
             const std::vector<Tensor<1, 3>> &predicted,
-            const ContactSolver             &solver,
+            const ContactPoints             &contact,
             const std::vector<Tensor<1, 3>> &displacement,
             Worst                           &worst)
       {
@@ -484,7 +489,7 @@ namespace Voussoir
         std::vector<Tensor<1, 3>> force(predicted.size());
         for (unsigned int k = 0; k < before.size(); ++k)
           {
-            const ContactPoint &point = solver.points[k];
+            const ContactPoint &point = contact.points[k];
             keep_largest(force_size, point.force.norm());
             Tensor<1, 3> total = point.force;
             total[0] += before[k].uplift * before[k].area;
@@ -510,7 +515,7 @@ namespace Voussoir
         double violation = 0.;
         for (unsigned int k = 0; k < before.size(); ++k)
           {
-            const ContactPoint &point = solver.points[k];
+            const ContactPoint &point = contact.points[k];
             ++worst.number[static_cast<unsigned int>(point.status)];
             Tensor<1, 3> gap = point.frame * (displacement[point.second] -
                                               displacement[point.first]) +
@@ -522,7 +527,7 @@ namespace Voussoir
                                      cluster.inverse_mass[point.second];
             if (sum.norm() == 0.) // forces between held nodes do nothing
               continue;
-            const Law law(solver, before[k]);
+            const Law law(contact, before[k]);
             // nor does one across a gap that is held
             if (point.frame[0] * (sum * point.frame[0]) > 1e-12 * flexibility)
               keep_largest(violation,

@@ -109,7 +109,7 @@ namespace Voussoir
         // the nodal masses that meet are half a cell each, and stop each other
         verdicts.near("energy lost [%]",
                       100. * energy_loss,
-                      100. * simulation->run.contact->cell_size / length *
+                      100. * simulation->run.contact->cell_size() / length *
                         (wall ? 0.5 : 0.25),
                       0.02);
         if (wall)
@@ -126,7 +126,7 @@ namespace Voussoir
           }
         verdicts.below("penetration over cell size",
                        simulation->run.contact->effort().penetration /
-                         simulation->run.contact->cell_size,
+                         simulation->run.contact->cell_size(),
                        1e-10);
       }
 

@@ -85,7 +85,7 @@ namespace Voussoir
           }
         verdicts.below("penetration over cell size",
                        simulation->run.contact->effort().penetration /
-                         simulation->run.contact->cell_size,
+                         simulation->run.contact->cell_size(),
                        1e-10);
       }
 

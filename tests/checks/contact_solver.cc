@@ -123,16 +123,16 @@ namespace Voussoir
     /** How far a solution is from the law of contact, over the size of the
      *  predicted motion or of the forces. */
     double
-    violation(const ContactSolver             &solver,
+    violation(const ContactPoints             &contact,
               const std::vector<Tensor<1, 3>> &displacement)
     {
       double largest = 0., force_size = 1e-300;
-      for (const ContactPoint &point : solver.points)
+      for (const ContactPoint &point : contact.points)
         keep_largest(force_size, point.force.norm());
-      for (const ContactPoint &point : solver.points)
+      for (const ContactPoint &point : contact.points)
         {
           const InterfaceStrength s =
-            solver.surfaces[point.surface].law->strength(point.history);
+            contact.surfaces[point.surface].law->strength(point.history);
           Tensor<1, 3> g = point.frame * (displacement[point.second] -
                                           displacement[point.first]);
           g += point.initial_gap;
@@ -174,6 +174,7 @@ namespace Voussoir
 
     struct Made
     {
+      ContactPoints             contact;
       ContactSolver             solver;
       std::vector<Tensor<2, 3>> inverse_mass;
       std::vector<Tensor<1, 3>> displacement, predicted, force;
@@ -190,14 +191,15 @@ namespace Voussoir
     {
       ContactSurface surface;
       surface.law = &law;
-      Made made{ContactSolver({surface}), {}, {}, {}, {}, {}};
-      made.solver.add_cluster(n_nodes, random.cluster(n_nodes, n_points));
+      Made made{ContactPoints({surface}), {}, {}, {}, {}, {}, {}};
+      made.contact.add_cluster(n_nodes, random.cluster(n_nodes, n_points));
       for (unsigned int i = 0; i < n_nodes; ++i)
         made.inverse_mass.push_back(random.inverse_mass(anisotropy));
-      made.solver.prepare_step(made.inverse_mass, 1.);
+      made.solver.prepare_step(made.contact, made.inverse_mass, 1.);
       made.predicted = made.displacement = random.motion(n_nodes);
       made.force.resize(n_nodes);
-      made.effort = made.solver.solve(made.displacement, made.force);
+      made.effort =
+        made.solver.solve(made.contact, made.displacement, made.force);
       return made;
     }
 
@@ -207,11 +209,11 @@ namespace Voussoir
     {
     public:
       explicit WithoutFriction(const Made &made)
-        : n(made.solver.points.size())
+        : n(made.contact.points.size())
         , flexibility(n * n)
         , gap(n)
       {
-        const auto &points = made.solver.points;
+        const auto &points = made.contact.points;
         for (unsigned int k = 0; k < n; ++k)
           {
             gap[k] = points[k].frame[0] * (made.predicted[points[k].second] -
@@ -312,7 +314,7 @@ namespace Voussoir
             for (unsigned int k = 0; k < exact.size(); ++k)
               {
                 keep_largest(difference,
-                             std::abs(made.solver.points[k].force[0] -
+                             std::abs(made.contact.points[k].force[0] -
                                       exact[k]) /
                                std::max(size, 1.));
                 closed += exact[k] > 0. ? 1 : 0;
@@ -345,9 +347,9 @@ namespace Voussoir
                 const unsigned int n_nodes = 2 + trial % 4;
                 const Made         made =
                   make(random, law, n_nodes, n_nodes - 1, anisotropy);
-                keep_largest(worst, violation(made.solver, made.displacement));
+                keep_largest(worst, violation(made.contact, made.displacement));
                 unsolved += made.effort.unsolved;
-                for (const auto &point : made.solver.points)
+                for (const auto &point : made.contact.points)
                   ++number[static_cast<unsigned int>(point.status)];
               }
             const std::string masses =
@@ -386,7 +388,7 @@ namespace Voussoir
                 points[k].area   = random.number(0.5, 2.);
               }
             Made made = empty(law);
-            made.solver.add_cluster(n_planes + 1, points);
+            made.contact.add_cluster(n_planes + 1, points);
             made.inverse_mass.resize(n_planes + 1);
             made.inverse_mass[n_planes] =
               random.inverse_mass(trial % 3 == 0 ? 2. : 0.);
@@ -426,7 +428,7 @@ namespace Voussoir
                         Tensor<1, 3>({std::cos(angle), std::sin(angle), 0.}));
               }
             Made made = empty(law);
-            made.solver.add_cluster(8, points);
+            made.contact.add_cluster(8, points);
             for (unsigned int i = 0; i < 8; ++i)
               made.inverse_mass.push_back(random.inverse_mass(0.));
             worst.add(random, made);
@@ -439,7 +441,7 @@ namespace Voussoir
       {
         ContactSurface surface;
         surface.law = &law;
-        return {ContactSolver({surface}), {}, {}, {}, {}, {}};
+        return {ContactPoints({surface}), {}, {}, {}, {}, {}, {}};
       }
 
       /** What is worst over several steps of many clusters. */
@@ -452,7 +454,7 @@ namespace Voussoir
         add(Random &random, Made &made)
         {
           const unsigned int n_nodes = made.inverse_mass.size();
-          made.solver.prepare_step(made.inverse_mass, 1.);
+          made.solver.prepare_step(made.contact, made.inverse_mass, 1.);
           made.force.resize(n_nodes);
           made.displacement.resize(n_nodes);
           for (unsigned int step = 0; step < 4; ++step)
@@ -461,10 +463,11 @@ namespace Voussoir
               for (unsigned int i = 0; i < n_nodes; ++i)
                 if (made.inverse_mass[i].norm() > 0.)
                   made.displacement[i] += move[i];
-              made.effort = made.solver.solve(made.displacement, made.force);
+              made.effort =
+                made.solver.solve(made.contact, made.displacement, made.force);
               keep_largest(penetration, made.effort.penetration);
               unsolved += made.effort.unsolved;
-              for (const auto &point : made.solver.points)
+              for (const auto &point : made.contact.points)
                 ++number[static_cast<unsigned int>(point.status)];
             }
         }

@@ -87,7 +87,7 @@ namespace Voussoir
                        0.5);
         verdicts.below("penetration over cell size",
                        simulation->run.contact->effort().penetration /
-                         simulation->run.contact->cell_size,
+                         simulation->run.contact->cell_size(),
                        1e-10);
       }
 

@@ -244,7 +244,7 @@ namespace Voussoir
           "penetration over cell size",
           Utilities::MPI::max(simulation->run.contact->effort().penetration,
                               communicator) /
-            simulation->run.contact->cell_size,
+            simulation->run.contact->cell_size(),
           1e-12);
       }
 

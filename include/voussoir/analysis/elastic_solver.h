@@ -4,6 +4,7 @@
 #include <voussoir/analysis/multigrid.h>
 #include <voussoir/analysis/tied_nodes.h>
 #include <voussoir/base/error.h>
+#include <voussoir/constraints/contact.h>
 #include <voussoir/constraints/static_contact.h>
 #include <voussoir/fem/internal_force.h>
 #include <voussoir/fem/nodal_terms.h>

@@ -2,15 +2,13 @@
 #define voussoir_constraints_contact_h
 
 #include <voussoir/base/keyed_values.h>
-#include <voussoir/constraints/contact_exchange.h>
 #include <voussoir/constraints/contact_solver.h>
-#include <voussoir/constraints/interface_parameters.h>
+#include <voussoir/constraints/interface_points.h>
 #include <voussoir/constraints/projection.h>
 
 #include <nlohmann/json.hpp>
 
 #include <chrono>
-#include <optional>
 
 namespace Voussoir
 {
@@ -23,10 +21,14 @@ namespace Voussoir
   class Contact : public Projection
   {
   public:
-    /** @param interfaces of the mesh, which is split along them; must live
-     *  as long as this */
+    /** @param parameters of the interfaces of the mesh, which is split along
+     * them; must live as long as this */
     Contact(const Discretization       &discretization,
-            const InterfacesParameters &interfaces);
+            const InterfacesParameters &parameters);
+
+    /** The points, for those who find the same forces in another way. */
+    InterfacePoints &
+    points_of_interfaces();
 
     /** Lets friction follow the pressure as fast as waves of this speed [m/s]
      *  in the cells there allow (see ContactPoint::delay); returns the largest
@@ -138,7 +140,8 @@ namespace Voussoir
     first_nodes() const;
 
     /** Smallest side of a cell at the interfaces [m]. */
-    double cell_size = 0.;
+    double
+    cell_size() const;
 
     /** Global nodes of the clusters of this rank, which are those that its
      *  points name. */
@@ -146,36 +149,12 @@ namespace Voussoir
     cluster_nodes() const;
 
   private:
-    friend class StaticContact; // finds the same forces in its own way
-
     static constexpr unsigned int memory_width = 20;
     using PointMemory = std::array<double, memory_width>;
 
-    void
-    find_uplift(const Discretization &discretization);
-
-    /** Gives the points of an interface its uplift if its water is there. */
-    void
-    set_uplift(const unsigned int interface);
-
-    /** Lets the sides of an interface meet from now on; gap and slip begin at
-     *  the displacement of the nodes of the clusters. */
-    void
-    join(const unsigned int interface);
-
-    const InterfacesParameters                  &interfaces;
-    std::vector<std::string>                     names;
-    std::vector<unsigned int>                    interface_of_surface;
-    std::optional<ContactSolver>                 solver;
-    std::optional<ContactExchange>               exchange;
-    std::vector<dealii::Point<3>>                point_positions;
-    std::vector<dealii::types::global_dof_index> first_node, global_nodes;
-    std::vector<std::uint64_t>                   point_keys;
-    std::vector<bool>                            forces_unique; // each point
-    std::vector<double>                          uplift; // of each point [Pa]
-    std::vector<bool>                            has_water; // each interface
-    std::vector<PointMemory>                     point_memory;
-    MPI_Comm                                     communicator;
+    InterfacePoints          interfaces;
+    ContactSolver            solver;
+    std::vector<PointMemory> point_memory;
 
     struct Slid
     {

@@ -55,6 +55,61 @@ namespace Voussoir
     shear(const bool open, const double normal_force) const;
   };
 
+  /** A pair of coincident nodes on the two sides of a surface. */
+  struct ContactPoint
+  {
+    unsigned int         surface = 0;
+    unsigned int         first = 0, second = 0; // nodes of the solver
+    dealii::Tensor<2, 3> frame;       // rows n (first to second), t1, t2
+    double               area   = 0.; // [m2]
+    double               uplift = 0.; // pressure inside [Pa]
+
+    // before its interface is grouted, its sides move as if the other were not
+    // there
+    bool joined = true;
+
+    /**
+     * Friction follows the pressure p by its mean q, dq/dt = (p - q)/T, over
+     * some times T in which waves pass a cell. Under a law without this delay
+     * sliding of elastic bodies is ill-posed: waves along the interface grow
+     * the faster the shorter they are (Renardy 1992; Ranjith and Rice 2001),
+     * and the shortest ones of the mesh shake the sliding body on. Zero where
+     * as many points as nodes meet: there a pressure may be exchanged for
+     * shear, and what hangs on this choice must not be remembered.
+     */
+    double delay = 0.; // T [s]
+
+    // gap and slip where its nodes have not moved, in the frame [m]
+    dealii::Tensor<1, 3> initial_gap;
+
+    // what a checkpoint must hold, all in the frame
+    dealii::Tensor<1, 3> force; // on the second node, without the given one [N]
+    dealii::Tensor<1, 2> stick_point; // slip at the last stick [m]
+    InterfaceHistory     history;
+    double               bar_extension = 0.; // plastic [m]
+    double               largest_slip  = 0.; // distance from the start [m]
+    double               mean_pressure = 0.; // q, as a force [N]
+
+    // part of a change of the pressure that q follows in a step
+    double at_once = 1.;
+
+    // these follow from the motion
+    dealii::Tensor<1, 3> gap;      // opening and slip now [m]
+    dealii::Tensor<1, 3> velocity; // of the last half step [m/s]
+    ContactStatus        status = ContactStatus::sticking;
+    ContactLimits        limits;
+    double given_force = 0.; // uplift and bars, apart is positive [N]
+
+    /** What the shear may be by the pressure of before [N], with this
+     *  coefficient of friction. */
+    double
+    lasting_friction(const double coefficient) const
+    {
+      return coefficient * (1. - at_once) * mean_pressure;
+    }
+  };
+
+
   /**
    * Flexibility of the two nodes of a point, in the frame of its normal n and
    * the tangents t1, t2: a force F on the second node and -F on the first move

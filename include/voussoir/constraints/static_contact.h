@@ -1,7 +1,7 @@
 #ifndef voussoir_constraints_static_contact_h
 #define voussoir_constraints_static_contact_h
 
-#include <voussoir/constraints/contact.h>
+#include <voussoir/constraints/interface_points.h>
 
 namespace Voussoir
 {
@@ -17,10 +17,10 @@ namespace Voussoir
   {
   public:
     /**
-     * @param contact   whose points and laws these are
-     * @param stiffness of the body at the owned nodes [N/m], zero where held
+     * @param interfaces whose forces are found; must live as long as this
+     * @param stiffness  of the body at the owned nodes [N/m], zero where held
      */
-    StaticContact(Contact &contact, const Vector &stiffness);
+    StaticContact(InterfacePoints &interfaces, const Vector &stiffness);
 
     /** A stage starts from the forces and slips of now. */
     void
@@ -94,7 +94,7 @@ namespace Voussoir
     void
     add_forces(Vector &force) const;
 
-    Contact                          &contact;
+    InterfacePoints                  &interfaces;
     std::vector<double>               spring; // of each point [N/m]
     std::vector<dealii::Tensor<1, 3>> multiplier, last_change;
     std::vector<double>               cohesion; // its multiplier [N]

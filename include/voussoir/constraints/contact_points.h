@@ -1,0 +1,105 @@
+#ifndef voussoir_constraints_contact_points_h
+#define voussoir_constraints_contact_points_h
+
+#include <voussoir/constraints/contact_point.h>
+
+#include <vector>
+
+namespace Voussoir
+{
+  /** Where the energy of a surface went since the start [J]; what the contact
+   *  did on the bodies is minus the sum. */
+  struct ContactEnergy
+  {
+    double impact = 0., friction = 0., bond = 0., bars = 0., uplift = 0.;
+  };
+
+  /** What the points of a surface (one joint, one plane) have in common. */
+  struct ContactSurface
+  {
+    const InterfaceLaw *law = nullptr;
+
+    double key_depth = 0.; // no slip while the opening is below [m]
+
+    // bars across the surface, elastic and perfectly plastic, per area
+    double bar_stiffness = 0.; // [Pa/m]
+    double bar_strength  = 0.; // [Pa]
+
+    ContactEnergy energy;
+  };
+
+
+  /**
+   * The points of surfaces in contact, which share nodes where surfaces cross:
+   * their gaps, what they bear by their laws and what bars do there. What the
+   * forces are is found by ContactSolver in a step of time and by StaticContact
+   * at rest.
+   *
+   * Knows neither mesh nor ranks: its nodes are those of the clusters of one
+   * rank.
+   */
+  class ContactPoints
+  {
+  public:
+    explicit ContactPoints(const std::vector<ContactSurface> &surfaces = {});
+
+    /** Adds the points of a cluster, whose nodes are the next @p n_nodes ones.
+     *  Clusters of one point come first. */
+    void
+    add_cluster(const unsigned int               n_nodes,
+                const std::vector<ContactPoint> &points);
+
+    unsigned int
+    n_nodes() const;
+
+    /** Points that are a cluster of their own, which are the first ones. */
+    unsigned int
+    n_single() const;
+
+    /** Nodes and points that are solved together. */
+    struct Cluster
+    {
+      unsigned int first_node, n_nodes, first_point, n_points;
+    };
+
+    /** Those of several points. */
+    const std::vector<Cluster> &
+    clusters() const;
+
+    /** Sets gaps to those of a displacement; keys and bars follow them. */
+    void
+    find_gaps(const std::vector<dealii::Tensor<1, 3>> &displacement);
+
+    /** Sets gaps and velocities to those of a state. */
+    void
+    start(const std::vector<dealii::Tensor<1, 3>> &displacement,
+          const std::vector<dealii::Tensor<1, 3>> &velocity);
+
+    /** Evaluates the strengths and bars after the history of a point has been
+     *  set. */
+    void
+    update_limits(ContactPoint &point) const;
+
+    /** Sets q to the pressure of now. */
+    void
+    catch_up_with_pressure(ContactPoint &point) const;
+
+    /** Lets the bars at a point flow that its gap has stretched too far. */
+    void
+    yield_bars(ContactPoint &point) const;
+
+    /** All that acts on the second node of a point, in global coordinates [N].
+     */
+    static dealii::Tensor<1, 3>
+    total_force(const ContactPoint &point);
+
+    std::vector<ContactSurface> surfaces;
+    std::vector<ContactPoint>   points;
+
+  private:
+    unsigned int         number_of_nodes = 0, number_of_single = 0;
+    std::vector<Cluster> clusters_of_several;
+  };
+} // namespace Voussoir
+
+#endif

@@ -88,16 +88,14 @@ namespace Voussoir
   } // namespace
 
 
-  ElasticSolver::ElasticSolver(
-    const Discretization                                  &discretization,
-    const InternalForce                                   &internal_force,
-    const std::vector<const Material *>                   &materials,
-    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
-    const AffineConstraints<double>                       &constraints,
-    const NodalTerms                                      *springs,
-    Contact                                               *contact,
-    const Vector                                          *displacement,
-    const TiedNodes                                       *ties)
+  ElasticSolver::ElasticSolver(const Discretization &discretization,
+                               const InternalForce  &internal_force,
+                               const std::vector<const Material *> &materials,
+                               const AffineConstraints<double>     &constraints,
+                               const NodalTerms                    *springs,
+                               Contact                             *contact,
+                               const Vector    *displacement,
+                               const TiedNodes *ties)
     : discretization(discretization)
     , internal_force(internal_force)
     , springs(springs)
@@ -108,7 +106,7 @@ namespace Voussoir
       if (constraints.is_constrained(
             discretization.owned_dofs.nth_index_in_set(i)))
         held.push_back(i);
-    assemble(materials, material_of_cell, contact);
+    assemble(materials, contact);
     if (contact != nullptr)
       tie(*contact, *displacement);
     set_up_multigrid();
@@ -116,10 +114,8 @@ namespace Voussoir
 
 
   void
-  ElasticSolver::assemble(
-    const std::vector<const Material *>                   &materials,
-    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
-    const Contact                                         *contact)
+  ElasticSolver::assemble(const std::vector<const Material *> &materials,
+                          const Contact                       *contact)
   {
     IndexSet rows = discretization.relevant_dofs;
     rows.add_indices(constraints.get_local_lines()); // of nodes that lead
@@ -158,7 +154,7 @@ namespace Voussoir
       [&](const auto &cell, const auto &corners, const auto &dofs) {
         find_stiffness(trilinear,
                        corners,
-                       elasticities[material_of_cell(cell)],
+                       elasticities[discretization.grid.material(cell)],
                        cell_matrix);
         constraints.distribute_local_to_global(cell_matrix, dofs, matrix);
       });

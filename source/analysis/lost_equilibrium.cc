@@ -16,21 +16,16 @@ namespace Voussoir
     sets_at(const Discretization         &discretization,
             const types::global_dof_index node)
     {
-      std::vector<std::string> names;
       for (const auto &cell :
            discretization.dof_handler.active_cell_iterators())
         {
           if (!cell->is_locally_owned())
             continue;
           const auto nodes = discretization.cell_nodes(cell);
-          if (std::find(nodes.begin(), nodes.end(), node) == nodes.end())
-            continue;
-          for (const std::string &name : discretization.grid.cell_set_names())
-            if (discretization.grid.in_cell_set(cell, name))
-              names.push_back(name);
-          return names;
+          if (std::find(nodes.begin(), nodes.end(), node) != nodes.end())
+            return discretization.grid.sets_of(cell);
         }
-      return names;
+      return {};
     }
 
 

@@ -27,12 +27,9 @@ namespace Voussoir
     AffineConstraints<double>
     modal_constraints(const ModalModel &model, const ModeParameters &parameters)
     {
-      const auto held = among(model.material_names, parameters.held_materials);
-      return model.discretization.make_constraints(
+      return model.solid.discretization.make_constraints(
         model.boundaries.supports_with_absorbing(false),
-        [&](const Grid::Cell &cell) {
-          return held[model.material_of_cell(cell)];
-        });
+        among(model.material_names, parameters.held_materials));
     }
 
 
@@ -41,7 +38,7 @@ namespace Voussoir
     typical_stiffness(const ModalModel &model)
     {
       double modulus = 0.;
-      for (const Material *material : model.materials)
+      for (const Material *material : model.solid.materials)
         modulus =
           std::max(modulus, material->elastic_constants().young_modulus);
       const AcousticSpace &space = model.reservoir->space;
@@ -110,10 +107,10 @@ namespace Voussoir
                            const ModeParameters &parameters)
     : model(model)
     , parameters(parameters)
-    , moduli_as_given(model.internal_force.with(
-        std::vector<double>(model.materials.size(), 1.)))
+    , moduli_as_given(model.solid.internal_force.with(
+        std::vector<double>(model.solid.materials.size(), 1.)))
     , constraints(modal_constraints(model, parameters))
-    , from(model.discretization.create_vector())
+    , from(model.solid.discretization.create_vector())
     , to(from)
   {
     if (model.contact != nullptr)
@@ -139,9 +136,9 @@ namespace Voussoir
         else if (contact.surfaces()[point.surface].bar_stiffness > 0.)
           sums[2] += 1;
       }
-    sums   = sum_over_ranks(sums, model.discretization.grid.communicator());
+    sums   = sum_over_ranks(sums, model.solid.grid().communicator());
     points = {sums[0], sums[1], sums[2] > 0};
-    ties.emplace(model.discretization, contact, is_closed);
+    ties.emplace(model.solid.discretization, contact, is_closed);
     constraints = ties->added_to(constraints);
   }
 
@@ -153,11 +150,10 @@ namespace Voussoir
       among(model.material_names, parameters.massless_materials);
     std::vector<double> density;
     for (unsigned int m = 0; m < massless.size(); ++m)
-      density.push_back(massless[m] ? 0. :
-                                      model.materials[m]->inertial_density());
-    const Discretization &discretization = model.discretization;
-    structure =
-      LumpedMass(discretization, density, density, model.material_of_cell).mass;
+      density.push_back(
+        massless[m] ? 0. : model.solid.materials[m]->inertial_density());
+    const Discretization &discretization = model.solid.discretization;
+    structure = LumpedMass(discretization, density, density).mass;
     if (ties)
       ties->collect(structure);
     for (unsigned int i = 0; i < structure.locally_owned_size(); ++i)
@@ -170,10 +166,9 @@ namespace Voussoir
   void
   ModalSystem::set_up()
   {
-    solver.emplace(model.discretization,
+    solver.emplace(model.solid.discretization,
                    moduli_as_given,
-                   model.materials,
-                   model.material_of_cell,
+                   model.solid.materials,
                    constraints,
                    nullptr,
                    nullptr,
@@ -283,7 +278,7 @@ namespace Voussoir
   {
     const MPI_Comm communicator = structure.get_mpi_communicator();
     Waves          waves(
-      model.discretization.node_positions,
+      model.solid.discretization.node_positions,
       [&](const unsigned int node) {
         double m = 0.; // a roller may hold some of the directions
         for (unsigned int d = 0; d < 3; ++d)

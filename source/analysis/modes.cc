@@ -237,8 +237,7 @@ namespace Voussoir
     bool surface = false;
     for (const double value : model.reservoir->inverse_storage)
       surface = surface || value == 0.;
-    if (Utilities::MPI::logical_or(surface,
-                                   model.discretization.grid.communicator()))
+    if (Utilities::MPI::logical_or(surface, model.solid.grid().communicator()))
       return;
     throw UserError("\"Free surface\" in section \"Reservoir\" names no faces "
                     "of the water, which cannot move without a surface in the "
@@ -314,7 +313,7 @@ namespace Voussoir
                      system.precondition(motion, force);
                    },
                    system.size(),
-                   model.discretization.grid.communicator(),
+                   model.solid.grid().communicator(),
                    [&](const unsigned int iterations,
                        const unsigned int found,
                        const double       residual) {

@@ -35,16 +35,17 @@ namespace Voussoir
 
     // What a load does before the earthquake, on held nodes too.
     Vector
-    force_of(Load                 &load,
+    force_of(const Load           &load,
              const Discretization &discretization,
              const NodalTerms     &terms)
     {
       Vector      force = discretization.create_vector();
-      NodalForces forces(terms.nodes.size());
+      NodalForces forces(terms);
       load.add_forces(0., forces);
-      for (unsigned int slot = 0; slot < forces.size(); ++slot)
+      for (unsigned int slot = 0; slot < terms.nodes.size(); ++slot)
         for (unsigned int d = 0; d < 3; ++d)
-          force.local_element(3 * terms.nodes[slot] + d) = forces[slot][d];
+          force.local_element(3 * terms.nodes[slot] + d) =
+            forces.of_slot(slot)[d];
       load.add_steady_force(force);
       return force;
     }
@@ -62,15 +63,17 @@ namespace Voussoir
       /** Applies a stage, whose loads are those of these names; returns what
        *  the summary says of it. */
       nlohmann::json
-      apply(const std::vector<std::string>      &names,
-            const std::map<std::string, Load *> &load_of);
+      apply(const std::vector<std::string>            &names,
+            const std::map<std::string, const Load *> &load_of);
 
       /** After the stages so far; its force is that of the supports. */
       InitialState state;
 
     private:
       void
-      add_load(const std::string &name, Load &load, nlohmann::json &report);
+      add_load(const std::string &name,
+               const Load        &load,
+               nlohmann::json    &report);
 
       /** What grows along a stage. */
       struct LoadState
@@ -181,31 +184,31 @@ namespace Voussoir
       : model(model)
       , parameters(parameters)
       , log(log)
-      , materials(for_each_material(model.materials,
+      , materials(for_each_material(model.solid.materials,
                                     [](const Material &material) {
                                       return &material.at_rest();
                                     }))
-      , internal_force(model.discretization,
+      , internal_force(model.solid.discretization,
                        {materials.begin(), materials.end()},
-                       for_each_material(model.materials,
+                       for_each_material(model.solid.materials,
                                          [](const Material &material) {
                                            return material.factor_at_rest();
                                          }))
       , on_springs(parameters.supports == StaticSupports::springs)
-      , constraints(model.discretization.make_constraints(
+      , constraints(model.solid.discretization.make_constraints(
           on_springs ? model.boundaries.supports.list() :
                        model.boundaries.supports_with_absorbing(
                          parameters.supports == StaticSupports::roller)))
-      , loads(model.discretization.create_vector())
+      , loads(model.solid.discretization.create_vector())
     {
       const Timer clock;
       state.displacement = state.temperature = state.force = loads;
       state.material_memory = internal_force.new_memory();
       make_solver();
       if (model.contact != nullptr || internal_force.has_memory())
-        relaxation = std::make_unique<Relaxation>(model.discretization,
+        relaxation = std::make_unique<Relaxation>(model.solid.discretization,
                                                   internal_force,
-                                                  model.mass,
+                                                  model.solid.mass,
                                                   model.terms,
                                                   constraints,
                                                   on_springs,
@@ -219,10 +222,9 @@ namespace Voussoir
     StaticStages::make_solver()
     {
       solver =
-        std::make_unique<ElasticSolver>(model.discretization,
+        std::make_unique<ElasticSolver>(model.solid.discretization,
                                         internal_force,
                                         materials,
-                                        model.material_of_cell,
                                         constraints,
                                         on_springs ? &model.terms : nullptr,
                                         model.contact,
@@ -231,8 +233,8 @@ namespace Voussoir
 
 
     nlohmann::json
-    StaticStages::apply(const std::vector<std::string>      &names,
-                        const std::map<std::string, Load *> &load_of)
+    StaticStages::apply(const std::vector<std::string>            &names,
+                        const std::map<std::string, const Load *> &load_of)
     {
       stage  = names;
       before = state.displacement;
@@ -270,10 +272,11 @@ namespace Voussoir
 
     void
     StaticStages::add_load(const std::string &name,
-                           Load              &load,
+                           const Load        &load,
                            nlohmann::json    &report)
     {
-      const Vector force = force_of(load, model.discretization, model.terms);
+      const Vector force =
+        force_of(load, model.solid.discretization, model.terms);
       load.add_temperature(state.temperature);
       const Tensor<1, 3> sum = resultant(force);
       log.line("  load ", name, ": resultant ", meganewtons(sum));
@@ -440,7 +443,7 @@ namespace Voussoir
         std::vector<double>{memory.losses().material - lost_before,
                             state.material_memory.losses().material -
                               lost_before},
-        model.discretization.grid.communicator());
+        model.solid.grid().communicator());
       const double of_losses =
         std::abs(losses[1] - losses[0]) / std::max(losses[0], losses[1]);
 
@@ -510,7 +513,7 @@ namespace Voussoir
           "The static stage \"" + join(stage, ", ") +
             "\" comes to no equilibrium: after " +
             std::to_string(motion.steps) + " steps of damped motion " +
-            description_of_motion(model.discretization,
+            description_of_motion(model.solid.discretization,
                                   model.contact,
                                   before,
                                   state.displacement,
@@ -569,7 +572,7 @@ namespace Voussoir
                              const double          before) const
     {
       return Utilities::MPI::max(memory.losses().material - before,
-                                 model.discretization.grid.communicator()) > 0.;
+                                 model.solid.grid().communicator()) > 0.;
     }
 
 
@@ -590,7 +593,7 @@ namespace Voussoir
       report["load increments"] = increments;
       report["dissipated by materials [J]"] =
         Utilities::MPI::sum(state.material_memory.losses().material,
-                            model.discretization.grid.communicator());
+                            model.solid.grid().communicator());
       report["found by multigrid"]       = by_multigrid;
       report["steps of damped motion"]   = damped_steps;
       report["sum of loads so far [N]"]  = to_json(resultant(loads));
@@ -608,9 +611,10 @@ namespace Voussoir
                  Log                    &log,
                  nlohmann::json         &summary)
     {
-      const Timer                         clock;
-      const std::map<std::string, Load *> load_of(loads.begin(), loads.end());
-      StaticStages                        stages(model, parameters, log);
+      const Timer                               clock;
+      const std::map<std::string, const Load *> load_of(loads.begin(),
+                                                        loads.end());
+      StaticStages                              stages(model, parameters, log);
       for (const auto &stage : parameters.stage_names())
         summary["stages"].push_back(stages.apply(stage, load_of));
       summary["seconds"] = clock.wall_time();
@@ -630,7 +634,7 @@ namespace Voussoir
     std::swap(state.reaction, state.force);
     if (model.contact != nullptr)
       {
-        state.contact_force = model.discretization.create_vector();
+        state.contact_force = model.solid.discretization.create_vector();
         model.contact->add_forces(1., state.contact_force);
       }
     return state;

@@ -414,10 +414,7 @@ namespace Voussoir
            section             = section_of(section))
         declared_sections.insert(section);
 
-    for (const auto &[path, value] : values)
-      if (const auto entry = declared.find(path); entry != declared.end())
-        set_entry(prm, path, value.text, value.place, *entry->second.pattern);
-
+    parse_declared(prm);
     const auto refuse_section = [&](const std::string &section,
                                     const std::string &place) {
       const std::string        parent = section_of(section);
@@ -455,6 +452,16 @@ namespace Voussoir
                           entry_of(path) + "\" " + in_section(section) +
                           known_names(entry_of(path), siblings) + ".");
         }
+  }
+
+
+  void
+  ParameterFile::parse_declared(dealii::ParameterHandler &prm) const
+  {
+    const auto declared = declared_entries(prm);
+    for (const auto &[path, value] : values)
+      if (const auto entry = declared.find(path); entry != declared.end())
+        set_entry(prm, path, value.text, value.place, *entry->second.pattern);
   }
 
 

@@ -9,8 +9,9 @@ namespace Voussoir
 
 
   Contact::Contact(const Discretization       &discretization,
-                   const InterfacesParameters &parameters)
-    : interfaces(discretization, parameters)
+                   const InterfacesParameters &parameters,
+                   const InterfaceSurfaces    &surfaces)
+    : interfaces(discretization, parameters, surfaces)
     , displacement(interfaces.n_nodes())
     , force(displacement.size())
     , applied(interfaces.exchange().owned_nodes().size())

@@ -239,13 +239,14 @@ namespace Voussoir
   }
 
 
-  void
-  InterfacesParameters::split(CoarseMesh &mesh)
+  InterfaceSurfaces
+  InterfacesParameters::split(CoarseMesh &mesh) const
   {
-    for (InterfaceParameters &interface : list)
+    InterfaceSurfaces result;
+    for (const InterfaceParameters &interface : list)
       {
         const std::string place = "section \"" + section(interface) + "\"";
-        interface.surfaces.clear();
+        std::vector<std::string> &surfaces = result.of_interface.emplace_back();
         if (const auto sets = split_list(interface.between); !sets.empty())
           {
             if (mesh.face_sets.count(interface.name) > 0)
@@ -255,7 +256,7 @@ namespace Voussoir
                               place + ".");
             mesh.face_sets[interface.name] =
               faces_between(mesh, sets[0], sets[1], "\"Between\" in " + place);
-            interface.surfaces.push_back(interface.name);
+            surfaces.push_back(interface.name);
           }
         for (const std::string &pattern : split_list(interface.face_sets))
           {
@@ -267,7 +268,7 @@ namespace Voussoir
                 if (matches(set.first, pattern))
                   {
                     found = true;
-                    interface.surfaces.push_back(set.first);
+                    surfaces.push_back(set.first);
                   }
               }
             if (!found)
@@ -276,7 +277,7 @@ namespace Voussoir
                               known_names(pattern, known) + ".");
           }
       }
-    const auto all = surfaces();
+    const auto all = result.names();
     for (auto name = all.begin(); name != all.end(); ++name)
       if (std::find(all.begin(), name, *name) != name)
         throw UserError("The face set \"" + *name +
@@ -284,17 +285,16 @@ namespace Voussoir
                         "name it in one only.");
     if (!all.empty())
       split_interfaces(mesh, all, "Section \"Interfaces\"");
+    return result;
   }
 
 
   std::vector<std::string>
-  InterfacesParameters::surfaces() const
+  InterfaceSurfaces::names() const
   {
     std::vector<std::string> all;
-    for (const InterfaceParameters &interface : list)
-      all.insert(all.end(),
-                 interface.surfaces.begin(),
-                 interface.surfaces.end());
+    for (const auto &surfaces : of_interface)
+      all.insert(all.end(), surfaces.begin(), surfaces.end());
     return all;
   }
 } // namespace Voussoir

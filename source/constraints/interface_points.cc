@@ -28,13 +28,14 @@ namespace Voussoir
 
 
   InterfacePoints::InterfacePoints(const Discretization       &discretization,
-                                   const InterfacesParameters &interfaces)
+                                   const InterfacesParameters &interfaces,
+                                   const InterfaceSurfaces    &face_sets)
     : communicator(discretization.grid.communicator())
-    , names(interfaces.surfaces())
+    , names(face_sets.names())
     , interfaces(interfaces)
   {
     for (unsigned int i = 0; i < interfaces.list.size(); ++i)
-      for (std::size_t s = 0; s < interfaces.list[i].surfaces.size(); ++s)
+      for (std::size_t s = 0; s < face_sets.of_interface[i].size(); ++s)
         {
           ContactSurface surface;
           surface.law       = interfaces.list[i].law.get();

@@ -85,16 +85,71 @@ namespace Voussoir
                             Patterns::Selection(
                               choices(Registry<Base>::names())),
                             "Its class; the other entries depend on it.");
-          auto &list =
-            can_rest && !declared_active(prm, file, path) ? inactive : objects;
-          list.emplace_back(
-            name,
-            Registry<Base>::create(file.given(path + "/Class", default_class),
-                                   "\"Class\" in section \"" + path + "\""));
-          list.back().second->declare_parameters(prm);
+          const bool active = !can_rest || declared_active(prm, file, path);
+          declare_one(prm,
+                      name,
+                      path,
+                      file.given(path + "/Class", default_class),
+                      "\"Class\" in section \"" + path + "\"",
+                      active);
         });
     });
   }
+
+
+  template <typename Base>
+  void
+  NamedObjects<Base>::declare_one(ParameterHandler  &prm,
+                                  const std::string &name,
+                                  const std::string &place,
+                                  const std::string &class_name,
+                                  const std::string &place_of_class,
+                                  const bool         active)
+  {
+    auto object = Registry<Base>::create(class_name, place_of_class);
+    object->declare_parameters(prm);
+    (active ? objects : inactive).emplace_back(name, object.get());
+    (active ? origins : origins_of_inactive)
+      .push_back({place, class_name, std::move(object)});
+  }
+
+
+  template <typename Base>
+  void
+  NamedObjects<Base>::for_each(
+    const std::function<void(const std::string &, Base &)> &visit)
+  {
+    for (Origin &origin : origins)
+      visit(origin.place, *origin.object);
+  }
+
+
+  template <typename Base>
+  typename NamedObjects<Base>::List
+  NamedObjects<Base>::make(const ParameterFile &file) const
+  {
+    List list;
+    for (unsigned int i = 0; i < objects.size(); ++i)
+      {
+        const auto &[place, class_name, read] = origins[i];
+        auto             object = Registry<Base>::create(class_name, place);
+        ParameterHandler prm;
+        for (const std::string &section : split_list(place, '/'))
+          prm.enter_subsection(section);
+        object->declare_parameters(prm);
+        for (unsigned int n = split_list(place, '/').size(); n > 0; --n)
+          prm.leave_subsection();
+        file.parse_declared(prm);
+        list.emplace_back(objects[i].first, std::move(object));
+      }
+    return list;
+  }
+
+
+  template class NamedObjects<Material>;
+  template class NamedObjects<Load>;
+  template class NamedObjects<Projection>;
+  template class NamedObjects<Observer>;
 
 
   void
@@ -275,13 +330,12 @@ namespace Voussoir
       for (const std::string &name : names)
         if (Registry<Observer>::entries().count(name) > 0)
           {
-            observers.emplace_back(
-              name,
-              Registry<Observer>::create(name,
-                                         "\"Observers\" in section "
-                                         "\"Output\""));
             in_section(prm, name, [&] {
-              observers.back().second->declare_parameters(prm);
+              observers.declare_one(prm,
+                                    name,
+                                    "Output/" + name,
+                                    name,
+                                    "\"Observers\" in section \"Output\"");
             });
           }
     });
@@ -289,7 +343,7 @@ namespace Voussoir
 
 
   void
-  Case::check() const
+  Case::check()
   {
     if (generator)
       generator->check();
@@ -298,8 +352,9 @@ namespace Voussoir
     if (materials.objects.empty())
       throw UserError("\"Names\" in section \"Materials\" is empty; name at "
                       "least one material and give it cell sets.");
-    for (const auto &[name, material] : materials.objects)
-      material->check("Section \"Materials/" + name + "\"");
+    materials.for_each([](const std::string &place, Material &material) {
+      material.check("Section \"" + place + "\"");
+    });
     if (discretization.one_point(false) && discretization.degree > 1)
       throw UserError("\"Quadrature\" in section \"Discretization\" is \"" +
                       option_name(discretization.quadrature) +
@@ -308,7 +363,7 @@ namespace Voussoir
                       " cannot do with; set \"Degree = 1\", or take \"Gauss\" "
                       "or \"Gauss-Lobatto\".");
     interfaces.check();
-    static_state.check(load_list(), interfaces);
+    static_state.check(loads.objects, interfaces);
     modes.check(material_names(), boundaries);
     ground_motion.check();
     damping.check(modes.number);
@@ -344,7 +399,7 @@ namespace Voussoir
 
 
   CoarseMesh
-  Case::make_mesh(std::ostream &log)
+  Case::make_mesh(std::ostream &log) const
   {
     CoarseMesh mesh;
     if (generator)
@@ -360,7 +415,6 @@ namespace Voussoir
     log << describe_mesh(mesh);
     if (generator)
       log << generator->describe(mesh);
-    interfaces.split(mesh);
     return mesh;
   }
 
@@ -427,7 +481,7 @@ namespace Voussoir
   {
     std::vector<const Material *> list;
     for (const auto &item : materials.objects)
-      list.push_back(item.second.get());
+      list.push_back(item.second);
     return list;
   }
 
@@ -439,16 +493,6 @@ namespace Voussoir
     for (const auto &item : materials.objects)
       names.push_back(item.first);
     return names;
-  }
-
-
-  NamedLoads
-  Case::load_list() const
-  {
-    NamedLoads list;
-    for (const auto &[name, load] : loads.objects)
-      list.emplace_back(name, load.get());
-    return list;
   }
 
 

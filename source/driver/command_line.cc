@@ -144,7 +144,9 @@ namespace Voussoir
 
 
     Estimate
-    estimate(Case &parameters, RunOptions options, const MPI_Comm communicator)
+    estimate(const Case    &parameters,
+             RunOptions     options,
+             const MPI_Comm communicator)
     {
       options.quiet    = true;
       options.validate = true;
@@ -153,7 +155,7 @@ namespace Voussoir
       const double seconds = double(run.n_steps()) * seconds_per_step(run);
       Utilities::System::MemoryStats memory;
       Utilities::System::get_memory_stats(memory);
-      return {simulation.model.discretization.dof_handler.n_dofs(),
+      return {simulation.model.solid.discretization.dof_handler.n_dofs(),
               run.time_step.length,
               seconds,
               Utilities::MPI::max(memory.VmHWM / 1024., communicator),
@@ -163,7 +165,9 @@ namespace Voussoir
 
 
     void
-    validate(Case &parameters, RunOptions options, const MPI_Comm communicator)
+    validate(const Case    &parameters,
+             RunOptions     options,
+             const MPI_Comm communicator)
     {
       const Estimate found = estimate(parameters, options, communicator);
       if (Utilities::MPI::this_mpi_process(communicator) > 0)

@@ -184,7 +184,7 @@ namespace Voussoir
       const double              middle  = middle_frequency(accelerations);
       const std::vector<double> carried = model.carried_frequencies();
       for (unsigned int m = 0; m < carried.size(); ++m)
-        if (carried[m] > 0. && model.materials[m]->inertia_factor == 1. &&
+        if (carried[m] > 0. && model.solid.materials[m]->inertia_factor == 1. &&
             fairly * carried[m] < middle)
           log.warn("half of the power of the ground motion lies above ",
                    middle,
@@ -221,14 +221,16 @@ namespace Voussoir
         return a.lower < b.lower;
       });
       // of each material the face that reaches highest so far
-      std::vector<const SideFace *> highest(model.materials.size(), nullptr);
+      std::vector<const SideFace *> highest(model.solid.materials.size(),
+                                            nullptr);
       for (const SideFace &face : faces)
         {
           const double least = 1e-6 * (face.upper - face.lower);
           for (unsigned int m = 0; m < highest.size(); ++m)
             if (highest[m] != nullptr &&
                 highest[m]->upper > face.lower + least &&
-                !alike(*model.materials[m], *model.materials[face.material]))
+                !alike(*model.solid.materials[m],
+                       *model.solid.materials[face.material]))
               {
                 const auto &names = model.parameters.materials.objects;
                 log.warn("the sides of the model are at the same height of \"",
@@ -279,8 +281,8 @@ namespace Voussoir
       }
     if (model.rigid_base())
       {
-        if (std::all_of(model.materials.begin(),
-                        model.materials.end(),
+        if (std::all_of(model.solid.materials.begin(),
+                        model.solid.materials.end(),
                         [](const Material *material) {
                           return material->inertia_factor < 1.;
                         }))
@@ -298,8 +300,8 @@ namespace Voussoir
     if (parameters.wave.type == WaveType::vertical)
       check_layers(model, log);
     auto field = make_free_field(model.boundary,
-                                 model.discretization,
-                                 model.materials,
+                                 model.solid.discretization,
+                                 model.solid.materials,
                                  parameters.discretization.quadrature,
                                  damping,
                                  parameters.wave,

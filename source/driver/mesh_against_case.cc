@@ -41,6 +41,7 @@ namespace Voussoir
     public:
       MeshAgainstCase(const Case                      &parameters,
                       const CoarseMesh                &mesh,
+                      const InterfaceSurfaces         &surfaces,
                       const std::vector<unsigned int> &material_of_cell,
                       Log                             &log)
         : parameters(parameters)
@@ -66,7 +67,7 @@ namespace Voussoir
              {supports.roller, supports.antisymmetric})
           add_faces(held, mesh, list);
 
-        for (const std::string &surface : parameters.interfaces.surfaces())
+        for (const std::string &surface : surfaces.names())
           for (const std::string &side : {surface, surface + other_side})
             add_faces(used, mesh, side);
         for (const auto &object : parameters.loads.objects)
@@ -317,10 +318,11 @@ namespace Voussoir
   void
   check_mesh_against_case(const Case                      &parameters,
                           const CoarseMesh                &mesh,
+                          const InterfaceSurfaces         &surfaces,
                           const std::vector<unsigned int> &materials,
                           Log                             &log)
   {
-    const MeshAgainstCase check(parameters, mesh, materials, log);
+    const MeshAgainstCase check(parameters, mesh, surfaces, materials, log);
     check.check_size();
     check.check_upward_axis();
     check.check_outer_sides();

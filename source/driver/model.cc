@@ -41,14 +41,16 @@ namespace Voussoir
     // Parts of the body that are tied to nothing were forgotten when nodes were
     // merged; a body that is held nowhere may be free to fly.
     void
-    check_parts(const Case &parameters, const CoarseMesh &solid, Log &log)
+    check_parts(const Case              &parameters,
+                const CoarseMesh        &solid,
+                const InterfaceSurfaces &surfaces,
+                Log                     &log)
     {
       const BoundaryParameters &boundaries = parameters.boundaries;
       std::vector<std::string>  holding;
       for (const Support &support : boundaries.supports_with_absorbing(false))
         holding.push_back(support.set);
-      const auto parts =
-        find_parts(solid, holding, parameters.interfaces.surfaces());
+      const auto parts = find_parts(solid, holding, surfaces.names());
       if (parts.size() == 1)
         return;
       std::vector<std::string> held, loose;
@@ -74,12 +76,13 @@ namespace Voussoir
 
     // What acts on the faces of an interface acts on one of its sides only.
     void
-    say_sets_on_interfaces(const Case       &parameters,
-                           const CoarseMesh &solid,
-                           Log              &log)
+    say_sets_on_interfaces(const Case              &parameters,
+                           const CoarseMesh        &solid,
+                           const InterfaceSurfaces &surfaces,
+                           Log                     &log)
     {
       std::set<std::pair<unsigned int, unsigned int>> sides;
-      for (const std::string &surface : parameters.interfaces.surfaces())
+      for (const std::string &surface : surfaces.names())
         for (const std::string &side : {surface, surface + other_side})
           for (const CoarseMesh::Face &face : solid.face_sets.at(side))
             sides.emplace(face.cell, face.face);
@@ -116,70 +119,45 @@ namespace Voussoir
     }
 
 
-    std::vector<double>
-    inertial_densities(const std::vector<const Material *> &materials)
+    Grid::Materials
+    materials_of_grid(const Case &parameters, std::vector<unsigned int> of_cell)
     {
-      std::vector<double> values;
-      for (const Material *material : materials)
-        values.push_back(material->inertial_density());
-      return values;
+      Grid::Materials result{std::move(of_cell), {}};
+      for (const Material *material : parameters.material_list())
+        result.costs.push_back(
+          material->relative_cost() *
+          parameters.discretization.relative_cost(material->n_history() > 0));
+      return result;
     }
 
 
-    std::vector<bool>
-    have_memory(const std::vector<const Material *> &materials)
+    using Loads =
+      std::vector<std::pair<std::string, std::unique_ptr<const Load>>>;
+
+
+    Loads
+    prepared_loads(const Case &parameters, const Solid &solid, Log &log)
     {
-      return for_each_material(materials, [](const Material &material) {
-        return material.n_history() > 0;
-      });
-    }
-
-
-    // Rock of reduced inertia takes no inertial earthquake force.
-    std::vector<double>
-    driven_densities(const std::vector<const Material *> &materials)
-    {
-      std::vector<double> values;
-      for (const Material *material : materials)
-        values.push_back(material->inertia_factor < 1. ? 0. :
-                                                         material->density);
-      return values;
-    }
-
-
-    // All loads know their nodes then; those in no static stage are returned.
-    std::vector<NodalLoad *>
-    prepared_loads(const Model &model, NodalTerms &terms, Log &log)
-    {
-      const Case           &parameters = model.parameters;
-      const LoadedModel     loaded{model.discretization,
-                               model.materials,
-                               model.material_of_cell(),
-                               parameters.file,
-                               log};
-      std::set<std::string> staged;
-      for (const auto &stage : parameters.static_state.stage_names())
-        staged.insert(stage.begin(), stage.end());
-      std::vector<NodalLoad *> running;
-      for (const auto &[name, load] : parameters.loads.objects)
+      Loads list;
+      for (auto &[name, load] : parameters.loads.make(parameters.file))
         {
-          load->prepare(loaded, terms, "Loads/" + name);
-          if (staged.count(name) == 0)
-            running.push_back(load.get());
+          load->prepare(solid, parameters.file, "Loads/" + name, log);
+          list.emplace_back(name, std::move(load));
         }
-      return running;
+      return list;
     }
 
 
     AddedMass
-    mass_added_to(NodalTerms                &terms,
-                  const Discretization      &discretization,
-                  const ReservoirParameters &water,
-                  Log                       &log)
+    make_added_mass(const Discretization      &discretization,
+                    const ReservoirParameters &water,
+                    Log                       &log)
     {
       return water.model == ReservoirModel::added_mass ?
-               add_westergaard_mass(
-                 discretization, water.added_mass, water.density, terms, log) :
+               westergaard_mass(discretization,
+                                water.added_mass,
+                                water.density,
+                                log) :
                AddedMass();
     }
 
@@ -188,20 +166,16 @@ namespace Voussoir
     make_reservoir(const Case           &parameters,
                    const CoarseMesh     &water_mesh,
                    const Discretization &discretization,
-                   NodalTerms           &terms,
                    Log                  &log)
     {
       if (parameters.reservoir.model != ReservoirModel::compressible)
         return nullptr;
-      return std::make_shared<const Reservoir>(water_mesh,
-                                               parameters.grid,
-                                               parameters.reservoir,
-                                               discretization,
-                                               terms,
-                                               log);
+      return std::make_shared<const Reservoir>(
+        water_mesh, parameters.grid, parameters.reservoir, discretization, log);
     }
 
 
+    // Water that the run does not meet.
     std::shared_ptr<const Reservoir>
     make_reservoir_of_modes(const Case                             &parameters,
                             const CoarseMesh                       &water_mesh,
@@ -213,9 +187,26 @@ namespace Voussoir
         return nullptr;
       if (of_the_run)
         return of_the_run;
-      NodalTerms unused; // the run does not meet this water
       return std::make_shared<const Reservoir>(
-        water_mesh, parameters.grid, parameters.reservoir, solid, unused, log);
+        water_mesh, parameters.grid, parameters.reservoir, solid, log);
+    }
+
+
+    NodalTerms
+    assembled_terms(const Solid             &solid,
+                    const AbsorbingBoundary &boundary,
+                    const Loads             &loads,
+                    const AddedMass         &added_mass,
+                    const Reservoir         *reservoir)
+    {
+      NodalTerms terms(solid.discretization.n_owned_nodes());
+      terms.add(boundary.terms());
+      for (const auto &load : loads)
+        terms.add_nodes(load.second->nodes());
+      terms.add(added_mass.terms);
+      if (reservoir != nullptr)
+        terms.add_nodes(reservoir->wet_nodes());
+      return terms;
     }
 
 
@@ -263,59 +254,13 @@ namespace Voussoir
     }
 
 
-    // A component of a node has one prescribed motion.
-    void
-    refuse_contradictions(const Model                     &model,
-                          const std::vector<Projection *> &constraints)
-    {
-      const auto &names = model.parameters.projections.objects;
-      std::map<std::pair<unsigned int, unsigned int>, unsigned int> first;
-      unsigned int                                                  found = 0;
-      for (unsigned int i = 0; i < constraints.size(); ++i)
-        for (unsigned int d = 0; d < 3; ++d)
-          if (constraints[i]->prescribed_components()[d])
-            for (const unsigned int node : constraints[i]->nodes())
-              if (const auto other = first.emplace(std::make_pair(node, d), i);
-                  !other.second)
-                found = std::max<unsigned int>(
-                  found,
-                  1 + d + 3 * (i + constraints.size() * other.first->second));
-      found = Utilities::MPI::max(found, model.grid.communicator());
-      if (found == 0)
-        return;
-      const unsigned int pair = (found - 1) / 3;
-      throw UserError(
-        "The constraints \"" + names[pair / constraints.size()].first +
-        "\" and \"" + names[pair % constraints.size()].first +
-        "\" both prescribe the component " + "xyz"[(found - 1) % 3] +
-        " of the same nodes; leave it out of one of them by "
-        "\"Components\", or name other faces.");
-    }
-
-
-    std::vector<Projection *>
-    prepared_constraints(const Model &model)
-    {
-      std::vector<Projection *> list;
-      for (const auto &[name, constraint] :
-           model.parameters.projections.objects)
-        {
-          constraint->prepare(model.discretization,
-                              model.mass,
-                              model.parameters.file,
-                              "Constraints/" + name);
-          list.push_back(constraint.get());
-        }
-      refuse_contradictions(model, list);
-      return list;
-    }
-
-
     std::unique_ptr<const Contact>
-    make_contact(const Model &model, Log &log)
+    make_contact(const Solid                &solid,
+                 const InterfacesParameters &interfaces,
+                 const InterfaceSurfaces    &surfaces,
+                 Log                        &log)
     {
-      const Discretization       &discretization = model.discretization;
-      const InterfacesParameters &interfaces     = model.parameters.interfaces;
+      const Discretization &discretization = solid.discretization;
       if (interfaces.list.empty())
         return nullptr;
       for (const InterfaceParameters &interface : interfaces.list)
@@ -330,12 +275,11 @@ namespace Voussoir
                         "\"Upstream level\"" + section,
                         log);
           }
-      auto contact = std::make_unique<Contact>(discretization, interfaces);
+      auto contact =
+        std::make_unique<Contact>(discretization, interfaces, surfaces);
       const double delay =
         contact->set_delay(discretization, [&](const Grid::Cell &cell) {
-          return model.materials[model.material_of(cell)]
-            ->elastic_constants()
-            .s_wave_speed();
+          return solid.material_of(cell).elastic_constants().s_wave_speed();
         });
       const double at_5_hz = 1. / std::hypot(1., 10. * numbers::PI * delay);
       log.line("Friction follows the pressure with a delay of up to ",
@@ -348,69 +292,51 @@ namespace Voussoir
   } // namespace
 
 
-  Model::Meshes::Meshes(Case &parameters, Log &log)
+  Model::Meshes::Meshes(const Case &parameters, Log &log)
   {
     std::ostringstream report;
-    solid = parameters.make_mesh(report);
+    solid    = parameters.make_mesh(report);
+    surfaces = parameters.interfaces.split(solid);
     log(report.str());
     water     = take_water(parameters, solid);
     materials = parameters.material_of_coarse_cells(solid);
-    check_parts(parameters, solid, log);
-    say_sets_on_interfaces(parameters, solid, log);
-    check_mesh_against_case(parameters, solid, materials, log);
+    check_parts(parameters, solid, surfaces, log);
+    say_sets_on_interfaces(parameters, solid, surfaces, log);
+    check_mesh_against_case(parameters, solid, surfaces, materials, log);
   }
 
 
-  Model::Model(Case &parameters, Log &log)
+  Model::Model(const Case &parameters, Log &log)
     : Model(parameters, Meshes(parameters, log), log)
   {}
 
 
-  Model::Model(Case &parameters, Meshes &&meshes, Log &log)
+  Model::Model(const Case &parameters, const Meshes &meshes, Log &log)
     : parameters(parameters)
-    , materials(parameters.material_list())
-    , material_of_coarse_cell(std::move(meshes.materials))
-    , grid(
-        meshes.solid,
-        parameters.grid,
-        [this, &parameters](const unsigned int cell) {
-          const Material &material = *materials[material_of_coarse_cell[cell]];
-          return material.relative_cost() *
-                 parameters.discretization.relative_cost(material.n_history() >
-                                                         0);
-        },
-        log.communicator())
-    , discretization(grid,
-                     parameters.discretization,
-                     checked_supports(parameters, grid),
-                     material_of_cell(),
-                     have_memory(materials))
-    , mass(discretization,
-           inertial_densities(materials),
-           driven_densities(materials),
-           material_of_cell())
-    , internal_force(discretization,
-                     std::vector<const CellKernel *>(materials.begin(),
-                                                     materials.end()),
-                     std::vector<double>(materials.size(), 1.))
-    , boundary(discretization,
+    , grid(meshes.solid,
+           parameters.grid,
+           materials_of_grid(parameters, meshes.materials),
+           log.communicator())
+    , solid(grid,
+            parameters.discretization,
+            checked_supports(parameters, grid),
+            parameters.material_list())
+    , boundary(solid,
                parameters.boundaries.absorbing,
-               materials,
-               material_of_cell(),
-               parameters.discretization.quadrature,
-               terms)
-    , running_loads(prepared_loads(*this, terms, log))
+               parameters.discretization.quadrature)
+    , loads(prepared_loads(parameters, solid, log))
     , added_mass(
-        mass_added_to(terms, discretization, parameters.reservoir, log))
+        make_added_mass(solid.discretization, parameters.reservoir, log))
     , reservoir(
-        make_reservoir(parameters, meshes.water, discretization, terms, log))
+        make_reservoir(parameters, meshes.water, solid.discretization, log))
     , reservoir_of_modes(make_reservoir_of_modes(parameters,
                                                  meshes.water,
-                                                 discretization,
+                                                 solid.discretization,
                                                  reservoir,
                                                  log))
-    , constraints(prepared_constraints(*this))
-    , contact(make_contact(*this, log))
+    , terms(
+        assembled_terms(solid, boundary, loads, added_mass, reservoir.get()))
+    , contact(make_contact(solid, parameters.interfaces, meshes.surfaces, log))
   {
     for (const std::string &warning : parameters.warnings)
       log.warn(warning);
@@ -422,17 +348,27 @@ namespace Voussoir
   Model::~Model() = default;
 
 
-  unsigned int
-  Model::material_of(const Grid::Cell &cell) const
+  NamedLoads
+  Model::load_list() const
   {
-    return material_of_coarse_cell[Grid::coarse_cell(cell)];
+    NamedLoads list;
+    for (const auto &[name, load] : loads)
+      list.emplace_back(name, load.get());
+    return list;
   }
 
 
-  std::function<unsigned int(const Grid::Cell &)>
-  Model::material_of_cell() const
+  std::vector<const Load *>
+  Model::running_loads() const
   {
-    return [this](const Grid::Cell &cell) { return material_of(cell); };
+    std::set<std::string> staged;
+    for (const auto &stage : parameters.static_state.stage_names())
+      staged.insert(stage.begin(), stage.end());
+    std::vector<const Load *> running;
+    for (const auto &[name, load] : loads)
+      if (staged.count(name) == 0)
+        running.push_back(load.get());
+    return running;
   }
 
 
@@ -453,12 +389,12 @@ namespace Voussoir
              ", partition by ",
              option_name(parameters.grid.partition),
              ", at most ",
-             discretization.largest_interface(),
+             solid.discretization.largest_interface(),
              " nodes of a rank owned by others");
     log.line("Unknowns: ",
-             discretization.dof_handler.n_dofs(),
+             solid.discretization.dof_handler.n_dofs(),
              " of degree ",
-             discretization.degree);
+             solid.discretization.degree);
     report_materials(log);
     if (parameters.reservoir.model == ReservoirModel::added_mass)
       log.line("Reservoir: added mass of ",
@@ -517,12 +453,12 @@ namespace Voussoir
   std::vector<double>
   Model::longest_edges() const
   {
-    std::vector<double> longest(materials.size(), 0.);
+    std::vector<double> longest(solid.materials.size(), 0.);
     for (const auto &cell : grid.triangulation().active_cell_iterators())
       if (cell->is_locally_owned())
         for (unsigned int line = 0; line < 12; ++line)
-          longest[material_of(cell)] =
-            std::max(longest[material_of(cell)], cell->line(line)->diameter());
+          longest[grid.material(cell)] = std::max(longest[grid.material(cell)],
+                                                  cell->line(line)->diameter());
     Utilities::MPI::max(longest, grid.communicator(), longest);
     return longest;
   }
@@ -532,10 +468,10 @@ namespace Voussoir
   Model::carried_frequencies() const
   {
     std::vector<double> frequencies = longest_edges();
-    for (unsigned int m = 0; m < materials.size(); ++m)
+    for (unsigned int m = 0; m < solid.materials.size(); ++m)
       if (double &value = frequencies[m]; value > 0.)
-        value = materials[m]->elastic_constants().s_wave_speed() *
-                discretization.degree / (8. * value);
+        value = solid.materials[m]->elastic_constants().s_wave_speed() *
+                solid.discretization.degree / (8. * value);
     return frequencies;
   }
 
@@ -553,32 +489,34 @@ namespace Voussoir
   {
     const MPI_Comm            communicator = grid.communicator();
     const std::vector<double> carried      = carried_frequencies();
-    std::vector<double>       widest(materials.size(), 0.); // crack bands
+    std::vector<double>       widest(solid.materials.size(), 0.); // crack bands
     for (const auto &cell : grid.triangulation().active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          const unsigned int m = material_of(cell);
+          const unsigned int m = grid.material(cell);
           widest[m] =
             std::max(widest[m],
-                     CrackBands::along_edges(cell, discretization.crack_share));
+                     CrackBands::along_edges(cell,
+                                             solid.discretization.crack_share));
         }
-    for (unsigned int m = 0; m < materials.size(); ++m)
+    for (unsigned int m = 0; m < solid.materials.size(); ++m)
       {
-        const ElasticConstants c = materials[m]->elastic_constants();
+        const ElasticConstants c = solid.materials[m]->elastic_constants();
         std::ostringstream     text;
         text << std::setprecision(4) << "Material "
              << parameters.materials.objects[m].first << ": mass "
-             << mass.total[m] << " kg, P wave " << c.p_wave_speed()
+             << solid.mass.total[m] << " kg, P wave " << c.p_wave_speed()
              << " m/s, S wave " << c.s_wave_speed()
              << " m/s; its largest cells carry waves up to "
              << std::setprecision(2) << carried[m]
              << " Hz with 8 nodes per wavelength";
         log.line(text.str());
         const double band = Utilities::MPI::max(widest[m], communicator);
-        if (const std::string remark = materials[m]->remark(band);
+        if (const std::string remark = solid.materials[m]->remark(band);
             !remark.empty())
           log.line("  note: ", remark);
-        if (materials[m]->n_history() > 0 && discretization.degree > 2)
+        if (solid.materials[m]->n_history() > 0 &&
+            solid.discretization.degree > 2)
           log.line("  note: fracture energies hold in cells of degree 1 and 2; "
                    "in those of a higher degree a crack takes more or less.");
       }

@@ -4,7 +4,7 @@ namespace Voussoir
 {
   RestState::RestState(const Model &model)
   {
-    initial.material_memory = model.internal_force.new_memory();
+    initial.material_memory = model.solid.internal_force.new_memory();
     if (model.contact)
       contact.emplace(*model.contact);
   }
@@ -17,16 +17,12 @@ namespace Voussoir
     const Case &parameters = model.parameters;
     if (!parameters.static_state.stage_names().empty())
       rest.initial =
-        find_static_state({model.discretization,
-                           model.internal_force,
-                           model.materials,
-                           model.material_of_cell(),
+        find_static_state({model.solid,
                            parameters.boundaries,
-                           model.mass,
                            model.terms,
                            rest.contact ? &*rest.contact : nullptr},
                           parameters.static_state,
-                          parameters.load_list(),
+                          model.load_list(),
                           log,
                           rest.summary);
     return rest;
@@ -66,7 +62,7 @@ namespace Voussoir
       std::optional<Contact> contact(rest.contact);
       State                  state;
       state.displacement = rest.initial.displacement;
-      state.velocity     = model.discretization.create_vector();
+      state.velocity     = model.solid.discretization.create_vector();
       contact->start(state);
       return contact;
     }
@@ -76,11 +72,8 @@ namespace Voussoir
     modal_model(const Model &model, const Contact *contact)
     {
       const Case &parameters = model.parameters;
-      return {model.discretization,
-              model.internal_force,
+      return {model.solid,
               parameters.material_names(),
-              model.materials,
-              model.material_of_cell(),
               parameters.boundaries,
               model.terms,
               contact,

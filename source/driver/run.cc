@@ -24,6 +24,16 @@ namespace Voussoir
     // Between two looks at cracks and slips [s], and how wide one may be over
     // its cell: at a fiftieth, what it cuts off is a block of its own.
     constexpr double check_interval = 0.1, widest_share = 0.02;
+
+
+    std::vector<ActingLoad>
+    acting_loads(const Model &model)
+    {
+      std::vector<ActingLoad> list;
+      for (const Load *load : model.running_loads())
+        list.emplace_back(*load);
+      return list;
+    }
   } // namespace
 
 
@@ -56,9 +66,10 @@ namespace Voussoir
     , earthquake(setup->earthquake)
     , water(setup->water)
     , contact(rest.contact)
-    , equation{model.discretization,
+    , loads(acting_loads(model))
+    , equation{model.solid.discretization,
                setup->internal_force,
-               model.mass,
+               model.solid.mass,
                model.terms,
                damping,
                rest.initial,
@@ -97,14 +108,13 @@ namespace Voussoir
 
 
   std::vector<NodalLoad *>
-  Run::nodal_loads() const
+  Run::nodal_loads()
   {
     std::vector<NodalLoad *> list;
     if (earthquake.wave)
       list.push_back(earthquake.wave.get());
-    list.insert(list.end(),
-                model.running_loads.begin(),
-                model.running_loads.end());
+    for (ActingLoad &load : loads)
+      list.push_back(&load);
     if (water)
       list.push_back(water.get());
     return list;
@@ -114,7 +124,9 @@ namespace Voussoir
   std::vector<Projection *>
   Run::projections()
   {
-    std::vector<Projection *> list = model.constraints;
+    std::vector<Projection *> list;
+    for (const auto &constraint : setup->constraints)
+      list.push_back(constraint.second.get());
     if (contact)
       list.push_back(&*contact);
     return list;
@@ -131,9 +143,19 @@ namespace Voussoir
   void
   Run::march()
   {
+    begin();
+    while (state.step < n_steps())
+      step();
+    end();
+  }
+
+
+  void
+  Run::begin()
+  {
     const OutputParameters &output = model.parameters.output;
-    const Schedule checkpoints(output.checkpoint_time, time_step.length),
-      loose_checks(check_interval, time_step.length);
+    checkpoints  = Schedule(output.checkpoint_time, time_step.length);
+    loose_checks = Schedule(check_interval, time_step.length);
     first_step = last_look = next_look = state.step;
     clock.restart();
     since_checkpoint.restart();
@@ -147,34 +169,42 @@ namespace Voussoir
         "at rest; give one of these, or \"End time = 0\" in section "
         "\"Time\"");
     observe(); // after a restart what they saw last, once more
+  }
 
-    while (state.step < n_steps())
+
+  void
+  Run::step()
+  {
+    const unsigned long long next = state.step + 1;
+    const bool balances           = energy.is_due(next) || next == n_steps();
+    if (balances)
+      energy.before_step(state);
+    {
+      TimerOutput::Scope scope(timer, "step");
+      scheme.step(state);
+    }
+    observe();
+    if (balances)
       {
-        const unsigned long long next = state.step + 1;
-        const bool balances = energy.is_due(next) || next == n_steps();
-        if (balances)
-          energy.before_step(state);
-        {
-          TimerOutput::Scope scope(timer, "step");
-          scheme.step(state);
-        }
-        observe();
-        if (balances)
-          {
-            check_energy();
-            keep_last_good();
-          }
-        if (loose_checks.due(state.step) || state.step == n_steps())
-          {
-            check_cracks();
-            check_slips();
-          }
-        if (folder.exists() && output.checkpoint_time > 0. &&
-            checkpoints.due(state.step))
-          write_checkpoint();
-        if (state.step >= next_look)
-          attend();
+        check_energy();
+        keep_last_good();
       }
+    if (loose_checks.due(state.step) || state.step == n_steps())
+      {
+        check_cracks();
+        check_slips();
+      }
+    if (folder.exists() && model.parameters.output.checkpoint_time > 0. &&
+        checkpoints.due(state.step))
+      write_checkpoint();
+    if (state.step >= next_look)
+      attend();
+  }
+
+
+  void
+  Run::end()
+  {
     finish();
     refuse_missing_files();
   }
@@ -186,7 +216,7 @@ namespace Voussoir
     if (!folder.exists())
       return;
     TimerOutput::Scope scope(timer, "output");
-    for (const auto &observer : model.parameters.observers)
+    for (const auto &observer : setup->observers)
       observer.second->observe(state);
   }
 
@@ -220,7 +250,7 @@ namespace Voussoir
   void
   Run::check_cracks()
   {
-    if (warned_of_cracks || !model.internal_force.has_memory())
+    if (warned_of_cracks || !model.solid.internal_force.has_memory())
       return;
     const WidestCrack widest = widest_crack(observed);
     warned_of_cracks         = widest.share > widest_share;
@@ -295,7 +325,7 @@ namespace Voussoir
     last_good.displacement = state.displacement;
     last_good.velocity     = state.velocity;
     last_good.time         = state.time;
-    if (!model.internal_force.has_memory())
+    if (!model.solid.internal_force.has_memory())
       last_good.memory = state.memory; // for the stress
   }
 
@@ -372,7 +402,8 @@ namespace Voussoir
                        {{&last_good.displacement, {"displacement"}},
                         {&last_good.velocity, {"velocity"}}},
                        // cracks have gone on since
-                       model.internal_force.has_memory() ? nullptr : &last_good,
+                       model.solid.internal_force.has_memory() ? nullptr :
+                                                                 &last_good,
                        "last_good",
                        last_good.time);
         if (!picture.empty())

@@ -17,7 +17,7 @@ namespace Voussoir
     nlohmann::json
     mesh_identity(const Model &model)
     {
-      const Discretization &discretization = model.discretization;
+      const Discretization &discretization = model.solid.discretization;
       double                sum            = 0.;
       for (const auto &cell :
            discretization.dof_handler.active_cell_iterators())
@@ -40,7 +40,7 @@ namespace Voussoir
                                &a.work_of_base,
                                &a.work_of_projections,
                                &a.loss_by_mass};
-    for (unsigned int m = 0; m < model.materials.size(); ++m)
+    for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
       if (PointHistory *history = state.material_memory.of(m))
         sums.insert(sums.end(),
                     {&history->losses.material,
@@ -58,7 +58,7 @@ namespace Voussoir
   StateContent
   Run::checkpoint_content()
   {
-    const NodalKeys nodes(model.discretization);
+    const NodalKeys nodes(model.solid.discretization);
     StateContent    content;
     auto           &values = content.values;
     values["displacement"] = nodes.values(state.displacement);
@@ -66,14 +66,14 @@ namespace Voussoir
     for (unsigned int i = 0; i < state.memory.size(); ++i)
       values["damping memory " + std::to_string(i)] =
         nodes.values(state.memory[i]);
-    for (const auto &[name, observer] : model.parameters.observers)
+    for (const auto &[name, observer] : setup->observers)
       {
         for (const auto &[own_name, vector] : observer->checkpoint_vectors())
           values[name + "/" + own_name] = nodes.values(*vector);
         for (auto &[own_name, group] : observer->checkpoint_values())
           values[name + "/" + own_name] = std::move(group);
       }
-    for (unsigned int m = 0; m < model.materials.size(); ++m)
+    for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
       if (PointHistory *history = state.material_memory.of(m))
         values["material " + model.parameters.materials.objects[m].first] =
           history->checkpoint_values();
@@ -119,7 +119,7 @@ namespace Voussoir
     if (!std::isfinite(largest_amount(state.velocity)))
       return false; // the next line of the energy balance ends such a run
     StateContent content = checkpoint_content();
-    for (const auto &[name, observer] : model.parameters.observers)
+    for (const auto &[name, observer] : setup->observers)
       content.documents["observers"][name] = observer->save();
     if (earthquake.wave)
       content.documents["free field"] = earthquake.wave->save();
@@ -193,13 +193,13 @@ namespace Voussoir
     state.time = header.at("time");
     state.step = header.at("step");
     energy.load(header.at("energy"));
-    for (unsigned int m = 0; m < model.materials.size(); ++m)
+    for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
       if (PointHistory *history = state.material_memory.of(m))
         history->load();
     if (contact)
       contact->load(header.at("contact"));
     const nlohmann::json &seen = content.documents["observers"];
-    for (const auto &[name, observer] : model.parameters.observers)
+    for (const auto &[name, observer] : setup->observers)
       observer->load(seen.at(name));
     if (earthquake.wave)
       earthquake.wave->load(content.documents["free field"]);

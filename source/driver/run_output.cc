@@ -70,7 +70,7 @@ namespace Voussoir
     write_ground_motion();
     write_spectra(earthquake.fits, folder.path(), log);
     energy.open(folder.path(), folder.start_time(), folder.restarts(), log);
-    for (const auto &observer : model.parameters.observers)
+    for (const auto &observer : setup->observers)
       observer.second->prepare(observed,
                                folder.start_time(),
                                folder.restarts());
@@ -165,7 +165,7 @@ namespace Voussoir
   double
   Run::throughput(const double seconds) const
   {
-    return 1e-6 * double(model.discretization.dof_handler.n_dofs()) *
+    return 1e-6 * double(model.solid.discretization.dof_handler.n_dofs()) *
            double(state.step - first_step) / seconds;
   }
 
@@ -198,7 +198,7 @@ namespace Voussoir
                              {"stored energy [J]", water->stored_energy()},
                              {"radiated and absorbed [J]",
                               Utilities::MPI::sum(water->loss, communicator)}};
-    if (model.internal_force.has_memory())
+    if (model.solid.internal_force.has_memory())
       result["materials"] =
         memory_summary(observed, model.parameters.material_names());
     result["energy balance"] = energy.summary();
@@ -215,7 +215,7 @@ namespace Voussoir
     if (folder.exists())
       {
         TimerOutput::Scope scope(timer, "output");
-        for (const auto &observer : model.parameters.observers)
+        for (const auto &observer : setup->observers)
           observer.second->finish(state, result);
         log.write_growing_files();
         log.look_for_lost_files();

@@ -1,3 +1,4 @@
+#include <voussoir/base/error.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/rest_state.h>
 #include <voussoir/driver/run_setup.h>
@@ -9,17 +10,61 @@ namespace Voussoir
 
   namespace
   {
-    Damping
-    adapted_damping(DampingParameters parameters, const Modes &modes)
+    // A component of a node has one prescribed motion.
+    void
+    refuse_contradictions(const NamedObjects<Projection>::List &constraints,
+                          const MPI_Comm                        communicator)
     {
+      std::map<std::pair<unsigned int, unsigned int>, unsigned int> first;
+      unsigned int                                                  found = 0;
+      for (unsigned int i = 0; i < constraints.size(); ++i)
+        for (unsigned int d = 0; d < 3; ++d)
+          if (constraints[i].second->prescribed_components()[d])
+            for (const unsigned int node : constraints[i].second->nodes())
+              if (const auto other = first.emplace(std::make_pair(node, d), i);
+                  !other.second)
+                found = std::max<unsigned int>(
+                  found,
+                  1 + d + 3 * (i + constraints.size() * other.first->second));
+      found = Utilities::MPI::max(found, communicator);
+      if (found == 0)
+        return;
+      const unsigned int pair = (found - 1) / 3;
+      throw UserError(
+        "The constraints \"" + constraints[pair / constraints.size()].first +
+        "\" and \"" + constraints[pair % constraints.size()].first +
+        "\" both prescribe the component " + "xyz"[(found - 1) % 3] +
+        " of the same nodes; leave it out of one of them by "
+        "\"Components\", or name other faces.");
+    }
+
+
+    NamedObjects<Projection>::List
+    made_constraints(const Model &model)
+    {
+      const Case &parameters = model.parameters;
+      auto        list       = parameters.projections.make(parameters.file);
+      for (auto &[name, constraint] : list)
+        constraint->prepare(model.solid.discretization,
+                            model.solid.mass,
+                            parameters.file,
+                            "Constraints/" + name);
+      refuse_contradictions(list, model.grid.communicator());
+      return list;
+    }
+
+
+    /** Before the modes are known that damping goes by there is none, which
+     *  allows for the longest step. */
+    Damping
+    damping_by(const Model &model,
+               const Modes &modes,
+               const double undamped_limit = 0.)
+    {
+      DampingParameters parameters = model.parameters.damping;
       if (!parameters.modes.empty() && modes.list.empty())
-        {
-          parameters.model = DampingModel::none;
-          return Damping(parameters);
-        }
-      Damping damping(parameters);
-      damping.adapt_to_modes(modes.frequencies());
-      return damping;
+        parameters.model = DampingModel::none;
+      return Damping(parameters, modes.frequencies(), undamped_limit);
     }
 
 
@@ -27,9 +72,20 @@ namespace Voussoir
     internal_force_under(const Damping &damping, const Model &model)
     {
       std::vector<double> factors;
-      for (const Material *material : model.materials)
+      for (const Material *material : model.solid.materials)
         factors.push_back(damping.stiffness_scale(material->damping_factor()));
-      return model.internal_force.with(factors);
+      return model.solid.internal_force.with(factors);
+    }
+
+
+    double
+    undamped_limit_of(const Model         &model,
+                      const InternalForce &internal_force,
+                      const Damping       &damping)
+    {
+      return internal_force.has_memory() || damping.stiffening(1.) > 0. ?
+               undamped_step(model, internal_force) :
+               0.;
     }
 
 
@@ -75,16 +131,15 @@ namespace Voussoir
 
     /** The shortest of all records [s]; 0 if nothing is recorded. */
     double
-    record_interval(const Model &model, const ResultFolder &folder)
+    record_interval(const NamedObjects<Observer>::List &observers)
     {
       double shortest = 0.;
-      if (folder.wanted())
-        for (const auto &observer : model.parameters.observers)
-          {
-            const double interval = observer.second->record_interval();
-            if (interval > 0. && (shortest == 0. || interval < shortest))
-              shortest = interval;
-          }
+      for (const auto &observer : observers)
+        {
+          const double interval = observer.second->record_interval();
+          if (interval > 0. && (shortest == 0. || interval < shortest))
+            shortest = interval;
+        }
       return shortest;
     }
 
@@ -115,7 +170,7 @@ namespace Voussoir
             std::array<Point<3>, 8> vertices;
             for (const unsigned int v : cell->vertex_indices())
               vertices[v] = cell->vertex(v);
-            qualities[model.material_of(cell)].take(vertices);
+            qualities[model.solid.grid().material(cell)].take(vertices);
           }
       nlohmann::json result;
       for (unsigned int i = 0; i < names.size(); ++i)
@@ -136,13 +191,20 @@ namespace Voussoir
                      const ResultFolder &folder,
                      Log                &log)
     : model(model)
-    , damping(adapted_damping(model.parameters.damping, modes))
-    , internal_force(internal_force_under(damping, model))
+    , constraints(made_constraints(model))
+    , observers(model.parameters.observers.make(model.parameters.file))
+    , internal_force(internal_force_under(damping_by(model, modes), model))
+    , undamped_limit(
+        undamped_limit_of(model, internal_force, damping_by(model, modes)))
+    , damping(damping_by(model,
+                         modes,
+                         internal_force.has_memory() ? undamped_limit : 0.))
     , time_step(model,
                 internal_force,
                 damping,
+                undamped_limit,
                 kept_step(folder),
-                record_interval(model, folder),
+                folder.wanted() ? record_interval(observers) : 0.,
                 log)
     , earthquake(model, damping, time_step, log)
     , water(make_water(model, earthquake, time_step))
@@ -152,7 +214,7 @@ namespace Voussoir
     if (unloaded.contact) // refuses bars that are too stiff for the step
       unloaded.contact->prepare_step(
         [&](const unsigned int node) {
-          return model.mass.inverse.local_element(3 * node) *
+          return model.solid.mass.inverse.local_element(3 * node) *
                  Tensor<2, 3>(unit_symmetric_tensor<3>());
         },
         time_step.length);
@@ -161,7 +223,7 @@ namespace Voussoir
                                         unloaded.initial.material_memory,
                                         model.contact.get(),
                                         log);
-    for (const auto &observer : model.parameters.observers)
+    for (const auto &observer : observers)
       observer.second->check(seen);
   }
 
@@ -174,9 +236,7 @@ namespace Voussoir
                      Log                     &log,
                      const CentralDifference *scheme) const
   {
-    return {model.discretization,
-            model.materials,
-            model.material_of_cell(),
+    return {model.solid,
             internal_force,
             damping,
             memory,
@@ -190,7 +250,7 @@ namespace Voussoir
             earthquake.base,
             ResultNames(model.parameters.material_names(), model.grid, contact),
             log,
-            model.constraints,
+            constraints,
             scheme};
   }
 
@@ -209,8 +269,8 @@ namespace Voussoir
             {"ranks", Utilities::MPI::n_mpi_processes(communicator)},
             {"cells", model.grid.triangulation().n_global_active_cells()},
             {"mesh quality", quality_summary(model, communicator)},
-            {"unknowns", model.discretization.dof_handler.n_dofs()},
-            {"degree", model.discretization.degree},
+            {"unknowns", model.solid.discretization.dof_handler.n_dofs()},
+            {"degree", model.solid.discretization.degree},
             {"time step [s]", time_step.length},
             {"largest stable step [s]", time_step.limit},
             {"damping", summary_of(damping, model.parameters.damping.model)},

@@ -202,7 +202,7 @@ namespace Voussoir
   } // namespace
 
 
-  Simulation::Simulation(Case             &parameters,
+  Simulation::Simulation(const Case       &parameters,
                          const RunOptions &options,
                          const MPI_Comm    communicator)
     : log(opened_log(parameters, options, communicator))

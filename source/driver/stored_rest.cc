@@ -11,7 +11,7 @@ namespace Voussoir
     content_of(const Model &model, RestState &rest)
     {
       InitialState   &initial = rest.initial;
-      const NodalKeys nodes(model.discretization);
+      const NodalKeys nodes(model.solid.discretization);
       StateContent    content;
       for (const auto &[name, vector] : std::map<std::string, Vector *>{
              {"displacement", &initial.displacement},
@@ -21,7 +21,7 @@ namespace Voussoir
              {"contact force", &initial.contact_force}})
         if (vector->size() > 0)
           content.values[name] = nodes.values(*vector);
-      for (unsigned int m = 0; m < model.materials.size(); ++m)
+      for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
         if (PointHistory *history = initial.material_memory.of(m))
           content
             .values["material " + model.parameters.materials.objects[m].first] =
@@ -35,7 +35,7 @@ namespace Voussoir
     StateContent
     content_of(const Model &model, Modes &modes)
     {
-      const NodalKeys nodes(model.discretization);
+      const NodalKeys nodes(model.solid.discretization);
       StateContent    content;
       for (unsigned int j = 0; j < modes.list.size(); ++j)
         content.values["mode " + std::to_string(j + 1)] =
@@ -88,15 +88,15 @@ namespace Voussoir
     InitialState        &initial = rest.initial;
     if (header.at("static state"))
       initial.displacement = initial.temperature = initial.reaction =
-        model.discretization.create_vector();
+        model.solid.discretization.create_vector();
     if (header.at("grouted"))
-      initial.grouted_displacement = model.discretization.create_vector();
+      initial.grouted_displacement = model.solid.discretization.create_vector();
     if (header.at("contact force"))
-      initial.contact_force = model.discretization.create_vector();
+      initial.contact_force = model.solid.discretization.create_vector();
 
     StateContent content = content_of(model, rest);
     read_state(file, content, communicator);
-    for (unsigned int m = 0; m < model.materials.size(); ++m)
+    for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
       if (PointHistory *history = initial.material_memory.of(m))
         history->load();
     if (rest.contact)
@@ -134,7 +134,7 @@ namespace Voussoir
     modes.moving_mass = vector_of(header.at("moving mass"));
     for (const nlohmann::json &mode : header.at("modes"))
       modes.list.push_back({mode.at(0),
-                            model.discretization.create_vector(),
+                            model.solid.discretization.create_vector(),
                             mode.at(1),
                             mode.at(2),
                             vector_of(mode.at(3)),

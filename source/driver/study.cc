@@ -466,7 +466,7 @@ namespace Voussoir
 
 
   nlohmann::json
-  Study::do_run(Case              &run,
+  Study::do_run(const Case        &run,
                 const std::string &run_folder,
                 const bool         may_go_on) const
   {

@@ -28,29 +28,19 @@ namespace Voussoir
           if (!central && alpha > 0.)
             for (unsigned int i = 0; i < force.locally_owned_size(); ++i)
               force.local_element(i) += 2. / dt * alpha *
-                                        model.mass.mass.local_element(i) *
+                                        model.solid.mass.mass.local_element(i) *
                                         displacement.local_element(i);
           if (model.reservoir)
             model.reservoir->add_coupling(force, displacement, dt);
         };
-      const double step =
-        stable_step(model.discretization, internal_force, model.mass, limits);
+      const double step = stable_step(model.solid.discretization,
+                                      internal_force,
+                                      model.solid.mass,
+                                      limits);
       // the bound on the coupling holds up to this share of the water's limit
       return model.reservoir ?
                std::min(step, 0.95 * model.reservoir->stable_step()) :
                step;
-    }
-
-
-    double
-    limit_without_damping(const Model         &model,
-                          const InternalForce &internal_force)
-    {
-      return stable_step(model.discretization,
-                         internal_force,
-                         model.mass,
-                         {[](const double) { return 0.; },
-                          [](Vector &, const Vector &, const double) {}});
     }
 
 
@@ -100,27 +90,35 @@ namespace Voussoir
   } // namespace
 
 
+  double
+  undamped_step(const Model &model, const InternalForce &internal_force)
+  {
+    return stable_step(model.solid.discretization,
+                       internal_force,
+                       model.solid.mass,
+                       {[](const double) { return 0.; },
+                        [](Vector &, const Vector &, const double) {}});
+  }
+
+
   TimeStep::TimeStep(const Model                 &model,
                      const InternalForce         &internal_force,
-                     Damping                     &damping,
+                     const Damping               &damping,
+                     const double                 undamped_limit,
                      const std::optional<double> &kept,
                      const double                 interval,
                      Log                         &log)
-    : undamped_limit(0.)
-    , central(model.parameters.time.scheme != TimeScheme::paper)
+    : central(model.parameters.time.scheme != TimeScheme::paper)
   {
     std::vector<double> density;
-    for (const Material *material : model.materials)
+    for (const Material *material : model.solid.materials)
       density.push_back(material->inertial_density());
     std::ostringstream text;
-    ElementSteps(model.discretization, internal_force, density).print(text);
+    ElementSteps(model.solid.discretization, internal_force, density)
+      .print(text);
     log(text.str());
 
     const bool cracks = internal_force.has_memory();
-    if (cracks || damping.stiffening(1.) > 0.)
-      undamped_limit = limit_without_damping(model, internal_force);
-    if (cracks)
-      damping.add_mesh_viscosity(undamped_limit);
     limit = limit_with_damping(model, internal_force, damping, central);
     if (!std::isfinite(limit))
       throw UserError(

@@ -25,11 +25,7 @@ namespace Voussoir
                                const GridParameters &parameters,
                                const unsigned int    degree,
                                const MPI_Comm        communicator)
-    : grid(
-        mesh,
-        without_local_refinement(parameters),
-        [](const unsigned int) { return 1.; },
-        communicator)
+    : grid(mesh, without_local_refinement(parameters), communicator)
     , fe(degree)
     , dof_handler(grid.triangulation())
   {

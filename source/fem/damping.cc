@@ -124,8 +124,14 @@ namespace Voussoir
   }
 
 
-  Damping::Damping(const DampingParameters &parameters)
-    : parameters(parameters)
+  Damping::Damping(const DampingParameters   &parameters,
+                   const std::vector<double> &natural_frequencies,
+                   const double               undamped_limit)
+    // xi = pi f beta; the mesh ends at w = 2 / (its stable step)
+    : mesh_viscosity(
+        std::min(parameters.mesh_viscosity * undamped_limit,
+                 0.005 / (numbers::PI * parameters.highest_frequency)))
+    , parameters(parameters)
     , reference(parse_number(parameters.reference).value_or(usual_reference))
   {
     if (parameters.model == DampingModel::maxwell && parameters.ratio > 0.)
@@ -135,13 +141,9 @@ namespace Voussoir
     else if (parameters.model == DampingModel::mass_proportional)
       mass_coefficient =
         4. * numbers::PI * parameters.ratio * parameters.lowest_frequency;
-  }
-
-
-  void
-  Damping::adapt_to_modes(const std::vector<double> &natural_frequencies)
-  {
-    if (parameters.follows_first_mode() && !natural_frequencies.empty())
+    if (natural_frequencies.empty())
+      return;
+    if (parameters.follows_first_mode())
       {
         reference = natural_frequencies[0];
         adapted   = true;
@@ -207,16 +209,6 @@ namespace Voussoir
         for (unsigned int i = 0; i < n; ++i)
           coefficients[i] = std::max(0., solution(i));
       }
-  }
-
-
-  void
-  Damping::add_mesh_viscosity(const double undamped_limit)
-  {
-    // xi = pi f beta; the mesh ends at w = 2 / (its stable step)
-    mesh_viscosity =
-      std::min(parameters.mesh_viscosity * undamped_limit,
-               0.005 / (numbers::PI * parameters.highest_frequency));
   }
 
 

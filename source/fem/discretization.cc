@@ -72,12 +72,10 @@ namespace Voussoir
   } // namespace
 
 
-  Discretization::Discretization(
-    const Grid                                            &grid,
-    const DiscretizationParameters                        &parameters,
-    const std::vector<Support>                            &supports,
-    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
-    const std::vector<bool>                               &has_memory)
+  Discretization::Discretization(const Grid                     &grid,
+                                 const DiscretizationParameters &parameters,
+                                 const std::vector<Support>     &supports,
+                                 const std::vector<bool>        &has_memory)
     : grid(grid)
     , degree(parameters.degree)
     , fe(FE_Q<3>(parameters.degree), 3)
@@ -110,12 +108,12 @@ namespace Voussoir
     data.tasks_parallel_scheme = MatrixFree::AdditionalData::none;
     data.mapping_update_flags  = update_gradients | update_JxW_values;
     data.cell_vectorization_categories_strict = true;
-    data.cell_vectorization_category.resize(
+    data.cell_vectorization_category.resize( // as MatrixFree wants it
       grid.triangulation().n_active_cells());
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         data.cell_vectorization_category[cell->active_cell_index()] =
-          material_of_cell(cell);
+          grid.material(cell);
 
     std::vector<Quadrature<1>> quadratures;
     if (parameters.one_point(true)) // everywhere
@@ -139,9 +137,17 @@ namespace Voussoir
                        quadratures,
                        data);
 
+    places.resize(grid.triangulation().n_locally_owned_active_cells());
     for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
-      material_of_batch.push_back(
-        material_of_cell(matrix_free.get_cell_iterator(batch, 0)));
+      {
+        material_of_batch.push_back(
+          grid.material(matrix_free.get_cell_iterator(batch, 0)));
+        for (unsigned int lane = 0;
+             lane < matrix_free.n_active_entries_per_cell_batch(batch);
+             ++lane)
+          places[grid.owned_cell(matrix_free.get_cell_iterator(batch, lane))] =
+            {batch, lane};
+      }
 
     node_positions.resize(n_owned_nodes());
     FEValues<3> nodes(mapping,
@@ -209,8 +215,8 @@ namespace Voussoir
 
   AffineConstraints<double>
   Discretization::make_constraints(
-    const std::vector<Support>                    &supports,
-    const std::function<bool(const Grid::Cell &)> &held_cell) const
+    const std::vector<Support> &supports,
+    const std::vector<bool>    &held_materials) const
   {
     AffineConstraints<double> result(relevant_dofs);
     DoFTools::make_hanging_node_constraints(dof_handler, result);
@@ -225,52 +231,45 @@ namespace Voussoir
                             update_normal_vectors);
     // ghost cells too: a rank must know the supports of all nodes it sees
     for (const Support &support : supports)
+      for (const auto &[cell, face] : grid.faces(support.set))
+        {
+          std::array<bool, 3> held{{true, true, true}};
+          if (support.held != Support::Held::all)
+            {
+              normals.reinit(cell, face);
+              const Tensor<1, 3> n       = normals.normal_vector(0);
+              bool               upright = false;
+              for (unsigned int d = 0; d < 3; ++d)
+                {
+                  const bool along = std::abs(n[d]) > 1. - 1e-6;
+                  upright          = upright || along;
+                  held[d] = along == (support.held == Support::Held::normal);
+                }
+              if (!upright)
+                throw UserError(
+                  (support.held == Support::Held::normal ?
+                     "\"Roller\" in section \"Boundaries\" names \"" :
+                     "\"Antisymmetric\" in section \"Boundaries\" names "
+                     "\"") +
+                  support.set +
+                  "\", which is not perpendicular to a coordinate axis; " +
+                  (support.held == Support::Held::normal ?
+                     "rollers need" :
+                     "planes of antisymmetry need") +
+                  " faces of constant x, y or z, so use "
+                  "\"Fixed\" or an absorbing boundary there.");
+            }
+          const auto nodes = cell_nodes(dof_cell(cell));
+          for (unsigned int j = 0; j < fe.base_element(0).n_dofs_per_cell();
+               ++j)
+            if (fe.base_element(0).has_support_on_face(j, face))
+              for (unsigned int d = 0; d < 3; ++d)
+                if (held[d])
+                  hold(3 * nodes[j] + d);
+        }
+    if (!held_materials.empty())
       for (const auto &cell : dof_handler.active_cell_iterators())
-        if (!cell->is_artificial())
-          for (const unsigned int face : cell->face_indices())
-            if (grid.in_face_set(cell, face, support.set))
-              {
-                std::array<bool, 3> held{{true, true, true}};
-                if (support.held != Support::Held::all)
-                  {
-                    normals.reinit(
-                      static_cast<Triangulation<3>::active_cell_iterator>(cell),
-                      face);
-                    const Tensor<1, 3> n       = normals.normal_vector(0);
-                    bool               upright = false;
-                    for (unsigned int d = 0; d < 3; ++d)
-                      {
-                        const bool along = std::abs(n[d]) > 1. - 1e-6;
-                        upright          = upright || along;
-                        held[d] =
-                          along == (support.held == Support::Held::normal);
-                      }
-                    if (!upright)
-                      throw UserError(
-                        (support.held == Support::Held::normal ?
-                           "\"Roller\" in section \"Boundaries\" names \"" :
-                           "\"Antisymmetric\" in section \"Boundaries\" names "
-                           "\"") +
-                        support.set +
-                        "\", which is not perpendicular to a coordinate axis; " +
-                        (support.held == Support::Held::normal ?
-                           "rollers need" :
-                           "planes of antisymmetry need") +
-                        " faces of constant x, y or z, so use "
-                        "\"Fixed\" or an absorbing boundary there.");
-                  }
-                const auto nodes = cell_nodes(cell);
-                for (unsigned int j = 0;
-                     j < fe.base_element(0).n_dofs_per_cell();
-                     ++j)
-                  if (fe.base_element(0).has_support_on_face(j, face))
-                    for (unsigned int d = 0; d < 3; ++d)
-                      if (held[d])
-                        hold(3 * nodes[j] + d);
-              }
-    if (held_cell)
-      for (const auto &cell : dof_handler.active_cell_iterators())
-        if (!cell->is_artificial() && held_cell(cell))
+        if (!cell->is_artificial() && held_materials[grid.material(cell)])
           for (const auto node : cell_nodes(cell))
             for (unsigned int d = 0; d < 3; ++d)
               hold(3 * node + d);

@@ -32,11 +32,9 @@ namespace Voussoir
   }
 
 
-  LumpedMass::LumpedMass(
-    const Discretization                                  &discretization,
-    const std::vector<double>                             &density,
-    const std::vector<double>                             &driven_density,
-    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell)
+  LumpedMass::LumpedMass(const Discretization      &discretization,
+                         const std::vector<double> &density,
+                         const std::vector<double> &driven_density)
     : mass(discretization.create_vector())
     , inverse(mass)
     , driven(mass)
@@ -56,7 +54,7 @@ namespace Voussoir
     for (const auto &cell : discretization.dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          const unsigned int material = material_of_cell(cell);
+          const unsigned int material = discretization.grid.material(cell);
           const auto        &volumes  = nodal_volumes.of(cell);
           for (unsigned int j = 0; j < scalar.n_dofs_per_cell(); ++j)
             {

@@ -68,12 +68,10 @@ namespace Voussoir
     const Grid &grid = discretization.grid;
     for (const std::string &set : sets)
       grid.check_cell_set(set, place);
+    const std::vector<bool> tagged = grid.tags_in(sets);
     for (const auto &cell : discretization.dof_handler.active_cell_iterators())
       if (cell->is_locally_owned() &&
-          (sets.empty() ||
-           std::any_of(sets.begin(), sets.end(), [&](const std::string &set) {
-             return grid.in_cell_set(cell, set);
-           })))
+          (sets.empty() || tagged[cell->material_id()]))
         visit(cell);
   }
 

@@ -1,32 +1,60 @@
 #include <voussoir/fem/nodal_terms.h>
 #include <voussoir/fem/nodal_values.h>
 
+#include <numeric>
+
 namespace Voussoir
 {
   using namespace dealii;
 
+  NodalTerms::NodalTerms(const unsigned int n_owned_nodes)
+    : slot_of_node(n_owned_nodes, numbers::invalid_unsigned_int)
+  {}
+
+
   unsigned int
-  NodalTerms::add_node(const unsigned int node)
+  NodalTerms::slot_made_at(const unsigned int node)
   {
-    const auto [place, is_new] = slot_of_node.emplace(node, nodes.size());
-    if (is_new)
+    unsigned int &slot = slot_of_node[node];
+    if (slot == numbers::invalid_unsigned_int)
       {
+        slot = nodes.size();
         nodes.push_back(node);
         springs.emplace_back();
         dashpots.emplace_back();
         added_mass.emplace_back();
       }
-    return place->second;
+    return slot;
+  }
+
+
+  void
+  NodalTerms::add(const std::vector<NodalTerm> &terms)
+  {
+    for (const NodalTerm &term : terms)
+      {
+        const unsigned int slot = slot_made_at(term.node);
+        springs[slot] += term.spring;
+        dashpots[slot] += term.dashpot;
+        added_mass[slot] += term.added_mass;
+      }
+  }
+
+
+  void
+  NodalTerms::add_nodes(const std::vector<unsigned int> &nodes)
+  {
+    for (const unsigned int node : nodes)
+      slot_made_at(node);
   }
 
 
   std::optional<unsigned int>
   NodalTerms::slot_at(const unsigned int node) const
   {
-    const auto slot = slot_of_node.find(node);
-    if (slot == slot_of_node.end())
+    if (slot_of_node[node] == numbers::invalid_unsigned_int)
       return {};
-    return slot->second;
+    return slot_of_node[node];
   }
 
 
@@ -68,5 +96,25 @@ namespace Voussoir
         for (unsigned int d = 0; d < 3; ++d)
           force.local_element(3 * nodes[slot] + d) += f[d];
       }
+  }
+
+
+  NodalForces::NodalForces(const NodalTerms &terms)
+    : slots(terms.slot_of_node)
+    , values(terms.nodes.size())
+  {}
+
+
+  void
+  NodalForces::reset()
+  {
+    std::fill(values.begin(), values.end(), Tensor<1, 3>());
+  }
+
+
+  Tensor<1, 3>
+  NodalForces::sum() const
+  {
+    return std::accumulate(values.begin(), values.end(), Tensor<1, 3>());
   }
 } // namespace Voussoir

@@ -16,9 +16,6 @@ namespace Voussoir
     found.per_cell = discretization.points(material).size();
     found.slot_of_batch.assign(matrix_free.n_cell_batches(),
                                numbers::invalid_unsigned_int);
-    found.item_of_cell.assign(
-      discretization.grid.triangulation().n_active_cells(),
-      numbers::invalid_unsigned_int);
     unsigned int n_slots = 0;
     for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
       {
@@ -32,7 +29,6 @@ namespace Voussoir
           {
             const auto cell = matrix_free.get_cell_iterator(batch, lane);
             bands.set_lane(lane, cell, discretization.crack_share);
-            found.item_of_cell[cell->active_cell_index()] = found.cells.size();
             found.cells.push_back({cell, {batch, lane}});
           }
         found.bands.push_back(bands);
@@ -68,14 +64,6 @@ namespace Voussoir
   PointHistory::cells() const
   {
     return points->cells;
-  }
-
-
-  PointHistory::Place
-  PointHistory::place_of(const Discretization::Cell &cell) const
-  {
-    return points->cells[points->item_of_cell[cell->active_cell_index()]]
-      .second;
   }
 
 

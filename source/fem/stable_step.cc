@@ -125,12 +125,7 @@ namespace Voussoir
                 smallest        = step;
                 const auto cell = matrix_free.get_cell_iterator(batch, lane);
                 place           = cell->center();
-                std::vector<std::string> names;
-                for (const std::string &name :
-                     discretization.grid.cell_set_names())
-                  if (discretization.grid.in_cell_set(cell, name))
-                    names.push_back(name);
-                sets = join(names, ", ");
+                sets            = join(discretization.grid.sets_of(cell), ", ");
               }
           }
       }

@@ -21,14 +21,19 @@ namespace Voussoir
 
   namespace
   {
-    std::pair<std::vector<CellData<3>>, SubCellData>
-    cell_data(const CoarseMesh &coarse)
+    // Index in the coarse mesh of the coarse cell that a cell lies in.
+    unsigned int
+    coarse_cell(const Grid::Cell &cell)
     {
-      std::vector<CellData<3>> cells(coarse.cells.size());
-      for (std::size_t c = 0; c < cells.size(); ++c)
-        cells[c].vertices.assign(coarse.cells[c].begin(),
-                                 coarse.cells[c].end());
-      return {cells, SubCellData()};
+      // p4est numbers the coarse cells in a way of its own, and a fully
+      // distributed mesh holds some of them only
+      if (dynamic_cast<const parallel::fullydistributed::Triangulation<3> *>(
+            &cell->get_triangulation()) != nullptr)
+        return cell->id().get_coarse_cell_id();
+      Grid::Cell coarse = cell;
+      while (coarse->level() > 0)
+        coarse = coarse->parent();
+      return coarse->index();
     }
 
 
@@ -47,6 +52,19 @@ namespace Voussoir
         }
       return path;
     }
+
+
+    // Face 2d+s of a child lies on that face of its parent if the child sits on
+    // that side, that is, if bit d of its number is s.
+    bool
+    lies_on_coarse_face(const std::vector<unsigned int> &path,
+                        const unsigned int               face)
+    {
+      return std::all_of(path.begin(), path.end(), [&](const auto child) {
+        return ((child >> (face / 2)) & 1) == face % 2;
+      });
+    }
+
 
     // One item of the entry "Local refinement".
     struct LocalRefinement
@@ -122,41 +140,69 @@ namespace Voussoir
   }
 
 
-  Grid::Grid(const CoarseMesh                                &coarse,
-             const GridParameters                            &parameters,
-             const std::function<double(const unsigned int)> &cost,
-             const MPI_Comm                                   communicator)
+  Grid::Grid(const CoarseMesh     &coarse,
+             const GridParameters &parameters,
+             const Materials      &materials,
+             const MPI_Comm        communicator)
     : mpi_communicator(communicator)
-    , sets_of_cell(coarse.cells.size())
-    , sets_of_faces(coarse.cells.size())
+    , faces_of_set(coarse.face_sets.size() + 1)
   {
+    for (const auto &set : coarse.face_sets)
+      face_sets.push_back(set.first);
+    const auto cells = tagged_cells(coarse, materials.of_cell);
+    if (parameters.partition == Partition::metis)
+      create_metis(coarse, cells, parameters, materials.costs);
+    else
+      create_p4est(coarse, cells, parameters, materials.costs);
+    find_faces(coarse);
+  }
+
+
+  Grid::Grid(const CoarseMesh     &coarse,
+             const GridParameters &parameters,
+             const MPI_Comm        communicator)
+    : Grid(coarse,
+           parameters,
+           {std::vector<unsigned int>(coarse.cells.size(), 0), {1.}},
+           communicator)
+  {}
+
+
+  std::vector<CellData<3>>
+  Grid::tagged_cells(const CoarseMesh                &coarse,
+                     const std::vector<unsigned int> &materials)
+  {
+    std::vector<std::vector<unsigned int>> sets_of_cell(coarse.cells.size());
     for (const auto &[name, cells] : coarse.cell_sets)
       {
         for (const unsigned int cell : cells)
           sets_of_cell[cell].push_back(cell_sets.size());
         cell_sets.push_back(name);
       }
-    for (const auto &[name, faces] : coarse.face_sets)
-      {
-        for (const CoarseMesh::Face &face : faces)
-          sets_of_faces[face.cell].push_back(
-            {static_cast<unsigned char>(face.face),
-             static_cast<unsigned int>(face_sets.size())});
-        face_sets.push_back(name);
-      }
-    AssertThrow(cell_sets.size() < 256, ExcNotImplemented());
 
-    if (parameters.partition == Partition::metis)
-      create_metis(coarse, parameters, cost);
-    else
-      create_p4est(coarse, parameters, cost);
+    std::map<std::pair<unsigned int, std::vector<unsigned int>>, unsigned int>
+                             number_of_tag;
+    std::vector<CellData<3>> result(coarse.cells.size());
+    for (std::size_t c = 0; c < result.size(); ++c)
+      {
+        const auto [tag, is_new] =
+          number_of_tag.emplace(std::make_pair(materials[c], sets_of_cell[c]),
+                                all_tags.size());
+        if (is_new)
+          all_tags.push_back({materials[c], sets_of_cell[c]});
+        result[c].vertices.assign(coarse.cells[c].begin(),
+                                  coarse.cells[c].end());
+        result[c].material_id = tag->second;
+      }
+    return result;
   }
 
 
   void
-  Grid::create_p4est(const CoarseMesh     &coarse,
-                     const GridParameters &parameters,
-                     const std::function<double(const unsigned int)> &cost)
+  Grid::create_p4est(const CoarseMesh               &coarse,
+                     const std::vector<CellData<3>> &cells,
+                     const GridParameters           &parameters,
+                     const std::vector<double>      &costs)
   {
     using Distributed = parallel::distributed::Triangulation<3>;
     auto triangulation =
@@ -165,10 +211,9 @@ namespace Voussoir
                                     Distributed::no_automatic_repartitioning);
     triangulation->signals.weight.connect(
       [&](const auto &cell, const auto) -> unsigned int {
-        return static_cast<unsigned int>(1000. * cost(coarse_cell(cell)));
+        return static_cast<unsigned int>(1000. * costs[material(cell)]);
       });
-    const auto [cells, faces] = cell_data(coarse);
-    triangulation->create_triangulation(coarse.vertices, cells, faces);
+    triangulation->create_triangulation(coarse.vertices, cells, SubCellData());
     refine(*triangulation, parameters);
     triangulation->repartition();
     triangulation->signals.weight.disconnect_all_slots();
@@ -177,20 +222,20 @@ namespace Voussoir
 
 
   void
-  Grid::create_metis(const CoarseMesh     &coarse,
-                     const GridParameters &parameters,
-                     const std::function<double(const unsigned int)> &cost)
+  Grid::create_metis(const CoarseMesh               &coarse,
+                     const std::vector<CellData<3>> &cells,
+                     const GridParameters           &parameters,
+                     const std::vector<double>      &costs)
   {
     dealii::Triangulation<3> serial(
       dealii::Triangulation<3>::limit_level_difference_at_vertices);
-    const auto [cells, faces] = cell_data(coarse);
-    serial.create_triangulation(coarse.vertices, cells, faces);
+    serial.create_triangulation(coarse.vertices, cells, SubCellData());
     refine(serial, parameters);
 
     std::vector<unsigned int> weights;
     for (const auto &cell : serial.active_cell_iterators())
       weights.push_back(
-        static_cast<unsigned int>(100. * cost(Grid::coarse_cell(cell))));
+        static_cast<unsigned int>(100. * costs[material(cell)]));
     GridTools::partition_triangulation(Utilities::MPI::n_mpi_processes(
                                          mpi_communicator),
                                        weights,
@@ -208,10 +253,39 @@ namespace Voussoir
 
 
   void
+  Grid::find_faces(const CoarseMesh &coarse)
+  {
+    // by coarse cell and face, the sets
+    std::vector<std::array<std::vector<unsigned int>, 6>> sets(
+      coarse.cells.size());
+    unsigned int number = 0;
+    for (const auto &set : coarse.face_sets)
+      {
+        for (const CoarseMesh::Face &face : set.second)
+          if (auto &list = sets[face.cell][face.face];
+              list.empty() || list.back() != number)
+            list.push_back(number);
+        ++number;
+      }
+    for (const auto &cell : mesh->active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          const auto &sets_of_faces = sets[coarse_cell(cell)];
+          const auto  path          = children_upwards(cell);
+          for (const unsigned int face : cell->face_indices())
+            if (!sets_of_faces[face].empty() && lies_on_coarse_face(path, face))
+              for (const unsigned int set : sets_of_faces[face])
+                faces_of_set[set].push_back({cell, face});
+        }
+  }
+
+
+  void
   Grid::refine(dealii::Triangulation<3> &triangulation,
                const GridParameters     &parameters) const
   {
-    check_size(sets_of_cell.size() * std::pow(8., parameters.global_refinement),
+    check_size(triangulation.n_cells(0) *
+                 std::pow(8., parameters.global_refinement),
                1,
                "\"Global refinement\" in section \"Mesh\"",
                mpi_communicator);
@@ -221,6 +295,7 @@ namespace Voussoir
       {
         if (!item.set.empty())
           check_cell_set(item.set, "\"Local refinement\" in section \"Mesh\"");
+        const std::vector<bool> tagged = tags_in({item.set});
         for (unsigned int level = 0; level < item.levels; ++level)
           {
             for (const auto &cell : triangulation.active_cell_iterators())
@@ -228,7 +303,7 @@ namespace Voussoir
                 {
                   bool inside = true;
                   if (!item.set.empty())
-                    inside = in_cell_set(cell, item.set);
+                    inside = tagged[cell->material_id()];
                   else
                     for (unsigned int d = 0; d < 3; ++d)
                       inside = inside && cell->center()[d] >= item.lower[d] &&
@@ -256,49 +331,84 @@ namespace Voussoir
   }
 
 
-  bool
-  Grid::in_cell_set(const Cell &cell, const std::string &name) const
+  const std::vector<CellTag> &
+  Grid::tags() const
   {
-    const auto set = std::find(cell_sets.begin(), cell_sets.end(), name);
-    if (set == cell_sets.end())
-      return false;
-    const auto &sets = sets_of_cell[Grid::coarse_cell(cell)];
-    return std::find(sets.begin(), sets.end(), set - cell_sets.begin()) !=
-           sets.end();
+    return all_tags;
+  }
+
+
+  std::vector<std::string>
+  Grid::sets_of(const Cell &cell) const
+  {
+    std::vector<std::string> names;
+    for (const unsigned int set : all_tags[cell->material_id()].sets)
+      names.push_back(cell_sets[set]);
+    return names;
+  }
+
+
+  std::vector<bool>
+  Grid::tags_in(const std::vector<std::string> &names) const
+  {
+    std::vector<bool> result;
+    for (const CellTag &tag : all_tags)
+      result.push_back(
+        std::any_of(tag.sets.begin(), tag.sets.end(), [&](const auto set) {
+          return std::find(names.begin(), names.end(), cell_sets[set]) !=
+                 names.end();
+        }));
+    return result;
+  }
+
+
+  const std::vector<Grid::Face> &
+  Grid::faces(const std::string &name) const
+  {
+    return faces_of_set[std::find(face_sets.begin(), face_sets.end(), name) -
+                        face_sets.begin()];
   }
 
 
   bool
-  Grid::in_face_set(const Cell        &cell,
+  Grid::in_face_set(const ActiveCell  &cell,
                     const unsigned int face,
                     const std::string &name) const
   {
-    for (const FaceInSet &item : sets_of_faces[Grid::coarse_cell(cell)])
-      if (item.face == face && face_sets[item.set] == name)
-        {
-          // face 2d+s of a child lies on that face of its parent if the child
-          // sits on that side, that is, if bit d of its number is s
-          for (const unsigned int child : children_upwards(cell))
-            if (((child >> (face / 2)) & 1) != face % 2)
-              return false;
-          return true;
-        }
-    return false;
+    const auto place = [](const Face &item) {
+      return std::make_pair(item.cell->active_cell_index(), item.face);
+    };
+    const auto &list  = faces(name);
+    const auto  found = std::lower_bound(list.begin(),
+                                        list.end(),
+                                        Face{cell, face},
+                                        [&](const Face &a, const Face &b) {
+                                          return place(a) < place(b);
+                                        });
+    return found != list.end() && found->cell == cell && found->face == face;
   }
 
 
   void
-  Grid::for_each_face(const std::string      &name,
-                      const std::function<void(
-                        const dealii::Triangulation<3>::active_cell_iterator &,
-                        const unsigned int)> &visit) const
+  Grid::for_each_face(
+    const std::string                                                 &name,
+    const std::function<void(const ActiveCell &, const unsigned int)> &visit)
+    const
   {
-    for (const auto &cell : mesh->active_cell_iterators())
-      if (cell->is_locally_owned() &&
-          !sets_of_faces[Grid::coarse_cell(cell)].empty())
-        for (const unsigned int face : cell->face_indices())
-          if (in_face_set(cell, face, name))
-            visit(cell, face);
+    for (const Face &item : faces(name))
+      if (item.cell->is_locally_owned())
+        visit(item.cell, item.face);
+  }
+
+
+  unsigned int
+  Grid::owned_cell(const Cell &cell) const
+  {
+    return cell->global_active_cell_index() -
+           mesh->global_active_cell_index_partitioner()
+             .lock()
+             ->local_range()
+             .first;
   }
 
 
@@ -351,26 +461,11 @@ namespace Voussoir
   }
 
 
-  unsigned int
-  Grid::coarse_cell(const Cell &cell)
-  {
-    // p4est numbers the coarse cells in a way of its own, and a fully
-    // distributed mesh holds some of them only
-    if (dynamic_cast<const parallel::fullydistributed::Triangulation<3> *>(
-          &cell->get_triangulation()) != nullptr)
-      return cell->id().get_coarse_cell_id();
-    Cell coarse = cell;
-    while (coarse->level() > 0)
-      coarse = coarse->parent();
-    return coarse->index();
-  }
-
-
   std::uint64_t
   Grid::global_key(const Cell &cell)
   {
     const auto    path = children_upwards(cell);
-    std::uint64_t key  = Grid::coarse_cell(cell);
+    std::uint64_t key  = coarse_cell(cell);
     for (auto child = path.rbegin(); child != path.rend(); ++child)
       key = 8 * key + *child;
     // the level keeps apart a cell and its own first child

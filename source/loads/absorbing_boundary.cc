@@ -119,9 +119,9 @@ namespace Voussoir
     /** The faces of the boundary on this rank. */
     struct BoundaryFaces
     {
-      const Discretization                                  &discretization;
-      const std::vector<std::string>                         sets;
-      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell;
+      const Solid                   &solid;
+      const Discretization          &discretization;
+      const std::vector<std::string> sets;
 
       void
       visit(const std::function<void(const Cell &, const unsigned int)>
@@ -144,11 +144,11 @@ namespace Voussoir
     {
       std::set<unsigned int> mine;
       faces.visit([&](const Cell &cell, const unsigned int) {
-        mine.insert(faces.material_of_cell(cell));
+        mine.insert(faces.solid.grid().material(cell));
       });
       const auto all =
         join_over_ranks(std::vector<unsigned int>(mine.begin(), mine.end()),
-                        faces.discretization.grid.communicator());
+                        faces.solid.grid().communicator());
       const std::set<unsigned int> ordered(all.begin(), all.end());
       return {ordered.begin(), ordered.end()};
     }
@@ -167,7 +167,7 @@ namespace Voussoir
               upper[d] = std::max(upper[d], node.position[d]);
             }
       });
-      const MPI_Comm communicator = faces.discretization.grid.communicator();
+      const MPI_Comm communicator = faces.solid.grid().communicator();
       for (unsigned int d = 0; d < 3; ++d)
         {
           lower[d] = Utilities::MPI::min(lower[d], communicator);
@@ -197,17 +197,16 @@ namespace Voussoir
     /** Springs and dashpots at the owned nodes, by quadrature at the nodes;
      *  more than one record of a node where faces meet. */
     std::vector<std::pair<unsigned int, Stiffness>>
-    find_stiffnesses(const BoundaryFaces                 &faces,
-                     const AbsorbingParameters           &parameters,
-                     const std::vector<const Material *> &materials)
+    find_stiffnesses(const BoundaryFaces       &faces,
+                     const AbsorbingParameters &parameters)
     {
       const Discretization &discretization = faces.discretization;
       FaceNodes             face_nodes(discretization.mapping, faces.scalar());
       std::vector<std::pair<types::global_dof_index, Stiffness>> records;
       faces.visit([&](const Cell &cell, const unsigned int face) {
-        const auto coefficients = coefficients_for(
-          parameters,
-          materials[faces.material_of_cell(cell)]->elastic_constants());
+        const auto coefficients =
+          coefficients_for(parameters,
+                           faces.solid.material_of(cell).elastic_constants());
         const auto nodes =
           discretization.cell_nodes(discretization.dof_cell(cell));
         for (const auto &[j, x, normal, area] : face_nodes.of(cell, face))
@@ -256,7 +255,7 @@ namespace Voussoir
     std::vector<SideFace>
     find_side_faces(const BoundaryFaces &faces, FEFaceValues<3> &at_points)
     {
-      const Grid           &grid = faces.discretization.grid;
+      const Grid           &grid = faces.solid.grid();
       std::vector<SideFace> sides;
       const auto collect = [&](const Cell &cell, const unsigned int face) {
         at_points.reinit(cell, face);
@@ -265,7 +264,7 @@ namespace Voussoir
         SideFace side{1e300,
                       -1e300,
                       0.,
-                      faces.material_of_cell(cell),
+                      faces.solid.grid().material(cell),
                       cell->face(face)->center()};
         for (const unsigned int q : at_points.quadrature_point_indices())
           side.area += at_points.JxW(q);
@@ -289,40 +288,29 @@ namespace Voussoir
   } // namespace
 
 
-  AbsorbingBoundary::AbsorbingBoundary(
-    const Discretization                                  &discretization,
-    const AbsorbingParameters                             &parameters,
-    const std::vector<const Material *>                   &materials,
-    const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
-    const QuadratureRule                                   quadrature,
-    NodalTerms                                            &terms)
+  AbsorbingBoundary::AbsorbingBoundary(const Solid               &solid,
+                                       const AbsorbingParameters &parameters,
+                                       const QuadratureRule       quadrature)
   {
-    const BoundaryFaces faces{discretization,
-                              split_list(parameters.face_sets),
-                              material_of_cell};
+    const Discretization &discretization = solid.discretization;
+    const BoundaryFaces   faces{solid,
+                              discretization,
+                              split_list(parameters.face_sets)};
     touching_materials = find_touching_materials(faces);
     box                = find_extent(faces);
 
     std::map<unsigned int, unsigned int> boundary_number; // of an owned node
-    for (const auto &[node, stiffness] :
-         find_stiffnesses(faces, parameters, materials))
+    for (const auto &[node, stiffness] : find_stiffnesses(faces, parameters))
       {
         const auto [place, is_new] =
           boundary_number.emplace(node, boundary.nodes.size());
         if (is_new)
           {
             boundary.nodes.push_back(discretization.node_positions[node]);
-            slots.push_back(terms.add_node(node));
-            springs.emplace_back();
-            dashpots.emplace_back();
+            springs.push_back({node, {}, {}, {}});
           }
-        springs[place->second] += stiffness.spring;
-        dashpots[place->second] += stiffness.dashpot;
-      }
-    for (unsigned int i = 0; i < slots.size(); ++i)
-      {
-        terms.springs[slots[i]] += springs[i];
-        terms.dashpots[slots[i]] += dashpots[i];
+        springs[place->second].spring += stiffness.spring;
+        springs[place->second].dashpot += stiffness.dashpot;
       }
 
     // the tractions at the points at which the cells integrate, so that a
@@ -374,12 +362,20 @@ namespace Voussoir
   }
 
 
+  const std::vector<NodalTerm> &
+  AbsorbingBoundary::terms() const
+  {
+    return springs;
+  }
+
+
   void
   AbsorbingBoundary::add_forces(const FreeField &field,
                                 NodalForces     &forces) const
   {
-    for (unsigned int i = 0; i < slots.size(); ++i)
-      forces[slots[i]] += springs[i] * field.displacement[i] +
-                          dashpots[i] * field.velocity[i] + field.force[i];
+    for (unsigned int i = 0; i < springs.size(); ++i)
+      forces.add(springs[i].node,
+                 springs[i].spring * field.displacement[i] +
+                   springs[i].dashpot * field.velocity[i] + field.force[i]);
   }
 } // namespace Voussoir

@@ -185,11 +185,10 @@ namespace Voussoir
 
 
   AddedMass
-  add_westergaard_mass(const Discretization      &discretization,
-                       const AddedMassParameters &parameters,
-                       const double               density,
-                       NodalTerms                &terms,
-                       Log                       &log)
+  westergaard_mass(const Discretization      &discretization,
+                   const AddedMassParameters &parameters,
+                   const double               density,
+                   Log                       &log)
   {
     const auto sets = split_list(parameters.face_sets);
     check_level(discretization,
@@ -205,7 +204,7 @@ namespace Voussoir
     const Bed      bed(facets, communicator);
 
     std::vector<std::pair<types::global_dof_index, NodalTerms::Matrix>> records;
-    AddedMass result{0., axes.river};
+    AddedMass result{0., axes.river, {}};
     for (const Facet &facet : facets)
       if (facet.z < parameters.level)
         {
@@ -221,7 +220,7 @@ namespace Voussoir
         }
     result.mass = Utilities::MPI::sum(result.mass, communicator);
     for (const auto &[node, mass] : discretization.send_to_owners(records))
-      terms.added_mass[terms.add_node(node)] += mass;
+      result.terms.push_back({node, {}, {}, mass});
     return result;
   }
 } // namespace Voussoir

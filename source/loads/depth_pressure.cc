@@ -41,23 +41,24 @@ namespace Voussoir
       }
 
       void
-      prepare(const LoadedModel &model,
-              NodalTerms &,
-              const std::string &place) override
+      prepare(const Solid         &solid,
+              const ParameterFile &file,
+              const std::string   &place,
+              Log                 &log) override
       {
-        if (model.file.given(place + "/Level").empty())
+        if (file.given(place + "/Level").empty())
           throw UserError("Section \"" + place +
                           "\" has no \"Level\"; give the elevation of the " +
                           surface + " [m].");
         const auto        sets    = split_list(face_sets);
         const std::string section = " in section \"" + place + "\"";
-        check_level(model.discretization,
+        check_level(solid.discretization,
                     sets,
                     "\"Face sets\"" + section,
                     level,
                     "\"Level\"" + section,
-                    model.log);
-        forces = depth_pressure_forces(model.discretization,
+                    log);
+        forces = depth_pressure_forces(solid.discretization,
                                        sets,
                                        "\"Face sets\"" + section,
                                        level,

@@ -47,30 +47,31 @@ namespace Voussoir
       }
 
       void
-      prepare(const LoadedModel &model,
-              NodalTerms        &terms,
-              const std::string &place) override
+      prepare(const Solid &solid,
+              const ParameterFile &,
+              const std::string &place,
+              Log               &log) override
       {
-        check(place, model.log);
+        check(place, log);
         if (factor.given())
           factor.prepare("\"Time function\" in section \"" + place + "\"");
-        const Discretization &discretization = model.discretization;
+        const Discretization &discretization = solid.discretization;
         NodalVolumes          nodal_volumes(discretization);
         std::vector<std::pair<types::global_dof_index, double>> records;
-        for_each_cell(
-          discretization,
-          split_list(cell_sets),
-          "\"Cell sets\" in section \"" + place + "\"",
-          [&](const Discretization::Cell &cell) {
-            const double density =
-              model.materials[model.material_of_cell(cell)]->density;
-            const auto &volumes = nodal_volumes.of(cell);
-            const auto  nodes   = discretization.cell_nodes(cell);
-            for (unsigned int j = 0; j < nodes.size(); ++j)
-              for (const auto &share : discretization.carriers(nodes[j]))
-                records.emplace_back(share.node,
-                                     share.weight * density * volumes[j]);
-          });
+        for_each_cell(discretization,
+                      split_list(cell_sets),
+                      "\"Cell sets\" in section \"" + place + "\"",
+                      [&](const Discretization::Cell &cell) {
+                        const double density = solid.material_of(cell).density;
+                        const auto  &volumes = nodal_volumes.of(cell);
+                        const auto   nodes   = discretization.cell_nodes(cell);
+                        for (unsigned int j = 0; j < nodes.size(); ++j)
+                          for (const auto &share :
+                               discretization.carriers(nodes[j]))
+                            records.emplace_back(share.node,
+                                                 share.weight * density *
+                                                   volumes[j]);
+                      });
         mass.assign(discretization.n_owned_nodes(), 0.);
         for (const auto &[node, part] : discretization.send_to_owners(records))
           mass[node] += part;
@@ -78,17 +79,26 @@ namespace Voussoir
           return;
         for (unsigned int node = 0; node < mass.size(); ++node)
           if (mass[node] > 0.)
-            shares.emplace_back(terms.add_node(node), mass[node]);
+            shares.emplace_back(node, mass[node]);
+      }
+
+      std::vector<unsigned int>
+      nodes() const override
+      {
+        std::vector<unsigned int> list;
+        for (const auto &share : shares)
+          list.push_back(share.first);
+        return list;
       }
 
       void
-      add_forces(const double time, NodalForces &forces) override
+      add_forces(const double time, NodalForces &forces) const override
       {
         if (!factor.given())
           return;
         const Tensor<1, 3> now = factor(time) * acceleration;
-        for (const auto &[slot, node_mass] : shares)
-          forces[slot] += node_mass * now;
+        for (const auto &[node, node_mass] : shares)
+          forces.add(node, node_mass * now);
       }
 
       void
@@ -128,7 +138,7 @@ namespace Voussoir
       TimeFactor          factor{""};
       std::vector<double> mass; // of each owned node [kg]
 
-      // of a weight over time, slots of the nodal terms and their mass [kg]
+      // of a weight over time, nodes and their mass [kg]
       std::vector<std::pair<unsigned int, double>> shares;
     };
 

@@ -25,28 +25,38 @@ namespace Voussoir
       }
 
       void
-      prepare(const LoadedModel &model,
-              NodalTerms        &terms,
-              const std::string &place) override
+      prepare(const Solid         &solid,
+              const ParameterFile &file,
+              const std::string   &place,
+              Log &) override
       {
         factor.prepare("\"Time function\" in section \"" + place + "\"");
-        if (model.file.given(place + "/Force").empty())
+        if (file.given(place + "/Force").empty())
           throw UserError("Section \"" + place +
                           "\" has no \"Force\"; give its components, or leave "
                           "the load out.");
-        const PointWeights weights(model.discretization,
+        const PointWeights weights(solid.discretization,
                                    {{"load", point}},
                                    "\"Point\" in section \"" + place + "\"");
         for (const auto &item : weights.items)
-          shares.emplace_back(terms.add_node(item.node), item.weight);
+          shares.emplace_back(item.node, item.weight);
+      }
+
+      std::vector<unsigned int>
+      nodes() const override
+      {
+        std::vector<unsigned int> list;
+        for (const auto &share : shares)
+          list.push_back(share.first);
+        return list;
       }
 
       void
-      add_forces(const double time, NodalForces &forces) override
+      add_forces(const double time, NodalForces &forces) const override
       {
         const double now = factor(time);
-        for (const auto &[slot, weight] : shares)
-          forces[slot] += now * weight * force;
+        for (const auto &[node, weight] : shares)
+          forces.add(node, now * weight * force);
       }
 
     private:
@@ -54,7 +64,7 @@ namespace Voussoir
       Tensor<1, 3> force;
       TimeFactor   factor;
 
-      std::vector<std::pair<unsigned int, double>> shares;
+      std::vector<std::pair<unsigned int, double>> shares; // of nodes
     };
 
     const Registry<Load>::Add<PointLoad>

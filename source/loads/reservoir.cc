@@ -128,7 +128,6 @@ namespace Voussoir
                        const GridParameters      &grid_parameters,
                        const ReservoirParameters &parameters,
                        const Discretization      &solid,
-                       NodalTerms                &terms,
                        Log                       &log)
     : space(water, grid_parameters, solid.degree, solid.grid.communicator())
     , density(parameters.density)
@@ -173,7 +172,7 @@ namespace Voussoir
         if (dashpots.local_element(i) > 0.)
           lossy_nodes.push_back(i);
       }
-    couple(solid, terms);
+    couple(solid);
     std::vector<std::string> open_sets(surface);
     open_sets.insert(open_sets.end(), ends.begin(), ends.end());
     find_floor(open_sets);
@@ -222,7 +221,7 @@ namespace Voussoir
 
 
   void
-  Reservoir::couple(const Discretization &solid, NodalTerms &terms)
+  Reservoir::couple(const Discretization &solid)
   {
     const WetNodes wet(space);
     const auto     tree = pack_rtree_of_indices(wet.positions);
@@ -270,8 +269,7 @@ namespace Voussoir
       }
     wall.reinit(space.owned_dofs, unknowns, space.grid.communicator());
     for (const auto &[pair, area] : area_of_pair)
-      pairs.push_back({terms.add_node(pair.first),
-                       pair.first,
+      pairs.push_back({pair.first,
                        wall.get_partitioner()->global_to_local(pair.second),
                        area});
 
@@ -291,6 +289,16 @@ namespace Voussoir
                               Tensor<1, 3>({sums[0].local_element(i),
                                             sums[1].local_element(i),
                                             sums[2].local_element(i)})});
+  }
+
+
+  std::vector<unsigned int>
+  Reservoir::wet_nodes() const
+  {
+    std::vector<unsigned int> nodes;
+    for (const Pair &pair : pairs)
+      nodes.push_back(pair.node);
+    return nodes;
   }
 
 

@@ -29,32 +29,42 @@ namespace Voussoir
       }
 
       void
-      prepare(const LoadedModel &model,
-              NodalTerms        &terms,
-              const std::string &place) override
+      prepare(const Solid         &solid,
+              const ParameterFile &file,
+              const std::string   &place,
+              Log &) override
       {
         factor.prepare("\"Time function\" in section \"" + place + "\"");
-        if (model.file.given(place + "/Traction").empty() &&
-            model.file.given(place + "/Pressure").empty())
+        if (file.given(place + "/Traction").empty() &&
+            file.given(place + "/Pressure").empty())
           throw UserError("Section \"" + place +
                           "\" has neither a \"Traction\" nor a \"Pressure\"; "
                           "give one of them, or leave the load out.");
         for (const auto &[node, force] :
-             face_forces(model.discretization,
+             face_forces(solid.discretization,
                          split_list(face_sets),
                          "\"Face sets\" in section \"" + place + "\"",
                          [&](const Point<3> &, const Tensor<1, 3> &normal) {
                            return traction - pressure * normal;
                          }))
-          shares.emplace_back(terms.add_node(node), force);
+          shares.emplace_back(node, force);
+      }
+
+      std::vector<unsigned int>
+      nodes() const override
+      {
+        std::vector<unsigned int> list;
+        for (const auto &share : shares)
+          list.push_back(share.first);
+        return list;
       }
 
       void
-      add_forces(const double time, NodalForces &forces) override
+      add_forces(const double time, NodalForces &forces) const override
       {
         const double now = factor(time);
-        for (const auto &[slot, force] : shares)
-          forces[slot] += now * force;
+        for (const auto &[node, force] : shares)
+          forces.add(node, now * force);
       }
 
     private:
@@ -63,7 +73,7 @@ namespace Voussoir
       double       pressure = 0.;
       TimeFactor   factor;
 
-      std::vector<std::pair<unsigned int, Tensor<1, 3>>> shares;
+      std::vector<std::pair<unsigned int, Tensor<1, 3>>> shares; // of nodes
     };
 
     const Registry<Load>::Add<SurfaceLoad>

@@ -51,9 +51,10 @@ namespace Voussoir
       }
 
       void
-      prepare(const LoadedModel &model,
-              NodalTerms &,
-              const std::string &place) override
+      prepare(const Solid &solid,
+              const ParameterFile &,
+              const std::string &place,
+              Log               &log) override
       {
         const std::string section = " in section \"" + place + "\"";
         read_table("\"Table\"" + section);
@@ -62,43 +63,42 @@ namespace Voussoir
                           "\" changes no temperature; give a \"Uniform "
                           "change\" or a \"Table\".");
 
-        const Discretization &discretization = model.discretization;
+        const Discretization &discretization = solid.discretization;
         const auto            sets           = split_list(cell_sets);
         if (sets.empty())
           throw UserError("\"Cell sets\"" + section +
                           " is empty; name the cell sets that it changes in.");
         double                            largest_expansion = 0.;
         std::set<types::global_dof_index> touched;
-        for_each_cell(
-          discretization,
-          sets,
-          "\"Cell sets\"" + section,
-          [&](const Discretization::Cell &cell) {
-            largest_expansion = std::max(
-              largest_expansion,
-              model.materials[model.material_of_cell(cell)]->expansion);
-            for (const auto node : discretization.cell_nodes(cell))
-              touched.insert(node);
-          });
+        for_each_cell(discretization,
+                      sets,
+                      "\"Cell sets\"" + section,
+                      [&](const Discretization::Cell &cell) {
+                        largest_expansion =
+                          std::max(largest_expansion,
+                                   solid.material_of(cell).expansion);
+                        for (const auto node : discretization.cell_nodes(cell))
+                          touched.insert(node);
+                      });
         if (Utilities::MPI::max(largest_expansion,
                                 discretization.grid.communicator()) == 0.)
           throw UserError("Section \"" + place +
                           "\" does nothing, as \"Thermal expansion\" of the "
                           "materials of its cells is zero; give it in section "
                           "\"Materials\".");
-        nodes = owned_carriers(discretization, touched);
-        changes.assign(nodes.size(), uniform);
+        heated_nodes = owned_carriers(discretization, touched);
+        changes.assign(heated_nodes.size(), uniform);
         if (!elevations.empty())
           add_table(discretization, section);
-        check_changes(discretization, section, model.log);
+        check_changes(discretization, section, log);
       }
 
       void
       add_temperature(Vector &temperature) const override
       {
-        for (unsigned int i = 0; i < nodes.size(); ++i)
+        for (unsigned int i = 0; i < heated_nodes.size(); ++i)
           for (unsigned int d = 0; d < 3; ++d)
-            temperature.local_element(3 * nodes[i] + d) += changes[i];
+            temperature.local_element(3 * heated_nodes[i] + d) += changes[i];
       }
 
     private:
@@ -117,9 +117,9 @@ namespace Voussoir
           downstream(discretization.grid,
                      split_list(downstream_faces),
                      "\"Downstream faces\"" + section);
-        for (unsigned int i = 0; i < nodes.size(); ++i)
+        for (unsigned int i = 0; i < heated_nodes.size(); ++i)
           {
-            const Point<3> &x    = discretization.node_positions[nodes[i]];
+            const Point<3> &x = discretization.node_positions[heated_nodes[i]];
             const double    from = upstream(x), to = downstream(x);
             // where the two faces meet it is the mean
             const double part = from + to > 0. ? from / (from + to) : 0.5;
@@ -138,9 +138,9 @@ namespace Voussoir
 
         double largest = 0., bottom = std::numeric_limits<double>::max(),
                top = -bottom;
-        for (unsigned int i = 0; i < nodes.size(); ++i)
+        for (unsigned int i = 0; i < heated_nodes.size(); ++i)
           {
-            const double z = discretization.node_positions[nodes[i]][2];
+            const double z = discretization.node_positions[heated_nodes[i]][2];
             bottom         = std::min(bottom, z);
             top            = std::max(top, z);
             largest        = std::max(largest, std::abs(changes[i]));
@@ -199,8 +199,8 @@ namespace Voussoir
       std::string downstream_faces = "downstream face";
 
       std::vector<double>       elevations, means, differences; // the table
-      std::vector<unsigned int> nodes;
-      std::vector<double>       changes; // of these nodes [K]
+      std::vector<unsigned int> heated_nodes;
+      std::vector<double>       changes; // of these [K]
     };
 
     const Registry<Load>::Add<Temperature>

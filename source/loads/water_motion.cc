@@ -45,7 +45,8 @@ namespace Voussoir
         pressure.local_element(node.water);
     wall_pressure.update_ghost_values();
     for (const Reservoir::Pair &pair : reservoir.pairs)
-      forces[pair.slot] += wall_pressure.local_element(pair.water) * pair.area;
+      forces.add(pair.node,
+                 wall_pressure.local_element(pair.water) * pair.area);
   }
 
 

@@ -28,8 +28,8 @@ namespace Voussoir
       if (model.contact != nullptr)
         for (const ContactPoint &point : model.contact->points())
           result = result || !point.joined;
-      return Utilities::MPI::logical_or(
-        result, model.discretization.grid.communicator());
+      return Utilities::MPI::logical_or(result,
+                                        model.solid.grid().communicator());
     }
   } // namespace
 

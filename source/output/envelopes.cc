@@ -32,13 +32,13 @@ namespace Voussoir
       StressEnvelope(const ObservedModel            &model,
                      const std::vector<std::string> &sets)
         : model(model)
-        , matrix_free(model.discretization.matrix_free)
-        , points(QTrapezoid<1>(), model.discretization.degree)
+        , matrix_free(model.solid.discretization.matrix_free)
+        , points(QTrapezoid<1>(), model.solid.discretization.degree)
         , filtered(model)
       {
-        const auto &scalar = model.discretization.fe.base_element(0);
+        const auto &scalar = model.solid.discretization.fe.base_element(0);
         const auto  order  = FETools::lexicographic_to_hierarchic_numbering<3>(
-          model.discretization.degree);
+          model.solid.discretization.degree);
         for (const Point<3> &point : points.get_points())
           {
             shape_values.emplace_back();
@@ -59,10 +59,11 @@ namespace Voussoir
             model.initial.displacement.update_ghost_values();
             model.initial.temperature.update_ghost_values();
           }
-        Evaluation cells(matrix_free);
+        Evaluation              cells(matrix_free);
+        const std::vector<bool> tagged = model.solid.grid().tags_in(sets);
         for (unsigned int b = 0; b < matrix_free.n_cell_batches(); ++b)
           {
-            const auto watched = lanes_in(b, sets);
+            const auto watched = lanes_in(b, sets.empty(), tagged);
             if (watched.any())
               batches.push_back(make_batch(b, watched, is_static, cells));
           }
@@ -133,7 +134,7 @@ namespace Voussoir
         std::size_t n = 0;
         for (const Batch &batch : batches)
           n += batch.watched.count();
-        const auto &triangulation = model.discretization.grid.triangulation();
+        const auto &triangulation = model.solid.grid().triangulation();
         return double(
                  Utilities::MPI::sum(n, triangulation.get_communicator())) /
                double(triangulation.n_global_active_cells());
@@ -192,19 +193,17 @@ namespace Voussoir
       };
 
       LaneSet
-      lanes_in(const unsigned int              batch,
-               const std::vector<std::string> &sets) const
+      lanes_in(const unsigned int       batch,
+               const bool               all,
+               const std::vector<bool> &tagged) const
       {
         LaneSet found;
         for (unsigned int lane = 0;
              lane < matrix_free.n_active_entries_per_cell_batch(batch);
              ++lane)
           found[lane] =
-            sets.empty() ||
-            std::any_of(sets.begin(), sets.end(), [&](const auto &set) {
-              return model.discretization.grid.in_cell_set(
-                matrix_free.get_cell_iterator(batch, lane), set);
-            });
+            all ||
+            tagged[matrix_free.get_cell_iterator(batch, lane)->material_id()];
         return found;
       }
 
@@ -218,7 +217,8 @@ namespace Voussoir
         batch.number  = number;
         batch.watched = watched;
         batch.damping_factor =
-          model.materials[model.discretization.material_of_batch[number]]
+          model.solid
+            .materials[model.solid.discretization.material_of_batch[number]]
             ->damping_factor();
         batch.laws.resize(points.size());
         for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
@@ -258,7 +258,7 @@ namespace Voussoir
       {
         Tensor<2, 3, Lanes> jacobian, unit_gradient;
         const Lanes        *values = cells.begin_dof_values();
-        if (model.discretization.degree == 1)
+        if (model.solid.discretization.degree == 1)
           // the edges that meet in the corner
           for (unsigned int k = 0; k < 3; ++k)
             {
@@ -394,16 +394,16 @@ namespace Voussoir
     std::vector<bool>
     vertices_between_materials(const ObservedModel &model)
     {
-      const auto &triangulation = model.discretization.grid.triangulation();
-      constexpr unsigned int    none = numbers::invalid_unsigned_int;
+      const auto            &triangulation = model.solid.grid().triangulation();
+      constexpr unsigned int none          = numbers::invalid_unsigned_int;
       std::vector<unsigned int> first(triangulation.n_vertices(), none);
       std::vector<bool>         between(triangulation.n_vertices(), false);
       for (const auto &cell :
-           model.discretization.dof_handler.active_cell_iterators())
+           model.solid.discretization.dof_handler.active_cell_iterators())
         if (!cell->is_artificial())
           for (const unsigned int v : cell->vertex_indices())
             {
-              const unsigned int material = model.material_of_cell(cell);
+              const unsigned int material = model.solid.grid().material(cell);
               unsigned int      &known    = first[cell->vertex_index(v)];
               if (known == none)
                 known = material;
@@ -454,7 +454,7 @@ namespace Voussoir
       check(const ObservedModel &observed) const override
       {
         for (const std::string &set : split_list(stress_sets))
-          observed.discretization.grid.check_cell_set(
+          observed.solid.grid().check_cell_set(
             set, "\"Stress in\" in section \"Output/envelopes\"");
       }
 
@@ -465,7 +465,7 @@ namespace Voussoir
         schedule = Schedule(interval, model->time_step);
         looks = Schedule(model->looking_interval(interval), model->time_step);
         // the three components of a node hold three numbers each
-        largest       = model->discretization.create_vector();
+        largest       = model->solid.discretization.create_vector();
         accelerations = previous = last_look = largest;
         last_step                            = 0;
         stress.reset();
@@ -508,8 +508,7 @@ namespace Voussoir
         std::vector<CellField>               cell_fields;
         if (stress)
           {
-            const auto n =
-              model->discretization.grid.triangulation().n_active_cells();
+            const auto n = model->solid.grid().triangulation().n_active_cells();
             // cells that are not looked at
             for (auto &field : values)
               {
@@ -585,20 +584,20 @@ namespace Voussoir
       summarise_stress(nlohmann::json &summary)
       {
         const auto between = vertices_between_materials(*model);
-        std::vector<TensionSummary> materials(model->materials.size());
+        std::vector<TensionSummary> materials(model->solid.materials.size());
         stress->for_each_cell([&](const auto &cell, const auto &extremes) {
           bool beside = false;
           for (const unsigned int v : cell->vertex_indices())
             beside = beside || between[cell->vertex_index(v)];
-          materials[model->material_of_cell(cell)].add(extremes,
-                                                       cell->center(),
-                                                       cell->measure(),
-                                                       beside);
+          materials[model->solid.grid().material(cell)].add(extremes,
+                                                            cell->center(),
+                                                            cell->measure(),
+                                                            beside);
         });
         for (unsigned int m = 0; m < materials.size(); ++m)
           {
             const auto found =
-              materials[m].json(model->discretization.grid.communicator());
+              materials[m].json(model->solid.grid().communicator());
             if (found.at("largest principal stress [MPa]").get<double>() >
                 -1e300)
               {

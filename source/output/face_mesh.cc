@@ -47,7 +47,7 @@ namespace Voussoir
                      const std::vector<std::string> &all_names)
     : folder(model.folder)
     , log(model.log)
-    , discretization(model.discretization)
+    , discretization(model.solid.discretization)
     , kind(kind)
     , all_names(all_names)
   {

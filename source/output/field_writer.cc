@@ -50,12 +50,13 @@ namespace Voussoir
     struct InitialPoints
     {
       explicit InitialPoints(const ObservedModel &model)
-        : drawn(model.discretization, model.initial.displacement)
+        : drawn(model.solid.discretization, model.initial.displacement)
         , temperature(
-            with_ghosts(model.discretization, model.initial.temperature))
-        , values(model.discretization.mapping,
-                 model.discretization.fe,
-                 QIterated<3>(QTrapezoid<1>(), model.discretization.degree),
+            with_ghosts(model.solid.discretization, model.initial.temperature))
+        , values(model.solid.discretization.mapping,
+                 model.solid.discretization.fe,
+                 QIterated<3>(QTrapezoid<1>(),
+                              model.solid.discretization.degree),
                  update_values)
         , temperatures(values.n_quadrature_points)
       {}
@@ -85,14 +86,14 @@ namespace Voussoir
       /** @param memory w of FilteredDisplacement, or null */
       PrincipalStresses(const ObservedModel &model, const Vector *memory)
         : model(model)
-        , points(QTrapezoid<1>(), model.discretization.degree)
+        , points(QTrapezoid<1>(), model.solid.discretization.degree)
         , initial(model.initial.displacement.size() > 0 ?
                     std::make_unique<InitialPoints>(model) :
                     nullptr)
-        , memory(
-            memory != nullptr ?
-              std::make_unique<DrawnStrains>(model.discretization, *memory) :
-              nullptr)
+        , memory(memory != nullptr ?
+                   std::make_unique<DrawnStrains>(model.solid.discretization,
+                                                  *memory) :
+                   nullptr)
       {}
 
       void
@@ -102,7 +103,8 @@ namespace Voussoir
       {
         const auto   cell = inputs.get_cell<3>();
         const double damping =
-          model.materials[model.material_of_cell(cell)]->damping_factor();
+          model.solid.materials[model.solid.grid().material(cell)]
+            ->damping_factor();
         if (initial)
           initial->reinit(cell);
         const auto *strains_of_memory = memory ? &memory->at(cell) : nullptr;
@@ -173,11 +175,11 @@ namespace Voussoir
     material_of_cells(const ObservedModel &model)
     {
       dealii::Vector<float> result(
-        model.discretization.grid.triangulation().n_active_cells());
+        model.solid.grid().triangulation().n_active_cells());
       for (const auto &cell :
-           model.discretization.dof_handler.active_cell_iterators())
+           model.solid.discretization.dof_handler.active_cell_iterators())
         if (cell->is_locally_owned())
-          result[cell->active_cell_index()] = model.material_of_cell(cell);
+          result[cell->active_cell_index()] = model.solid.grid().material(cell);
       return result;
     }
 
@@ -202,7 +204,7 @@ namespace Voussoir
                const double                   time,
                const std::vector<CellField>  &cell_fields)
   {
-    const Discretization &discretization = model.discretization;
+    const Discretization &discretization = model.solid.discretization;
 
     DataOut<3> data_out;
     data_out.attach_dof_handler(discretization.dof_handler);

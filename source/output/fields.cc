@@ -100,8 +100,7 @@ namespace Voussoir
       void
       find_quality()
       {
-        const Triangulation<3> &mesh =
-          model->discretization.grid.triangulation();
+        const Triangulation<3> &mesh = model->solid.grid().triangulation();
         scaled_jacobian.reinit(mesh.n_active_cells());
         aspect_ratio.reinit(mesh.n_active_cells());
         for (const auto &cell : mesh.active_cell_iterators())

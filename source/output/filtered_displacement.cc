@@ -10,7 +10,7 @@ namespace Voussoir
     vector_with(const ObservedModel &model, const IndexSet &needed)
     {
       const auto &all =
-        *model.discretization.matrix_free.get_vector_partitioner();
+        *model.solid.discretization.matrix_free.get_vector_partitioner();
       const auto partitioner = std::make_shared<Utilities::MPI::Partitioner>(
         all.locally_owned_range(), needed, all.get_mpi_communicator());
       return Vector(partitioner);
@@ -19,7 +19,7 @@ namespace Voussoir
 
 
   FilteredDisplacement::FilteredDisplacement(const ObservedModel &model)
-    : FilteredDisplacement(model, model.discretization.create_vector())
+    : FilteredDisplacement(model, model.solid.discretization.create_vector())
   {
     add_range(0, u.locally_owned_size());
   }

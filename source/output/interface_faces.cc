@@ -80,7 +80,7 @@ namespace Voussoir
                             const double                          time)
   {
     const Contact        &contact        = *model.contact;
-    const Discretization &discretization = model.discretization;
+    const Discretization &discretization = model.solid.discretization;
     const FaceMesh        mesh(model,
                         contact.surface_names(),
                         "\"Interfaces\"",

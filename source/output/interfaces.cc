@@ -62,7 +62,7 @@ namespace Voussoir
         parse_points(points_text, place);
         find_sliding_blocks(blocks_text,
                             blocks_place,
-                            observed.discretization,
+                            observed.solid.discretization,
                             *observed.contact);
       }
 
@@ -73,7 +73,7 @@ namespace Voussoir
       {
         model        = std::make_unique<ObservedModel>(observed);
         contact      = observed.contact;
-        communicator = observed.discretization.grid.communicator();
+        communicator = observed.solid.grid().communicator();
         schedule     = Schedule(interval, observed.time_step);
         points       = find_contact_points(*contact,
                                      parse_points(points_text, place),
@@ -94,7 +94,7 @@ namespace Voussoir
         time_at_one.assign(names.size(), 0.);
         blocks = find_sliding_blocks(blocks_text,
                                      blocks_place,
-                                     observed.discretization,
+                                     observed.solid.discretization,
                                      *contact);
         safety_of_blocks.assign(blocks.size(), {});
         energies_at_start = energies();

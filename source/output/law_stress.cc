@@ -8,14 +8,14 @@ namespace Voussoir
                        const Discretization::Cell &cell,
                        const Point<3>             &unit)
   {
-    const unsigned int number = model.material_of_cell(cell);
-    material                  = model.materials[number];
+    const unsigned int number = model.solid.grid().material(cell);
+    material                  = model.solid.materials[number];
     history                   = model.material_memory.of(number);
     k                         = model.internal_force.factor_of(number);
     if (history == nullptr)
       return;
-    place              = history->place_of(cell);
-    const auto &points = model.discretization.points(number).get_points();
+    place              = model.solid.discretization.place_of(cell);
+    const auto &points = model.solid.discretization.points(number).get_points();
     for (unsigned int i = 1; i < points.size(); ++i)
       // of equally near ones the first, whatever the round-off
       if (points[i].distance(unit) < points[q].distance(unit) - 1e-10)

@@ -126,9 +126,9 @@ namespace Voussoir
                                           const double,
                                           const CrackOpening &)> &visit)
   {
-    for (unsigned int m = 0; m < model.materials.size(); ++m)
+    for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
       {
-        const Material     &material = *model.materials[m];
+        const Material     &material = *model.solid.materials[m];
         const PointHistory *history  = model.material_memory.of(m);
         if (history == nullptr || !tells_of_cracks(material))
           continue;
@@ -156,18 +156,18 @@ namespace Voussoir
   std::map<std::string, dealii::Vector<float>>
   memory_of_cells(const ObservedModel &model)
   {
-    const auto n = model.discretization.grid.triangulation().n_active_cells();
+    const auto n = model.solid.grid().triangulation().n_active_cells();
     std::map<std::string, dealii::Vector<float>> result;
-    for (unsigned int m = 0; m < model.materials.size(); ++m)
+    for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
       {
         const PointHistory *history = model.material_memory.of(m);
-        const auto          names   = names_of(*model.materials[m]);
+        const auto          names   = names_of(*model.solid.materials[m]);
         for (const std::string &name : names)
           if (result[name].size() == 0)
             result[name].reinit(n);
         if (history == nullptr)
           continue;
-        for_each_point(*model.materials[m],
+        for_each_point(*model.solid.materials[m],
                        *history,
                        [&](const Discretization::Cell &cell,
                            const double                band,
@@ -195,7 +195,7 @@ namespace Voussoir
                        widest = {opening.now, opening.now / band};
                    });
     const auto all =
-      Utilities::MPI::all_gather(model.discretization.grid.communicator(),
+      Utilities::MPI::all_gather(model.solid.grid().communicator(),
                                  std::make_pair(widest.share, widest.opening));
     const auto most = *std::max_element(all.begin(), all.end());
     return {most.second, most.first};
@@ -207,15 +207,15 @@ namespace Voussoir
                  const std::vector<std::string> &material_names)
   {
     nlohmann::json result;
-    const MPI_Comm communicator = model.discretization.grid.communicator();
-    for (unsigned int m = 0; m < model.materials.size(); ++m)
+    const MPI_Comm communicator = model.solid.grid().communicator();
+    for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
       {
         const PointHistory *history = model.material_memory.of(m);
         if (history == nullptr)
           continue;
-        const auto          names = names_of(*model.materials[m]);
+        const auto          names = names_of(*model.solid.materials[m]);
         std::vector<double> largest(names.size()), volumes(3);
-        for_each_point(*model.materials[m],
+        for_each_point(*model.solid.materials[m],
                        *history,
                        [&](const Discretization::Cell &cell,
                            const double                band,

@@ -73,30 +73,38 @@ namespace Voussoir
   {
     const auto &triangulation = grid.triangulation();
 
-    std::vector<unsigned long long>        sizes(names.size());
-    std::vector<std::vector<unsigned int>> sets_of_cell(
-      triangulation.n_active_cells());
+    // of each tag, the places in the list of its sets
+    std::vector<std::vector<unsigned int>> sets_of_tag;
+    for (const CellTag &tag : grid.tags())
+      {
+        sets_of_tag.emplace_back();
+        for (const unsigned int set : tag.sets)
+          if (const auto name = std::find(names.begin(),
+                                          names.end(),
+                                          grid.cell_set_names()[set]);
+              name != names.end())
+            sets_of_tag.back().push_back(name - names.begin());
+        std::sort(sets_of_tag.back().begin(), sets_of_tag.back().end());
+      }
+    std::vector<unsigned long long> sizes(names.size());
     for (const auto &cell : triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
-        for (unsigned int set = 0; set < names.size(); ++set)
-          if (grid.in_cell_set(cell, names[set]))
-            {
-              ++sizes[set];
-              sets_of_cell[cell->active_cell_index()].push_back(set);
-            }
+        for (const unsigned int set : sets_of_tag[cell->material_id()])
+          ++sizes[set];
     sizes = sum_over_ranks(sizes, grid.communicator());
 
-    dealii::Vector<float> result(sets_of_cell.size());
-    for (unsigned int cell = 0; cell < sets_of_cell.size(); ++cell)
+    dealii::Vector<float> result(triangulation.n_active_cells());
+    for (const auto &cell : triangulation.active_cell_iterators())
       {
-        const auto &sets = sets_of_cell[cell];
+        const auto &sets = sets_of_tag[cell->material_id()];
         const auto  smallest =
           std::min_element(sets.begin(),
                            sets.end(),
                            [&](const unsigned int a, const unsigned int b) {
                              return sizes[a] < sizes[b];
                            });
-        result[cell] = smallest == sets.end() ? -1. : *smallest;
+        result[cell->active_cell_index()] =
+          smallest == sets.end() ? -1. : *smallest;
       }
     return result;
   }

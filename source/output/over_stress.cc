@@ -367,15 +367,14 @@ namespace Voussoir
       {
         int cracking = -1; // number of a material
         for (const std::string &name : face_sets)
-          model.discretization.grid.for_each_face(
+          model.solid.grid().for_each_face(
             name, [&](const auto &cell, const unsigned int) {
-              const int material = model.material_of_cell(cell);
+              const int material = model.solid.grid().material(cell);
               if (model.material_memory.of(material) != nullptr)
                 cracking = material;
             });
         cracking =
-          Utilities::MPI::max(cracking,
-                              model.discretization.grid.communicator());
+          Utilities::MPI::max(cracking, model.solid.grid().communicator());
         if (cracking >= 0)
           throw UserError(
             "The faces of " + section + " have cells of the material \"" +

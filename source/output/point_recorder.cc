@@ -49,7 +49,7 @@ namespace Voussoir
   PointRecorder::check(const ObservedModel &model) const
   {
     const auto points = parse().first;
-    PointWeights(model.discretization, points, place);
+    PointWeights(model.solid.discretization, points, place);
     return points.size();
   }
 
@@ -64,7 +64,7 @@ namespace Voussoir
     record.model    = std::make_unique<ObservedModel>(model);
     record.schedule = Schedule(interval, model.time_step);
     std::tie(record.points, record.reference) = parse();
-    record.weights = std::make_unique<PointWeights>(model.discretization,
+    record.weights = std::make_unique<PointWeights>(model.solid.discretization,
                                                     record.points,
                                                     place);
   }
@@ -93,8 +93,7 @@ namespace Voussoir
     std::vector<double>       values;
     for (const Tensor<1, 3> &share : shares)
       values.insert(values.end(), share.begin_raw(), share.end_raw());
-    values =
-      sum_over_ranks(values, record.model->discretization.grid.communicator());
+    values = sum_over_ranks(values, record.model->solid.grid().communicator());
     for (std::size_t i = 0; i < values.size(); ++i)
       result[i / 3][i % 3] = values[i];
     return result;
@@ -141,8 +140,7 @@ namespace Voussoir
     for (const auto &velocity : record.velocities)
       for (const Tensor<1, 3> &v : velocity)
         values.insert(values.end(), v.begin_raw(), v.end_raw());
-    return sum_over_ranks(values,
-                          record.model->discretization.grid.communicator());
+    return sum_over_ranks(values, record.model->solid.grid().communicator());
   }
 
 
@@ -155,7 +153,7 @@ namespace Voussoir
       return;
     // the first rank has all of them
     const bool mine = Utilities::MPI::this_mpi_process(
-                        record.model->discretization.grid.communicator()) == 0;
+                        record.model->solid.grid().communicator()) == 0;
     record.velocities.assign(values.size() / (3 * n),
                              std::vector<Tensor<1, 3>>(n));
     auto value = values.begin();
@@ -178,8 +176,7 @@ namespace Voussoir
   PointRecorder::take()
   {
     const auto sums =
-      sum_over_ranks(record.shares,
-                     record.model->discretization.grid.communicator());
+      sum_over_ranks(record.shares, record.model->solid.grid().communicator());
     std::vector<Line> lines;
     auto              value = sums.begin();
     for (const unsigned long long step : record.steps)

@@ -71,7 +71,7 @@ namespace Voussoir
               const double         start_time,
               const bool           restarted) override
       {
-        communicator = model.discretization.grid.communicator();
+        communicator = model.solid.grid().communicator();
         schedule     = Schedule(interval, model.time_step);
         looks = Schedule(model.looking_interval(interval), model.time_step);
         lines = make_lines(model);
@@ -175,7 +175,7 @@ namespace Voussoir
       make_lines(const ObservedModel &model) const
       {
         const auto  requests = parse_sections(sections_text, place);
-        const Grid &grid     = model.discretization.grid;
+        const Grid &grid     = model.solid.grid();
         const std::array<std::vector<FaceCorners>, 2> faces{
           {gather_faces(grid,
                         split_list(upstream_sets),

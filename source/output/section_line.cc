@@ -353,7 +353,7 @@ namespace Voussoir
       normal *= -1.;
     thickness = std::abs(downstream);
     arch      = Tensor<1, 3>({-normal[1], normal[0], 0.});
-    place_points(model.discretization, refuse);
+    place_points(model.solid.discretization, refuse);
   }
 
 

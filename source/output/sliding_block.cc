@@ -22,14 +22,15 @@ namespace Voussoir
             const std::string &place)
     {
       // faces of the first side, and those of the block among them
-      std::vector<double> sums(2);
+      std::vector<double>     sums(2);
+      const std::vector<bool> of_block = grid.tags_in({block});
       grid.for_each_face(surface, [&](const auto &cell, const unsigned int) {
         sums[0] += 1.;
-        sums[1] += grid.in_cell_set(cell, block) ? 1. : 0.;
+        sums[1] += of_block[cell->material_id()] ? 1. : 0.;
       });
       grid.for_each_face(surface + other_side,
                          [&](const auto &cell, const unsigned int) {
-                           sums[1] -= grid.in_cell_set(cell, block) ? 1. : 0.;
+                           sums[1] -= of_block[cell->material_id()] ? 1. : 0.;
                          });
       sums = sum_over_ranks(sums, grid.communicator());
       if (std::abs(sums[1]) != sums[0])

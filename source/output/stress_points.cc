@@ -101,12 +101,12 @@ namespace Voussoir
         if (sample == samples.size())
           samples.push_back({point_of_place[i], law, {}, 0.});
         add(places[i],
-            model.discretization,
+            model.solid.discretization,
             is_static ? &model.initial.temperature : nullptr,
             samples[sample]);
       }
 
-    IndexSet needed(model.discretization.dof_handler.n_dofs());
+    IndexSet needed(model.solid.discretization.dof_handler.n_dofs());
     {
       std::vector<types::global_dof_index> indices;
       for (const Sample &sample : samples)

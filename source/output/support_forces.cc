@@ -61,7 +61,7 @@ namespace Voussoir
               const double         start_time,
               const bool           restarted) override
       {
-        communicator = model.discretization.grid.communicator();
+        communicator = model.solid.grid().communicator();
         schedule     = Schedule(interval, model.time_step);
         looks     = Schedule(model.looking_interval(interval), model.time_step);
         time_step = model.time_step;
@@ -79,7 +79,7 @@ namespace Voussoir
             Support support{name, list, {}, {}};
             for (const unsigned int node : list)
               for (unsigned int d = 0; d < 3; ++d)
-                if (is_held(model.discretization, node, d))
+                if (is_held(model.solid.discretization, node, d))
                   {
                     support.held_mass[d] += mass[node];
                     if (model.initial.reaction.size() > 0)
@@ -183,11 +183,11 @@ namespace Voussoir
       std::vector<std::pair<std::string, std::vector<unsigned int>>>
       nodes_of_sets(const ObservedModel &model) const
       {
-        const Discretization &discretization = model.discretization;
+        const Discretization &discretization = model.solid.discretization;
         const MPI_Comm        communicator = discretization.grid.communicator();
         const auto           &scalar       = discretization.fe.base_element(0);
         std::set<unsigned int> prescribed, of_interfaces, taken;
-        for (const Projection *constraint : model.constraints)
+        for (const auto &[name, constraint] : model.constraints)
           prescribed.insert(constraint->nodes().begin(),
                             constraint->nodes().end());
         if (model.contact != nullptr)
@@ -245,7 +245,7 @@ namespace Voussoir
       std::vector<double>
       driven_mass(const ObservedModel &model) const
       {
-        const Discretization &discretization = model.discretization;
+        const Discretization &discretization = model.solid.discretization;
         std::vector<double>   mass(discretization.n_owned_nodes(), 0.);
         if (!model.base.moves())
           return mass;
@@ -256,7 +256,7 @@ namespace Voussoir
           if (cell->is_locally_owned())
             {
               const Material &material =
-                *model.materials[model.material_of_cell(cell)];
+                *model.solid.materials[model.solid.grid().material(cell)];
               if (material.inertia_factor < 1.)
                 continue;
               const auto &volumes = nodal_volumes.of(cell);

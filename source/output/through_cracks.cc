@@ -180,8 +180,8 @@ namespace Voussoir
       {
         check_sets(model, "\"From\" in " + section, from);
         check_sets(model, "\"To\" in " + section, to);
-        if (std::none_of(model.materials.begin(),
-                         model.materials.end(),
+        if (std::none_of(model.solid.materials.begin(),
+                         model.solid.materials.end(),
                          [](const Material *material) {
                            return tells_of_cracks(*material);
                          }))
@@ -202,9 +202,9 @@ namespace Voussoir
           Schedule(observed.looking_interval(interval), observed.time_step);
         most = {{0., 0.}};
         shares.clear();
-        for (unsigned int m = 0; m < observed.materials.size(); ++m)
+        for (unsigned int m = 0; m < observed.solid.materials.size(); ++m)
           shares.push_back(
-            shares_in_eighths(observed.discretization.points(m)));
+            shares_in_eighths(observed.solid.discretization.points(m)));
         find_touching();
         table.open(observed.log,
                    observed.folder + "/through_cracks.csv",
@@ -261,7 +261,7 @@ namespace Voussoir
         if (sets.empty())
           throw UserError(place + " is empty; name a face set.");
         for (const std::string &set : sets)
-          model.discretization.grid.check_face_set(set, place);
+          model.solid.grid().check_face_set(set, place);
       }
 
       /** Widest openings all the way from face to face [mm]. */
@@ -281,7 +281,7 @@ namespace Voussoir
       Ways
       find_ways() const
       {
-        const Discretization &discretization = model->discretization;
+        const Discretization &discretization = model->solid.discretization;
         using OfEighths                      = std::array<double, 8>;
         struct Cracked
         {
@@ -299,7 +299,7 @@ namespace Voussoir
                          if (cells.empty() || cells.back().cell != cell)
                            cells.push_back({cell});
                          const auto &share =
-                           shares[model->material_of_cell(cell)][q];
+                           shares[model->solid.grid().material(cell)][q];
                          for (unsigned int corner = 0; corner < 8; ++corner)
                            {
                              const double factor = 1e3 * share[corner];
@@ -311,8 +311,9 @@ namespace Voussoir
         std::array<std::vector<CrackedEighth>, 2> mine;
         for (const Cracked &cracked : cells)
           {
-            const auto  nodes   = discretization.cell_nodes(cracked.cell);
-            const auto &touched = touching[cracked.cell->active_cell_index()];
+            const auto  nodes = discretization.cell_nodes(cracked.cell);
+            const auto &touched =
+              touching[discretization.grid.owned_cell(cracked.cell)];
             for (unsigned int corner = 0; corner < 8; ++corner)
               {
                 CrackedEighth one{cracked.now[corner],
@@ -338,15 +339,16 @@ namespace Voussoir
       void
       find_touching()
       {
-        const Grid &grid = model->discretization.grid;
-        touching.assign(grid.triangulation().n_active_cells(), {});
+        const Grid &grid = model->solid.grid();
+        touching.assign(grid.triangulation().n_locally_owned_active_cells(),
+                        {});
         const std::array<std::string, 2> lists{{from, to}};
         for (const unsigned int side : {0, 1})
           for (const std::string &set : split_list(lists[side]))
             grid.for_each_face(
               set, [&](const auto &cell, const unsigned int face) {
                 for (unsigned int v = 0; v < 4; ++v)
-                  touching[cell->active_cell_index()][side]
+                  touching[grid.owned_cell(cell)][side]
                           [GeometryInfo<3>::face_to_cell_vertices(face, v)] =
                             true;
               });
@@ -366,7 +368,7 @@ namespace Voussoir
       // of each material and point
       std::vector<std::vector<std::array<double, 8>>> shares;
 
-      // of each active cell, whether its corners lie on the two sets of faces
+      // of each owned cell, whether its corners lie on the two sets of faces
       std::vector<std::array<std::bitset<8>, 2>> touching;
 
       // largest opening all the way at one moment [mm], and when [s]

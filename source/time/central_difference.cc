@@ -31,7 +31,7 @@ namespace Voussoir
     , uniform(
         equation.internal_force.uniform_damping() ||
         (equation.damping.n_branches() == 0 && stiffness_coefficient == 0.))
-    , forces(equation.terms.nodes.size())
+    , forces(equation.terms)
     , force(equation.discretization.create_vector())
     , effective(force)
     , memory(uniform ? Vector() : force)
@@ -145,7 +145,7 @@ namespace Voussoir
                                 equation.base->acceleration(state.time) :
                                 Tensor<1, 3>();
     // F_n
-    std::fill(forces.begin(), forces.end(), Tensor<1, 3>());
+    forces.reset();
     for (NodalLoad *load : equation.loads)
       load->add_forces(state.time, forces);
 

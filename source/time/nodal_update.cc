@@ -90,7 +90,7 @@ namespace Voussoir
         const Tensor<1, 3> &last     = last_velocity[slot];
         const auto         &dashpots = terms.dashpots[slot];
         // what drives the added mass is the ground under a rigid base
-        applied[slot] = forces[slot] - terms.added_mass[slot] * base;
+        applied[slot] = forces.of_slot(slot) - terms.added_mass[slot] * base;
         Tensor<1, 3> momentum =
           terms.added_mass[slot] * last +
           time_step *

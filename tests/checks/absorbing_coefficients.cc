@@ -115,8 +115,9 @@ namespace Voussoir
           make_case(file.with({"Boundaries/Coefficients=" + name,
                                "Boundaries/Radius=" + std::to_string(radius)}));
         const auto simulation = make_simulation(*parameters, communicator);
-        const NodalTerms     &terms          = simulation->model.terms;
-        const Discretization &discretization = simulation->model.discretization;
+        const NodalTerms     &terms = simulation->model.terms;
+        const Discretization &discretization =
+          simulation->model.solid.discretization;
 
         double of_springs = 0., of_dashpots = 0., spring = 0., dashpot = 0.;
         for (unsigned int node = 0; node < discretization.n_owned_nodes();

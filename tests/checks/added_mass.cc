@@ -57,7 +57,7 @@ namespace Voussoir
              i < simulation->run.state.velocity.locally_owned_size();
              i += 3)
           momentum += simulation->run.state.velocity.local_element(i) *
-                      simulation->model.mass.mass.local_element(i);
+                      simulation->model.solid.mass.mass.local_element(i);
         momentum = Utilities::MPI::sum(momentum, communicator);
         const double time =
           simulation->run.state.time - 0.5 * simulation->run.time_step.length;

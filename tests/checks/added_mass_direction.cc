@@ -191,8 +191,9 @@ namespace Voussoir
         const double area       = direction.norm() * length * height;
         const Tensor<1, 3> n    = direction / direction.norm();
 
-        const Discretization &discretization = simulation->model.discretization;
-        double                difference = 0., largest = 0., sum = 0.;
+        const Discretization &discretization =
+          simulation->model.solid.discretization;
+        double difference = 0., largest = 0., sum = 0.;
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
              ++node)
           {

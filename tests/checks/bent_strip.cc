@@ -47,7 +47,7 @@ namespace Voussoir
                 const auto simulation =
                   make_simulation(*parameters, communicator);
                 const ElasticConstants c =
-                  simulation->model.materials[0]->elastic_constants();
+                  simulation->model.solid.materials[0]->elastic_constants();
                 const double nu      = c.poisson_ratio,
                              modulus = c.young_modulus / (1. - nu * nu),
                              G       = c.shear_modulus(),
@@ -63,7 +63,7 @@ namespace Voussoir
                            (stiffness * modulus * thickness * thickness) +
                          length / G);
                 const auto moved =
-                  PointWeights(simulation->model.discretization,
+                  PointWeights(simulation->model.solid.discretization,
                                {{"left", Point<3>()},
                                 {"right", Point<3>(length, 0., 0.)}},
                                "")

@@ -121,7 +121,7 @@ namespace Voussoir
 
   /** A silent simulation without output folder. */
   std::unique_ptr<Simulation>
-  make_simulation(Case &parameters, const MPI_Comm communicator);
+  make_simulation(const Case &parameters, const MPI_Comm communicator);
 } // namespace Voussoir
 
 #endif

@@ -104,7 +104,7 @@ namespace Voussoir
       static void
       throw_down(Simulation &simulation)
       {
-        const auto        &discretization = simulation.model.discretization;
+        const auto &discretization = simulation.model.solid.discretization;
         const Tensor<1, 3> v({0.2, -0.1, -1.});
         for (const auto &cell :
              discretization.dof_handler.active_cell_iterators())
@@ -124,7 +124,8 @@ namespace Voussoir
       {
         Tensor<2, 3> mass;
         for (unsigned int d = 0; d < 3; ++d)
-          mass[d][d] = simulation.model.mass.mass.local_element(3 * node + d);
+          mass[d][d] =
+            simulation.model.solid.mass.mass.local_element(3 * node + d);
         const auto slot = simulation.model.terms.slot_at(node);
         if (slot)
           mass += Tensor<2, 3>(simulation.model.terms.added_mass[*slot]);
@@ -162,7 +163,7 @@ namespace Voussoir
       {
         const double dt              = joined.run.time_step.length;
         const auto  &contact         = *joined.run.contact;
-        const auto  &discretization  = joined.model.discretization;
+        const auto  &discretization  = joined.model.solid.discretization;
         const auto   displacement_at = [](const Simulation  &simulation,
                                         const unsigned int node) {
           Tensor<1, 3> u;

@@ -31,7 +31,7 @@ namespace Voussoir
       {
         const auto  parameters     = make_case(file);
         const auto  simulation     = make_simulation(*parameters, communicator);
-        const auto &discretization = simulation->model.discretization;
+        const auto &discretization = simulation->model.solid.discretization;
         State      &state          = simulation->run.state;
         const auto  upper          = [&](const unsigned int node) {
           // the nodes at the contact belong to the bar they are in
@@ -85,7 +85,7 @@ namespace Voussoir
         for (unsigned int node = 0; node < is_upper.size(); ++node)
           {
             const double m =
-              simulation->model.mass.mass.local_element(3 * node + 2);
+              simulation->model.solid.mass.mass.local_element(3 * node + 2);
             momentum[upper(node) ? 0 : 2] +=
               m * state.velocity.local_element(3 * node + 2);
             momentum[upper(node) ? 1 : 3] += m;

@@ -33,14 +33,10 @@ namespace Voussoir
                const std::vector<std::string> &interfaces,
                const MPI_Comm                  communicator)
   {
-    const Grid grid(
-      mesh, parameters, [](const unsigned int) { return 1.; }, communicator);
+    const Grid               grid(mesh, parameters, communicator);
     DiscretizationParameters space;
     space.degree = degree;
-    const Discretization discretization(grid,
-                                        space,
-                                        {},
-                                        [](const Grid::Cell &) { return 0; });
+    const Discretization discretization(grid, space, {});
     const auto mine = find_contact_clusters(discretization, interfaces);
     for (const ContactCluster &cluster : mine)
       AssertThrow(discretization.owned_dofs.is_element(3 *

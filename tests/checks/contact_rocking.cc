@@ -91,7 +91,7 @@ namespace Voussoir
       void
       start(Simulation &simulation) const
       {
-        const auto &discretization = simulation.model.discretization;
+        const auto &discretization = simulation.model.solid.discretization;
         State      &state          = simulation.run.state;
         for (const auto &cell :
              discretization.dof_handler.active_cell_iterators())

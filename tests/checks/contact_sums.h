@@ -58,14 +58,14 @@ namespace Voussoir
   {
     std::vector<double> sums(4);
     for (unsigned int node = 0;
-         node < simulation.model.discretization.n_owned_nodes();
+         node < simulation.model.solid.discretization.n_owned_nodes();
          ++node)
       for (unsigned int d = 0; d < 3; ++d)
         {
           const unsigned int i = 3 * node + d;
-          if (simulation.model.mass.inverse.local_element(i) == 0.)
+          if (simulation.model.solid.mass.inverse.local_element(i) == 0.)
             continue;
-          const double m = simulation.model.mass.mass.local_element(i);
+          const double m = simulation.model.solid.mass.mass.local_element(i);
           double motion  = simulation.run.state.displacement.local_element(i);
           if (simulation.rest.initial.displacement.size() > 0)
             motion -= simulation.rest.initial.displacement.local_element(i);
@@ -98,11 +98,9 @@ namespace Voussoir
   inline double
   block_safety(const Simulation &simulation, const std::string &block)
   {
-    const Contact      &contact = *simulation.run.contact;
-    const auto          blocks  = find_sliding_blocks(block,
-                                            "\"Blocks\"",
-                                            simulation.model.discretization,
-                                            contact);
+    const Contact &contact = *simulation.run.contact;
+    const auto     blocks  = find_sliding_blocks(
+      block, "\"Blocks\"", simulation.model.solid.discretization, contact);
     std::vector<double> sums(InterfaceSum::n_quantities *
                              contact.surfaces().size()),
       areas(contact.surfaces().size());

@@ -52,7 +52,8 @@ namespace Voussoir
       {
         const InternalForce &internal_force =
           simulation.run.equation.internal_force;
-        const Discretization &discretization = simulation.model.discretization;
+        const Discretization &discretization =
+          simulation.model.solid.discretization;
         Vector u = discretization.create_vector(), force(u), before(u);
         Change change{0., 0.};
         for (unsigned int i = 0; i <= n; ++i)

@@ -86,18 +86,20 @@ namespace Voussoir
         State       &state      = simulation->run.state;
         const double dt         = simulation->run.time_step.length;
         const double omega =
-          StandingWave::wave_number *
-          simulation->model.materials[0]->elastic_constants().p_wave_speed();
+          StandingWave::wave_number * simulation->model.solid.materials[0]
+                                        ->elastic_constants()
+                                        .p_wave_speed();
         const double discrete = 2. / dt * std::asin(0.5 * omega * dt);
 
         StandingWave exact;
         for (unsigned int node = 0;
-             node < simulation->model.discretization.n_owned_nodes();
+             node < simulation->model.solid.discretization.n_owned_nodes();
              ++node)
-          if (simulation->model.mass.inverse.local_element(3 * node + 2) > 0.)
+          if (simulation->model.solid.mass.inverse.local_element(3 * node + 2) >
+              0.)
             {
               const double u = exact.value(
-                simulation->model.discretization.node_positions[node], 2);
+                simulation->model.solid.discretization.node_positions[node], 2);
               state.displacement.local_element(3 * node + 2) = u;
               state.velocity.local_element(3 * node + 2) =
                 (1. - std::cos(discrete * dt)) / dt * u;
@@ -110,8 +112,8 @@ namespace Voussoir
         dealii::Vector<double> differences(
           simulation->model.grid.triangulation().n_active_cells());
         VectorTools::integrate_difference(
-          simulation->model.discretization.mapping,
-          simulation->model.discretization.dof_handler,
+          simulation->model.solid.discretization.mapping,
+          simulation->model.solid.discretization.dof_handler,
           state.displacement,
           exact,
           differences,

@@ -47,14 +47,14 @@ namespace Voussoir
 
     private:
       double
-      largest_stress(Case &parameters, const MPI_Comm communicator) const
+      largest_stress(const Case &parameters, const MPI_Comm communicator) const
       {
         const auto simulation = make_simulation(parameters, communicator);
         Run       &run        = simulation->run;
         const InternalForce &internal_force =
           simulation->run.equation.internal_force;
         const MaxwellStep maxwell(run.damping, run.time_step.length);
-        Vector force    = simulation->model.discretization.create_vector();
+        Vector force = simulation->model.solid.discretization.create_vector();
         Vector filtered = force;
         double largest  = 0.;
         while (run.state.time < parameters.time.end_time)
@@ -82,10 +82,10 @@ namespace Voussoir
               {});
             double pull = 0.;
             for (unsigned int node = 0;
-                 node < simulation->model.discretization.n_owned_nodes();
+                 node < simulation->model.solid.discretization.n_owned_nodes();
                  ++node)
-              if (simulation->model.discretization.node_positions[node][2] ==
-                  0.)
+              if (simulation->model.solid.discretization
+                    .node_positions[node][2] == 0.)
                 pull -= node_value(force, node)[2];
             keep_largest(largest, pull); // of one square metre
             run.scheme.step(run.state);

@@ -42,8 +42,9 @@ namespace Voussoir
               make_case(file.with({"Materials/weak/Class=" + laws[l]}));
             const auto simulation = make_simulation(*parameters, communicator);
             Run       &run        = simulation->run;
-            const double modulus =
-              simulation->model.materials[0]->elastic_constants().young_modulus;
+            const double modulus  = simulation->model.solid.materials[0]
+                                     ->elastic_constants()
+                                     .young_modulus;
             double work = 0., traction = 0., opening = 0., largest = 0.;
             march_with_energy(run, [&](const bool) {
               const auto   u = mean_displacement(*simulation, communicator);
@@ -76,7 +77,7 @@ namespace Voussoir
       mean_displacement(const Simulation &simulation,
                         const MPI_Comm    communicator) const
       {
-        const Discretization &space = simulation.model.discretization;
+        const Discretization &space = simulation.model.solid.discretization;
         std::vector<double>   sums(2 * planes.size());
         for (unsigned int node = 0; node < space.n_owned_nodes(); ++node)
           for (unsigned int p = 0; p < planes.size(); ++p)

@@ -41,21 +41,24 @@ namespace Voussoir
               // mass-weighted projection on the mode
               double sum = 0.;
               for (unsigned int node = 0;
-                   node < simulation->model.discretization.n_owned_nodes();
+                   node <
+                   simulation->model.solid.discretization.n_owned_nodes();
                    ++node)
                 sum +=
-                  simulation->model.mass.mass.local_element(3 * node + 2) *
+                  simulation->model.solid.mass.mass.local_element(3 * node +
+                                                                  2) *
                   state.displacement.local_element(3 * node + 2) *
-                  mode(simulation->model.discretization.node_positions[node],
-                       height);
+                  mode(
+                    simulation->model.solid.discretization.node_positions[node],
+                    height);
               return Utilities::MPI::sum(sum, communicator);
             };
             for (unsigned int node = 0;
-                 node < simulation->model.discretization.n_owned_nodes();
+                 node < simulation->model.solid.discretization.n_owned_nodes();
                  ++node)
-              state.velocity.local_element(3 * node + 2) =
-                mode(simulation->model.discretization.node_positions[node],
-                     height);
+              state.velocity.local_element(3 * node + 2) = mode(
+                simulation->model.solid.discretization.node_positions[node],
+                height);
 
             // positive peaks, with the parabola through three samples
             std::vector<double> peaks, times;

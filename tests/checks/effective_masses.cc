@@ -14,7 +14,7 @@ namespace Voussoir
     public:
       explicit AllModes(const Simulation &simulation)
       {
-        const Vector &inverse = simulation.model.mass.inverse;
+        const Vector &inverse = simulation.model.solid.mass.inverse;
         for (unsigned int i = 0; i < inverse.locally_owned_size(); ++i)
           if (inverse.local_element(i) > 0.)
             free.push_back(i);
@@ -65,12 +65,13 @@ namespace Voussoir
       stiffness_of(const Simulation &simulation) const
       {
         LAPACKFullMatrix<double> matrix(free.size());
-        Vector u = simulation.model.discretization.create_vector(), force(u);
+        Vector u = simulation.model.solid.discretization.create_vector(),
+               force(u);
         for (unsigned int j = 0; j < free.size(); ++j)
           {
             u                        = 0.;
             u.local_element(free[j]) = 1.;
-            simulation.model.internal_force.apply(force, u);
+            simulation.model.solid.internal_force.apply(force, u);
             for (unsigned int i = 0; i < free.size(); ++i)
               matrix(i, j) = force.local_element(free[i]);
           }
@@ -84,7 +85,8 @@ namespace Voussoir
         const NodalTerms        &terms = simulation.model.terms;
         for (unsigned int i = 0; i < free.size(); ++i)
           {
-            matrix(i, i) = simulation.model.mass.mass.local_element(free[i]);
+            matrix(i, i) =
+              simulation.model.solid.mass.mass.local_element(free[i]);
             if (const auto slot = terms.slot_at(free[i] / 3))
               for (unsigned int j = 0; j < free.size(); ++j)
                 if (free[j] / 3 == free[i] / 3)
@@ -216,8 +218,9 @@ namespace Voussoir
         const auto   parameters = make_case(file);
         const auto   simulation = make_simulation(*parameters, communicator);
         const Modes &modes      = simulation->modes;
-        const double c =
-          simulation->model.materials[0]->elastic_constants().p_wave_speed();
+        const double c          = simulation->model.solid.materials[0]
+                           ->elastic_constants()
+                           .p_wave_speed();
 
         double of_frequency = 0., of_mass = 0.;
         for (unsigned int j = 0;
@@ -241,7 +244,7 @@ namespace Voussoir
         verdicts.below("effective masses against the chain's", of_mass, 1e-6);
         verdicts.near("first effective mass over that of the rod, 8/pi^2",
                       modes.list[0].effective_mass[2] /
-                        simulation->model.mass.total[0],
+                        simulation->model.solid.mass.total[0],
                       8. / (numbers::PI * numbers::PI),
                       tolerance);
       }

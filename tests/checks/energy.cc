@@ -22,12 +22,13 @@ namespace Voussoir
           return std::sin(0.11 * p[0] + 0.07 * p[1] + 0.13 * p[2] + d);
         };
         for (unsigned int node = 0;
-             node < simulation->model.discretization.n_owned_nodes();
+             node < simulation->model.solid.discretization.n_owned_nodes();
              ++node)
           for (unsigned int d = 0; d < 3; ++d)
-            if (simulation->model.mass.inverse.local_element(3 * node + d) > 0.)
-              state.velocity.local_element(3 * node + d) =
-                shape(simulation->model.discretization.node_positions[node], d);
+            if (simulation->model.solid.mass.inverse.local_element(3 * node +
+                                                                   d) > 0.)
+              state.velocity.local_element(3 * node + d) = shape(
+                simulation->model.solid.discretization.node_positions[node], d);
 
         double first = 0., smallest = 1e300, largest = 0., swing = 0.;
         for (unsigned int step = 0; step < 400; ++step)
@@ -49,10 +50,11 @@ namespace Voussoir
                        (largest - smallest) / first,
                        1e-10);
         if (parameters->grid.local_refinement.empty() == false)
-          verdicts.is_true("the mesh has hanging nodes",
-                           Utilities::MPI::sum(simulation->model.discretization
-                                                 .hanging_nodes.n_constraints(),
-                                               communicator) > 0);
+          verdicts.is_true(
+            "the mesh has hanging nodes",
+            Utilities::MPI::sum(simulation->model.solid.discretization
+                                  .hanging_nodes.n_constraints(),
+                                communicator) > 0);
       }
     };
 

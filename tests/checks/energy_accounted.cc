@@ -86,7 +86,7 @@ namespace Voussoir
           rate += work(run.state.memory[i]) /
                   (damping.coefficients[i] * damping.relaxation_times[i]);
         Vector momentum = run.state.velocity;
-        momentum.scale(simulation.model.mass.mass);
+        momentum.scale(simulation.model.solid.mass.mass);
         return rate +
                damping.mass_coefficient * (momentum * run.state.velocity);
       }

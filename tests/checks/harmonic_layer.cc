@@ -54,8 +54,8 @@ namespace Voussoir
               parameters->ground_motion.build(parameters->file.folder());
             const auto &[lower, upper] = simulation->model.boundary.extent();
             const ElasticConstants
-              rock = simulation->model.materials[0]->elastic_constants(),
-              soil = simulation->model.materials[1]->elastic_constants();
+              rock = simulation->model.solid.materials[0]->elastic_constants(),
+              soil = simulation->model.solid.materials[1]->elastic_constants();
             const auto histories =
               run_and_record(*simulation, {{"surface", upper}});
             std::vector<double> outcrop;

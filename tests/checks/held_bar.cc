@@ -78,7 +78,7 @@ namespace Voussoir
               const std::string &name,
               Verdicts          &verdicts) const
       {
-        const Material &sound = *simulation.model.materials[0];
+        const Material &sound = *simulation.model.solid.materials[0];
         const double modulus = factor * sound.elastic_constants().young_modulus,
                      free_strain = sound.expansion * cooling; // that is missing
 
@@ -126,10 +126,10 @@ namespace Voussoir
                          keep_largest(reported, crack.now);
                        });
         reported = Utilities::MPI::max(
-          reported, simulation.model.discretization.grid.communicator());
+          reported, simulation.model.solid.discretization.grid.communicator());
         // of lee-fenves what damage opens follows the modulus
         if (curve != "lee-fenves" &&
-            tells_of_cracks(*simulation.model.materials[1]))
+            tells_of_cracks(*simulation.model.solid.materials[1]))
           verdicts.near(name + "opening reported",
                         1e3 * reported,
                         1e3 * wanted,
@@ -149,9 +149,10 @@ namespace Voussoir
       static double
       displacement_at(const Simulation &simulation, const double z)
       {
-        const Discretization &discretization = simulation.model.discretization;
-        const double          side           = 0.5;
-        double                sum = 0., weights = 0.;
+        const Discretization &discretization =
+          simulation.model.solid.discretization;
+        const double side = 0.5;
+        double       sum = 0., weights = 0.;
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
              ++node)
           {

@@ -75,7 +75,7 @@ namespace Voussoir
                       const Mode       &mode,
                       const MPI_Comm    communicator)
       {
-        const Vector &mass = simulation.model.mass.mass;
+        const Vector &mass = simulation.model.solid.mass.mass;
         double        sum  = 0.;
         for (unsigned int i = 2; i < mass.locally_owned_size(); i += 3)
           sum += mass.local_element(i) * mode.shape.local_element(i);
@@ -89,10 +89,11 @@ namespace Voussoir
                       const Mode       &mode,
                       const MPI_Comm    communicator) const
       {
-        const Discretization &discretization = simulation.model.discretization;
-        FaceNodes             face_nodes(discretization.mapping,
+        const Discretization &discretization =
+          simulation.model.solid.discretization;
+        FaceNodes face_nodes(discretization.mapping,
                              discretization.fe.base_element(0));
-        Vector                shape(mode.shape);
+        Vector    shape(mode.shape);
         shape.update_ghost_values();
         double sum = 0.;
         for_each_face(discretization,

@@ -43,7 +43,7 @@ namespace Voussoir
                  const std::vector<NamedPoint>      &points,
                  const std::function<void(State &)> &after_step)
   {
-    const PointWeights  weights(simulation.model.discretization,
+    const PointWeights  weights(simulation.model.solid.discretization,
                                points,
                                "the check");
     Histories           histories;

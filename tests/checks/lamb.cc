@@ -90,11 +90,12 @@ namespace Voussoir
              const std::vector<NamedPoint> &places,
              const MPI_Comm                 communicator) const
       {
-        const auto   parameters = make_case(file);
-        const auto   simulation = make_simulation(*parameters, communicator);
-        const auto   histories  = run_and_record(*simulation, places);
-        const auto   rock = simulation->model.materials[0]->elastic_constants();
-        const double cs   = rock.s_wave_speed();
+        const auto parameters = make_case(file);
+        const auto simulation = make_simulation(*parameters, communicator);
+        const auto histories  = run_and_record(*simulation, places);
+        const auto rock =
+          simulation->model.solid.materials[0]->elastic_constants();
+        const double cs = rock.s_wave_speed();
 
         std::vector<double> result;
         for (unsigned int p = 0; p < places.size(); ++p)

@@ -28,9 +28,9 @@ namespace Voussoir
         const Model &model      = simulation->model;
         const auto   step_with =
           [&](const std::function<double(const double)> &stiffening) {
-            return stable_step(model.discretization,
-                               model.internal_force,
-                               model.mass,
+            return stable_step(model.solid.discretization,
+                               model.solid.internal_force,
+                               model.solid.mass,
                                {stiffening,
                                 [](Vector &, const Vector &, const double) {}});
           };

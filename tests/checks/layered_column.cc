@@ -40,18 +40,18 @@ namespace Voussoir
           parameters->ground_motion.build(parameters->file.folder());
         const auto &[lower, upper] = simulation->model.boundary.extent();
         const ElasticConstants
-          rock = simulation->model.materials[0]->elastic_constants(),
-          soil = simulation->model.materials[1]->elastic_constants();
+          rock = simulation->model.solid.materials[0]->elastic_constants(),
+          soil = simulation->model.solid.materials[1]->elastic_constants();
 
         // the column, marched beside the model
         WaveColumn column(
           layers_of_sides(simulation->model.boundary.side_faces(),
                           {rock, soil},
                           {1., 1.},
-                          simulation->model.discretization.degree,
+                          simulation->model.solid.discretization.degree,
                           simulation->run.time_step.length,
                           simulation->run.damping),
-          simulation->model.discretization.degree,
+          simulation->model.solid.discretization.degree,
           parameters->discretization.quadrature,
           simulation->run.damping,
           simulation->run.time_step.leap_frog());

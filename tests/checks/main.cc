@@ -155,7 +155,7 @@ namespace Voussoir
 
 
   std::unique_ptr<Simulation>
-  make_simulation(Case &parameters, const MPI_Comm communicator)
+  make_simulation(const Case &parameters, const MPI_Comm communicator)
   {
     RunOptions options;
     options.quiet     = true;

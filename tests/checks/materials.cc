@@ -208,8 +208,9 @@ namespace Voussoir
         const auto simulation = make_simulation(parameters, communicator);
         const InternalForce &internal = simulation->run.equation.internal_force;
         MaterialMemory       memory   = internal.new_memory();
-        const Discretization &discretization = simulation->model.discretization;
-        const Material       &material       = *simulation->model.materials[0];
+        const Discretization &discretization =
+          simulation->model.solid.discretization;
+        const Material &material = *simulation->model.solid.materials[0];
 
         // a rough field that grows: SIMD lanes against points by themselves
         Vector force = discretization.create_vector(), u = force, plain = force;
@@ -270,10 +271,11 @@ namespace Voussoir
                     const MPI_Comm     communicator) const
       {
         const auto simulation = make_simulation(parameters, communicator);
-        const Discretization &discretization = simulation->model.discretization;
-        std::mt19937          random(2);
-        const Tensor2         strain = random_strain(random, size);
-        Vector                u = discretization.create_vector(), force = u;
+        const Discretization &discretization =
+          simulation->model.solid.discretization;
+        std::mt19937  random(2);
+        const Tensor2 strain = random_strain(random, size);
+        Vector        u = discretization.create_vector(), force = u;
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
              ++node)
           {
@@ -332,12 +334,13 @@ namespace Voussoir
                                                                 &histories,
         std::map<std::pair<unsigned int, unsigned int>, double> &bands) const
       {
-        const Discretization &discretization = simulation.model.discretization;
-        const auto           &fe             = discretization.fe;
-        const Material       &material       = *simulation.model.materials[0];
-        const auto           &points         = discretization.points(0);
-        const bool            one_point      = points.size() == 1;
-        FEValues<3>           values(discretization.mapping,
+        const Discretization &discretization =
+          simulation.model.solid.discretization;
+        const auto     &fe        = discretization.fe;
+        const Material &material  = *simulation.model.solid.materials[0];
+        const auto     &points    = discretization.points(0);
+        const bool      one_point = points.size() == 1;
+        FEValues<3>     values(discretization.mapping,
                            fe,
                            one_point ? QGauss<3>(2) : points,
                            update_gradients | update_JxW_values);

@@ -39,12 +39,13 @@ namespace Voussoir
         const auto of_one_point = make_simulation(*one_point, communicator);
         const auto of_gauss     = make_simulation(*gauss, communicator);
 
-        const Discretization &discretization = of_mixed->model.discretization;
-        const Vector          force          = response(*of_mixed, bent);
-        const Vector          elastic        = response(*of_one_point, bent);
-        const Vector          cracked        = response(*of_gauss, bent);
-        const double          size           = largest_entry(force);
-        double                below = 0., above = 0., kinds = 0.;
+        const Discretization &discretization =
+          of_mixed->model.solid.discretization;
+        const Vector force   = response(*of_mixed, bent);
+        const Vector elastic = response(*of_one_point, bent);
+        const Vector cracked = response(*of_gauss, bent);
+        const double size    = largest_entry(force);
+        double       below = 0., above = 0., kinds = 0.;
         for_each_entry(
           discretization, [&](const Point<3> &p, const unsigned int i) {
             const double f = force.local_element(i);
@@ -118,8 +119,9 @@ namespace Voussoir
         const Simulation                                    &simulation,
         const std::function<Tensor<1, 3>(const Point<3> &)> &displacement)
       {
-        const Discretization &discretization = simulation.model.discretization;
-        Vector                u = discretization.create_vector(), force(u);
+        const Discretization &discretization =
+          simulation.model.solid.discretization;
+        Vector u = discretization.create_vector(), force(u);
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
              ++node)
           {

@@ -11,13 +11,13 @@ namespace Voussoir
     orthogonality(const Simulation &simulation)
     {
       std::pair<double, double> error(0., 0.);
-      Vector force = simulation.model.discretization.create_vector(),
+      Vector force = simulation.model.solid.discretization.create_vector(),
              momentum(force);
       for (const Mode &a : simulation.modes.list)
         {
-          simulation.model.internal_force.apply(force, a.shape);
+          simulation.model.solid.internal_force.apply(force, a.shape);
           momentum = a.shape;
-          momentum.scale(simulation.model.mass.mass);
+          momentum.scale(simulation.model.solid.mass.mass);
           const double omega = 2. * numbers::PI * a.frequency;
           for (const Mode &b : simulation.modes.list)
             {
@@ -34,22 +34,18 @@ namespace Voussoir
     }
 
 
-    /** Modes of a simulation that has been changed since it was made. */
+    /** Modes with other parameters and terms than those of the simulation. */
     Modes
     compute_modes(const Simulation     &simulation,
                   const Case           &parameters,
-                  const ModeParameters &mode_parameters)
+                  const ModeParameters &mode_parameters,
+                  const NodalTerms     &terms)
     {
       Log log(simulation.model.grid.communicator(), true);
-      return find_modes({simulation.model.discretization,
-                         simulation.model.internal_force,
+      return find_modes({simulation.model.solid,
                          parameters.material_names(),
-                         simulation.model.materials,
-                         [&](const Grid::Cell &cell) {
-                           return simulation.model.material_of(cell);
-                         },
                          parameters.boundaries,
-                         simulation.model.terms},
+                         terms},
                         mode_parameters,
                         log);
     }
@@ -130,11 +126,11 @@ namespace Voussoir
         const Modes &modes      = simulation->modes;
         const double length     = 20.;
         const auto   material =
-          simulation->model.materials[0]->elastic_constants();
+          simulation->model.solid.materials[0]->elastic_constants();
         const double base = material.p_wave_speed() / length; // [rad/s]
 
         // of the whole rod, held end included, as in the closed form
-        const double mass = simulation->model.mass.total[0];
+        const double mass = simulation->model.solid.mass.total[0];
         double       sum  = 0.;
         for (unsigned int j = 0; j < modes.list.size(); ++j)
           {
@@ -163,9 +159,11 @@ namespace Voussoir
                       0.979736,
                       tolerance); // sum of 2/k^2 of ten modes
 
+        const NodalTerms  loaded = with_end_mass(*simulation, mass);
         std::vector<Mode> wet; // whole cross-sections move in these
         for (const Mode &mode :
-             with_end_mass(*simulation, *parameters, mass).list)
+             compute_modes(*simulation, *parameters, parameters->modes, loaded)
+               .list)
           if (mode.effective_mass[2] > 1e-6 * mass)
             wet.push_back(mode);
         const std::array<double, 3> roots{
@@ -185,7 +183,8 @@ namespace Voussoir
                       2. * tolerance);
         ModeParameters without_water = parameters->modes;
         without_water.water          = WaterInModes::none;
-        const auto dry = compute_modes(*simulation, *parameters, without_water);
+        const auto dry =
+          compute_modes(*simulation, *parameters, without_water, loaded);
         verdicts.near("without water, mode 1 over c/L",
                       2. * numbers::PI * dry.list[0].frequency / base,
                       0.5 * numbers::PI,
@@ -193,29 +192,31 @@ namespace Voussoir
       }
 
     private:
-      static Modes
-      with_end_mass(Simulation  &simulation,
-                    const Case  &parameters,
-                    const double mass)
+      static NodalTerms
+      with_end_mass(const Simulation &simulation, const double mass)
       {
         // the nodes at the end carry the mass in the ratio of their own
-        const Discretization &discretization = simulation.model.discretization;
-        double                sum            = 0.;
-        const auto            for_each_end_node = [&](const auto &visit) {
+        const Discretization &discretization =
+          simulation.model.solid.discretization;
+        NodalTerms terms             = simulation.model.terms;
+        double     sum               = 0.;
+        const auto for_each_end_node = [&](const auto &visit) {
           for (unsigned int node = 0; node < discretization.n_owned_nodes();
                ++node)
             if (discretization.node_positions[node][2] > 20. - 1e-9)
               visit(node,
-                    simulation.model.mass.mass.local_element(3 * node + 2));
+                    simulation.model.solid.mass.mass.local_element(3 * node +
+                                                                   2));
         };
         for_each_end_node(
           [&](const unsigned int, const double m) { sum += m; });
         sum = Utilities::MPI::sum(sum, discretization.grid.communicator());
         for_each_end_node([&](const unsigned int node, const double m) {
-          const unsigned int slot = simulation.model.terms.add_node(node);
-          simulation.model.terms.added_mass[slot][2][2] = mass * m / sum;
+          NodalTerm term{node, {}, {}, {}};
+          term.added_mass[2][2] = mass * m / sum;
+          terms.add({term});
         });
-        return compute_modes(simulation, parameters, parameters.modes);
+        return terms;
       }
 
       double tolerance = 0.001;

@@ -29,11 +29,11 @@ namespace Voussoir
         const auto uncut = make_case(file), cut = make_case(file.with(changes));
         const auto whole = make_simulation(*uncut, communicator),
                    tied  = make_simulation(*cut, communicator);
-        verdicts.above("unknowns more than in the whole",
-                       double(tied->model.discretization.dof_handler.n_dofs()) -
-                         double(
-                           whole->model.discretization.dof_handler.n_dofs()),
-                       3.);
+        verdicts.above(
+          "unknowns more than in the whole",
+          double(tied->model.solid.discretization.dof_handler.n_dofs()) -
+            double(whole->model.solid.discretization.dof_handler.n_dofs()),
+          3.);
         double frequency = 0., effective = 0., mass = 0.;
         for (unsigned int j = 0; j < uncut->modes.number; ++j)
           {
@@ -72,7 +72,8 @@ namespace Voussoir
             Contact at(contact);
             State   state;
             state.displacement = mode.shape;
-            state.velocity = simulation.model.discretization.create_vector();
+            state.velocity =
+              simulation.model.solid.discretization.create_vector();
             at.start(state);
             for (unsigned int k = 0; k < at.points().size(); ++k)
               keep_largest(
@@ -121,8 +122,9 @@ namespace Voussoir
                               const std::vector<double>      &expected) {
           const auto   parameters = make_case(file.with(changes));
           const auto   simulation = make_simulation(*parameters, communicator);
-          const double c =
-            simulation->model.materials[0]->elastic_constants().p_wave_speed();
+          const double c          = simulation->model.solid.materials[0]
+                             ->elastic_constants()
+                             .p_wave_speed();
           for (unsigned int j = 0; j < parameters->modes.number; ++j)
             verdicts.near(name + ", mode " + std::to_string(j + 1),
                           2. * numbers::PI *

@@ -129,7 +129,7 @@ namespace Voussoir
             const auto simulation = make_simulation(*parameters, communicator);
             const Modes       &modes = simulation->modes;
             const RodAndColumn exact{
-              simulation->model.materials[0]->elastic_constants(),
+              simulation->model.solid.materials[0]->elastic_constants(),
               length,
               depth,
               parameters->reservoir.density,
@@ -154,8 +154,9 @@ namespace Voussoir
               }
             verdicts.near(water + " water, moving mass",
                           1e-3 * modes.moving_mass[2],
-                          1e-3 * (resultant(simulation->model.mass.mass)[2] +
-                                  exact.density * depth * area),
+                          1e-3 *
+                            (resultant(simulation->model.solid.mass.mass)[2] +
+                             exact.density * depth * area),
                           1e-8,
                           "t");
           }

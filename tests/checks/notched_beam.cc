@@ -152,7 +152,7 @@ namespace Voussoir
           std::ceil(0.003 / simulation.run.time_step.length);
         double              largest = 0., sum = 0.;
         std::vector<double> loads;
-        Vector force = simulation.model.discretization.create_vector();
+        Vector force = simulation.model.solid.discretization.create_vector();
         while (simulation.run.state.step < last)
           {
             simulation.run.scheme.step(simulation.run.state);

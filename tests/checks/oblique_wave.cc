@@ -54,7 +54,7 @@ namespace Voussoir
             types.at(field.type),
             field.angle * numbers::PI / 180.,
             field.azimuth * numbers::PI / 180.,
-            simulation->model.materials[0]->elastic_constants(),
+            simulation->model.solid.materials[0]->elastic_constants(),
             origin,
             delay);
         };

@@ -25,13 +25,15 @@ namespace Voussoir
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        const Discretization &discretization = simulation->model.discretization;
+        const Discretization &discretization =
+          simulation->model.solid.discretization;
 
         Vector u = discretization.create_vector(), wide(u);
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
              ++node)
           for (unsigned int d = 0; d < 3; ++d)
-            if (simulation->model.mass.inverse.local_element(3 * node + d) > 0.)
+            if (simulation->model.solid.mass.inverse.local_element(3 * node +
+                                                                   d) > 0.)
               {
                 const Point<3> &p = discretization.node_positions[node];
                 u.local_element(3 * node + d) =
@@ -54,7 +56,7 @@ namespace Voussoir
             u.local_element(3 * node + 2) = 0.7 * p[1] + 0.5 * p[2];
           }
         for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-          if (simulation->model.mass.inverse.local_element(i) == 0.)
+          if (simulation->model.solid.mass.inverse.local_element(i) == 0.)
             u.local_element(i) = 0.; // hanging: the operator interpolates
         simulation->run.equation.internal_force.apply(wide, u);
         double inside = 0.;
@@ -80,10 +82,11 @@ namespace Voussoir
       Vector
       reference(const Simulation &simulation, const Vector &u) const
       {
-        const Discretization &discretization = simulation.model.discretization;
-        const auto           &fe             = discretization.fe;
-        const Vector          source         = with_ghosts(discretization, u);
-        Vector                result(discretization.owned_dofs,
+        const Discretization &discretization =
+          simulation.model.solid.discretization;
+        const auto  &fe     = discretization.fe;
+        const Vector source = with_ghosts(discretization, u);
+        Vector       result(discretization.owned_dofs,
                       discretization.relevant_dofs,
                       discretization.grid.communicator());
 
@@ -99,9 +102,11 @@ namespace Voussoir
              discretization.dof_handler.active_cell_iterators())
           if (cell->is_locally_owned())
             {
-              const unsigned int number   = simulation.model.material_of(cell);
-              const Material    &material = *simulation.model.materials[number];
-              const double       factor =
+              const unsigned int number =
+                simulation.model.solid.grid().material(cell);
+              const Material &material =
+                *simulation.model.solid.materials[number];
+              const double factor =
                 simulation.run.equation.internal_force.factor_of(number);
               values.reinit(cell);
               values[displacement].get_function_symmetric_gradients(source,

@@ -122,7 +122,7 @@ namespace Voussoir
         const auto simulation      = make_simulation(*parameters, communicator);
         const auto &[lower, upper] = simulation->model.boundary.extent();
         const ElasticConstants rock =
-          simulation->model.materials[0]->elastic_constants();
+          simulation->model.solid.materials[0]->elastic_constants();
         for (unsigned int d = 0; d < 3; ++d)
           {
             const double travel =
@@ -158,7 +158,7 @@ namespace Voussoir
         std::map<double, double> levels;
         for (const SideFace &face : simulation->model.boundary.side_faces())
           levels[face.lower] = (face.upper - face.lower) /
-                               simulation->model.materials[face.material]
+                               simulation->model.solid.materials[face.material]
                                  ->elastic_constants()
                                  .s_wave_speed();
         double travel_time = 0.;

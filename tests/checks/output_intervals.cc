@@ -23,7 +23,7 @@ namespace Voussoir
 
     /** Runs a case to its end with its files in the folder of these checks. */
     std::unique_ptr<Simulation>
-    run_with_files(Case &parameters, const MPI_Comm communicator)
+    run_with_files(const Case &parameters, const MPI_Comm communicator)
     {
       auto simulation = make_simulation_with_files(parameters, communicator);
       simulation->run.march();
@@ -171,9 +171,10 @@ namespace Voussoir
           make_case(file.with({"Output/Folder=" + folder,
                                "Output/histories/Filter frequency=0",
                                "Time/End time=0.1"}));
-        const auto   simulation = run_with_files(*parameters, communicator);
-        const auto   rock = simulation->model.materials[0]->elastic_constants();
-        const double longest_edge = 10.;
+        const auto simulation = run_with_files(*parameters, communicator);
+        const auto rock =
+          simulation->model.solid.materials[0]->elastic_constants();
+        const double  longest_edge = 10.;
         std::ifstream in(folder + "/summary.json");
         verdicts.near("filtered at, by the mesh",
                       nlohmann::json::parse(in)

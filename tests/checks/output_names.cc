@@ -84,20 +84,20 @@ namespace Voussoir
                            std::vector<std::string>(
                              {"joint 3", "joint 4", "joint 1", "joint 2"}));
 
-        bool       in_blocks = true;
-        const auto set_of_cell =
-          smallest_cell_sets(simulation->model.grid, names.cell_sets);
+        bool        in_blocks   = true;
+        const Grid &grid        = simulation->model.grid;
+        const auto  dam         = grid.tags_in({"dam"});
+        const auto  set_of_cell = smallest_cell_sets(grid, names.cell_sets);
         for (const auto &cell :
              simulation->model.grid.triangulation().active_cell_iterators())
           if (cell->is_locally_owned())
             {
               const std::string set =
                 names.cell_sets.at(set_of_cell[cell->active_cell_index()]);
-              in_blocks = in_blocks &&
-                          simulation->model.grid.in_cell_set(cell, set) &&
-                          (simulation->model.grid.in_cell_set(cell, "dam") ?
-                             set.rfind("block ", 0) == 0 :
-                             set == "rock");
+              in_blocks =
+                in_blocks && grid.tags_in({set})[cell->material_id()] &&
+                (dam[cell->material_id()] ? set.rfind("block ", 0) == 0 :
+                                            set == "rock");
             }
         verdicts.is_true("the smallest set of a cell is its block, or rock",
                          Utilities::MPI::min(in_blocks ? 1 : 0, communicator) ==

@@ -50,7 +50,8 @@ namespace Voussoir
         prm.set("Stress in", "soil");
         observer->prepare(model, 0., false);
 
-        const Discretization &discretization = simulation->model.discretization;
+        const Discretization &discretization =
+          simulation->model.solid.discretization;
         std::map<std::uint64_t, std::array<double, 2>> expected;
         for (unsigned int look = 0; look < 3; ++look)
           {
@@ -101,18 +102,19 @@ namespace Voussoir
                 const Vector                                   &displacement,
                 std::map<std::uint64_t, std::array<double, 2>> &expected)
       {
-        const Discretization &discretization = simulation.model.discretization;
-        const Vector          full = with_ghosts(discretization, displacement);
-        FEValues<3>           values(discretization.mapping,
+        const Discretization &discretization =
+          simulation.model.solid.discretization;
+        const Vector full = with_ghosts(discretization, displacement);
+        FEValues<3>  values(discretization.mapping,
                            discretization.fe,
                            // the points of pictures
                            QIterated<3>(QTrapezoid<1>(), discretization.degree),
                            update_gradients);
         std::vector<SymmetricTensor<2, 3>> strain(values.n_quadrature_points);
+        const std::vector<bool> soil = simulation.model.grid.tags_in({"soil"});
         for (const auto &cell :
              discretization.dof_handler.active_cell_iterators())
-          if (cell->is_locally_owned() &&
-              simulation.model.grid.in_cell_set(cell, "soil"))
+          if (cell->is_locally_owned() && soil[cell->material_id()])
             {
               values.reinit(cell);
               values[FEValuesExtractors::Vector(0)]
@@ -122,10 +124,8 @@ namespace Voussoir
                   .first->second;
               for (const auto &one : strain)
                 {
-                  const auto principal =
-                    eigenvalues(simulation.model
-                                  .materials[simulation.model.material_of(cell)]
-                                  ->stress(one));
+                  const auto principal = eigenvalues(
+                    simulation.model.solid.material_of(cell).stress(one));
                   keep_largest(extremes[0], principal[0]);
                   extremes[1] = std::min(extremes[1], principal[2]);
                 }
@@ -170,8 +170,9 @@ namespace Voussoir
         const auto   u = [&](const double t, const double z) {
           return -(1. + 0.2 * z) * std::sin(omega * t) / (omega * omega);
         };
-        State       state     = simulation->run.state;
-        const auto &positions = simulation->model.discretization.node_positions;
+        State       state = simulation->run.state;
+        const auto &positions =
+          simulation->model.solid.discretization.node_positions;
         for (state.step = 0; state.step <= 8001; ++state.step)
           {
             state.time = state.step * dt;

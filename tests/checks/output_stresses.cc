@@ -31,7 +31,7 @@ namespace Voussoir
         verdict               = &verdicts;
         this->model           = simulation.get();
         const auto elastic =
-          simulation->model.materials[0]->elastic_constants();
+          simulation->model.solid.materials[0]->elastic_constants();
         young = elastic.young_modulus;
         nu    = elastic.poisson_ratio;
 
@@ -50,9 +50,10 @@ namespace Voussoir
       State
       state_of(const Field &displacement) const
       {
-        State state           = model->run.state;
-        state.displacement    = 0.;
-        const auto &positions = model->model.discretization.node_positions;
+        State state        = model->run.state;
+        state.displacement = 0.;
+        const auto &positions =
+          model->model.solid.discretization.node_positions;
         for (unsigned int node = 0; node < positions.size(); ++node)
           {
             const auto u = displacement(positions[node]);

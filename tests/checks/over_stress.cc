@@ -21,8 +21,9 @@ namespace Voussoir
         const auto simulation = make_simulation(*parameters, communicator);
         verdict               = &verdicts;
         model                 = simulation.get();
-        young = model->model.materials[0]->elastic_constants().young_modulus;
-        step  = model->run.time_step.length;
+        young =
+          model->model.solid.materials[0]->elastic_constants().young_modulus;
+        step = model->run.time_step.length;
         for (const std::string stress : {"principal", "arch and cantilever"})
           sine(stress);
         two_moments();
@@ -41,7 +42,8 @@ namespace Voussoir
             const std::string &which) const
       {
         std::vector<State> states;
-        const auto &positions = model->model.discretization.node_positions;
+        const auto        &positions =
+          model->model.solid.discretization.node_positions;
         for (unsigned int n = 0; n <= n_steps; ++n)
           {
             states.push_back(model->run.state);

@@ -35,7 +35,7 @@ namespace Voussoir
             const auto simulation = make_simulation(*parameters, communicator);
             const bool shear      = wave == "S";
             const auto rock =
-              simulation->model.materials[0]->elastic_constants();
+              simulation->model.solid.materials[0]->elastic_constants();
             const double c = shear ? rock.s_wave_speed() : rock.p_wave_speed();
             const double factor = 1e6 / (rock.density * c);
             const double depth = 800., duration = 0.4;
@@ -46,7 +46,8 @@ namespace Voussoir
               [&](State &state) {
                 if (shear)
                   for (unsigned int node = 0;
-                       node < simulation->model.discretization.n_owned_nodes();
+                       node <
+                       simulation->model.solid.discretization.n_owned_nodes();
                        ++node)
                     {
                       state.displacement.local_element(3 * node + 2) = 0.;

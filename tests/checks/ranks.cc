@@ -83,8 +83,8 @@ namespace Voussoir
                       {}};
 
         std::vector<StressPoints::Place> places;
-        for (const auto &cell : simulation->model.discretization.dof_handler
-                                  .active_cell_iterators())
+        for (const auto &cell : simulation->model.solid.discretization
+                                  .dof_handler.active_cell_iterators())
           if (cell->is_locally_owned())
             places.push_back({cell, Point<3>(0.5, 0.5, 0.5)});
         StressPoints centres(simulation->run.observed, places);

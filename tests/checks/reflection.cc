@@ -91,7 +91,8 @@ namespace Voussoir
           [&](State &state) {
             if (wave == "S")
               for (unsigned int node = 0;
-                   node < simulation->model.discretization.n_owned_nodes();
+                   node <
+                   simulation->model.solid.discretization.n_owned_nodes();
                    ++node)
                 {
                   state.displacement.local_element(3 * node + 2) = 0.;

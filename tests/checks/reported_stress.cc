@@ -117,7 +117,7 @@ namespace Voussoir
                                "Time/End time=" + end.str()}));
         const auto simulation = make_simulation(*parameters, communicator);
         Run       &run        = simulation->run;
-        const bool cracks     = run.model.internal_force.has_memory();
+        const bool cracks     = run.model.solid.internal_force.has_memory();
 
         const double at_rest =
           parameters->static_state.stage_names().empty() ? 0. : 0.4;
@@ -271,10 +271,10 @@ namespace Voussoir
                       5e-3);
 
         std::vector<StressPoints::Place> places;
-        for (const auto &cell : simulation->model.discretization.dof_handler
-                                  .active_cell_iterators())
+        for (const auto &cell : simulation->model.solid.discretization
+                                  .dof_handler.active_cell_iterators())
           if (cell->is_locally_owned() &&
-              run.observed.material_of_cell(cell) == 0)
+              run.observed.solid.grid().material(cell) == 0)
             places.push_back({cell, Point<3>(0.5, 0.5, 0.5)});
         StressPoints points(run.observed, places);
         double       left = 0.;

@@ -26,8 +26,7 @@ namespace Voussoir
         const auto       materials = parameters->material_list();
         const LumpedMass mass(tank.discretization,
                               {materials[0]->density},
-                              {0.},
-                              [](const Grid::Cell &) { return 0U; });
+                              {0.});
         InternalForce internal_force(tank.discretization, {materials[0]}, {1.});
 
         StepLimits limits;

@@ -53,7 +53,7 @@ namespace Voussoir
         for (unsigned int i = 0; i < a.state.memory.size(); ++i)
           verdicts.is_true("same damping memory, bit for bit",
                            same(a.state.memory[i], b.state.memory[i]));
-        for (unsigned int m = 0; m < straight.model.materials.size(); ++m)
+        for (unsigned int m = 0; m < straight.model.solid.materials.size(); ++m)
           if (PointHistory *history = a.state.material_memory.of(m))
             verdicts.is_true(
               "same memory of the points, bit for bit",
@@ -111,7 +111,7 @@ namespace Voussoir
       largest_impact(const Run &run, const MPI_Comm communicator)
       {
         double largest = 0.;
-        for (unsigned int m = 0; m < run.model.materials.size(); ++m)
+        for (unsigned int m = 0; m < run.model.solid.materials.size(); ++m)
           if (const PointHistory *history = run.state.material_memory.of(m))
             for (const auto &[cell, place] : history->cells())
               for (unsigned int q = 0; q < history->n_points(); ++q)

@@ -58,7 +58,8 @@ namespace Voussoir
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        Vector u = simulation->model.discretization.create_vector(), force = u;
+        Vector     u = simulation->model.solid.discretization.create_vector(),
+               force = u;
         const unsigned int       n = u.size();
         LAPACKFullMatrix<double> matrix(n);
         double                   asymmetry = 0.;

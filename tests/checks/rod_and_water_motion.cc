@@ -30,14 +30,15 @@ namespace Voussoir
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
         const RodAndColumn exact{
-          simulation->model.materials[0]->elastic_constants(),
+          simulation->model.solid.materials[0]->elastic_constants(),
           length,
           depth,
           parameters->reservoir.density,
           parameters->reservoir.sound_speed};
 
         Vector     &velocity = simulation->run.state.velocity;
-        const auto &nodes    = simulation->model.discretization.node_positions;
+        const auto &nodes =
+          simulation->model.solid.discretization.node_positions;
         for (unsigned int i = 0; i < velocity.locally_owned_size() / 3; ++i)
           velocity.local_element(3 * i + 2) = std::pow(nodes[i][2] / length, 2);
         const Histories histories =

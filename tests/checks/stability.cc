@@ -48,13 +48,14 @@ namespace Voussoir
         const auto simulation = make_simulation(*parameters, communicator);
         State     &state      = simulation->run.state;
         for (unsigned int node = 0;
-             node < simulation->model.discretization.n_owned_nodes();
+             node < simulation->model.solid.discretization.n_owned_nodes();
              ++node)
           for (unsigned int d = 0; d < 3; ++d)
-            if (simulation->model.mass.inverse.local_element(3 * node + d) > 0.)
+            if (simulation->model.solid.mass.inverse.local_element(3 * node +
+                                                                   d) > 0.)
               {
                 const Point<3> &p =
-                  simulation->model.discretization.node_positions[node];
+                  simulation->model.solid.discretization.node_positions[node];
                 state.velocity.local_element(3 * node + d) =
                   std::sin(700. * p[0] + 1300. * p[1] + 1900. * p[2] + 2.1 * d);
               }

@@ -30,7 +30,7 @@ namespace Voussoir
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        const PointWeights weights(simulation->model.discretization,
+        const PointWeights weights(simulation->model.solid.discretization,
                                    {{"point", point}},
                                    "Point");
         const Tensor<1, 3> displacement =

@@ -28,16 +28,15 @@ namespace Voussoir
             Tensor<1, 3> force;
             double       moment = 0.; // about the base
             for (const auto &[node, part] :
-                 depth_pressure_forces(simulation->model.discretization,
+                 depth_pressure_forces(simulation->model.solid.discretization,
                                        {"right"},
                                        "The check",
                                        level,
                                        gradient))
               {
                 force += part;
-                moment +=
-                  part[0] *
-                  simulation->model.discretization.node_positions[node][2];
+                moment += part[0] * simulation->model.solid.discretization
+                                      .node_positions[node][2];
               }
             force  = Utilities::MPI::sum(force, communicator);
             moment = Utilities::MPI::sum(moment, communicator);

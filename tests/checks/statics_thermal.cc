@@ -45,7 +45,7 @@ namespace Voussoir
       {
         const auto   parameters = make_case(file);
         const auto   simulation = make_simulation(*parameters, communicator);
-        const auto  &material   = *simulation->model.materials[0];
+        const auto  &material   = *simulation->model.solid.materials[0];
         const double E          = material.elastic_constants().young_modulus *
                          material.static_factor,
                      strain = material.expansion * change;
@@ -101,7 +101,8 @@ namespace Voussoir
       displacement_error(const Simulation &simulation,
                          const double      strain) const
       {
-        const Discretization &discretization = simulation.model.discretization;
+        const Discretization &discretization =
+          simulation.model.solid.discretization;
         const Vector      &displacement = simulation.rest.initial.displacement;
         const unsigned int n            = discretization.n_owned_nodes();
         // nothing holds the plate across: its mean is what the exact one has
@@ -147,7 +148,7 @@ namespace Voussoir
                                              {"corner",
                                               Point<3>(10., 0., 10.)}};
         const auto                    share =
-          PointWeights(simulation.model.discretization, points, "")
+          PointWeights(simulation.model.solid.discretization, points, "")
             .share(simulation.rest.initial.displacement);
         return Utilities::MPI::sum(share[1][1] - share[0][1],
                                    simulation.model.grid.communicator()) /
@@ -159,8 +160,9 @@ namespace Voussoir
       std::pair<double, double>
       stress_range(const Simulation &simulation) const
       {
-        const Discretization &discretization = simulation.model.discretization;
-        const Vector          u =
+        const Discretization &discretization =
+          simulation.model.solid.discretization;
+        const Vector u =
           with_ghosts(discretization, simulation.rest.initial.displacement);
         const Vector temperature =
           with_ghosts(discretization, simulation.rest.initial.temperature);
@@ -181,7 +183,7 @@ namespace Voussoir
               values[all].get_function_values(temperature, temperatures);
               for (const unsigned int q : values.quadrature_point_indices())
                 {
-                  const auto &material = *simulation.model.materials[0];
+                  const auto &material = *simulation.model.solid.materials[0];
                   const auto  stress = material.stress(material.elastic_strain(
                     strains[q], strains[q], temperatures[q][0], 1.));
                   for (unsigned int i = 0; i < (body == "clamped bar" ? 1 : 6);

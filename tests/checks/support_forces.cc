@@ -75,7 +75,8 @@ namespace Voussoir
         const auto simulation =
           make_simulation_with_files(*parameters, communicator);
         simulation->run.march();
-        const auto   c = simulation->model.materials[0]->elastic_constants();
+        const auto c =
+          simulation->model.solid.materials[0]->elastic_constants();
         const double speed  = c.p_wave_speed(),
                      factor = c.density * speed * 2. * 3.; // area 2 m x 3 m
         const auto velocity = [](const double t) { // of 0.02 (t/0.02)^3 m
@@ -146,7 +147,8 @@ namespace Voussoir
         const auto simulation =
           make_simulation_with_files(*parameters, communicator);
         simulation->run.march();
-        const auto c = simulation->model.materials[0]->elastic_constants();
+        const auto c =
+          simulation->model.solid.materials[0]->elastic_constants();
         MPI_Barrier(communicator);
         const ForceHistory pulled("rod_slow", "top"),
           held("rod_slow", "bottom");
@@ -162,7 +164,8 @@ namespace Voussoir
                       1e-4,
                       "MN");
         double                contraction = 0., across = 0.;
-        const Discretization &discretization = simulation->model.discretization;
+        const Discretization &discretization =
+          simulation->model.solid.discretization;
         for (unsigned int node = 0; node < discretization.n_owned_nodes();
              ++node)
           if (const Point<3> &x = discretization.node_positions[node];
@@ -225,11 +228,12 @@ namespace Voussoir
                                  (stages.empty() ? "sin(8*t)" : "")}));
         const auto simulation =
           make_simulation_with_files(*parameters, communicator);
-        Run         &run  = simulation->run;
-        const double mass = simulation->model.mass.total[0]; // held nodes too
-        const auto   momentum = [&] {
+        Run         &run = simulation->run;
+        const double mass =
+          simulation->model.solid.mass.total[0]; // held nodes too
+        const auto momentum = [&] {
           Tensor<1, 3>  sum;
-          const Vector &m = simulation->model.mass.mass;
+          const Vector &m = simulation->model.solid.mass.mass;
           for (unsigned int i = 0; i < m.locally_owned_size(); ++i)
             sum[i % 3] +=
               m.local_element(i) * run.state.velocity.local_element(i);
@@ -241,7 +245,7 @@ namespace Voussoir
         for (unsigned long long n = 0; n < run.n_steps(); ++n)
           {
             const double t = run.state.time;
-            for (const auto &observer : parameters->observers)
+            for (const auto &observer : run.setup->observers)
               observer.second->observe(run.state);
             run.scheme.step(run.state);
             const Tensor<1, 3> now = momentum();
@@ -252,9 +256,9 @@ namespace Voussoir
             before = now;
           }
         nlohmann::json summary;
-        for (const auto &observer : parameters->observers)
+        for (const auto &observer : run.setup->observers)
           observer.second->observe(run.state);
-        for (const auto &observer : parameters->observers)
+        for (const auto &observer : run.setup->observers)
           observer.second->finish(run.state, summary);
         MPI_Barrier(communicator);
 

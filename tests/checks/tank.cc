@@ -6,31 +6,39 @@ namespace Voussoir
 {
   using namespace dealii;
 
-  Tank::Tank(Case &parameters, const MPI_Comm communicator)
+  namespace
+  {
+    NodalTerms
+    terms_of(const Reservoir &reservoir, const Discretization &discretization)
+    {
+      NodalTerms terms(discretization.n_owned_nodes());
+      terms.add_nodes(reservoir.wet_nodes());
+      return terms;
+    }
+  } // namespace
+
+
+  Tank::Tank(const Case &parameters, const MPI_Comm communicator)
     : mesh(parameters.generator->generate())
     , water_mesh(split_off_reservoir(mesh,
                                      split_list(parameters.reservoir.cell_sets),
                                      "The tank"))
-    , grid(
-        mesh,
-        parameters.grid,
-        [](const unsigned int) { return 1.; },
-        communicator)
+    , grid(mesh, parameters.grid, communicator)
     , discretization(grid,
                      parameters.discretization,
-                     parameters.boundaries.supports.list(),
-                     [](const Grid::Cell &) { return 0U; })
+                     parameters.boundaries.supports.list())
     , log(communicator, true)
     , reservoir(water_mesh,
                 parameters.grid,
                 parameters.reservoir,
                 discretization,
-                terms,
                 log)
     , time_step(parameters.time.time_step > 0. ?
                   parameters.time.time_step :
                   parameters.time.safety_factor * reservoir.stable_step())
     , water(reservoir, base, time_step)
+    , terms(terms_of(reservoir, discretization))
+    , forces(terms)
   {}
 
 
@@ -40,7 +48,7 @@ namespace Voussoir
     Vector motion = discretization.create_vector();
     for (unsigned int i = 0; i < motion.locally_owned_size(); ++i)
       motion.local_element(i) = velocity[i % 3];
-    forces.assign(terms.nodes.size(), Tensor<1, 3>());
+    forces.reset();
     water.add_forces(time, forces);
     water.advance(motion, base_velocity);
     time += time_step;
@@ -50,10 +58,7 @@ namespace Voussoir
   Tensor<1, 3>
   Tank::thrust() const
   {
-    Tensor<1, 3> sum;
-    for (const Tensor<1, 3> &force : forces)
-      sum += force;
-    return Utilities::MPI::sum(sum, grid.communicator());
+    return Utilities::MPI::sum(forces.sum(), grid.communicator());
   }
 
 

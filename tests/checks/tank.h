@@ -12,18 +12,18 @@ namespace Voussoir
   class Tank
   {
   public:
-    Tank(Case &parameters, const MPI_Comm communicator);
+    Tank(const Case &parameters, const MPI_Comm communicator);
 
     CoarseMesh           mesh; // of the solid, once the water is made
     const CoarseMesh     water_mesh;
     const Grid           grid;
     const Discretization discretization;
-    NodalTerms           terms;
     Log                  log;
     const Reservoir      reservoir;
     const RigidBase      base;
     const double         time_step;
     WaterMotion          water;
+    const NodalTerms     terms;  // of its wet nodes
     NodalForces          forces; // of the beginning of the last step
     double               time = 0.;
 

@@ -106,9 +106,10 @@ namespace Voussoir
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        const Discretization &discretization = simulation->model.discretization;
-        const Material       &material       = *simulation->model.materials[0];
-        const PointHistory   &history =
+        const Discretization &discretization =
+          simulation->model.solid.discretization;
+        const Material     &material = *simulation->model.solid.materials[0];
+        const PointHistory &history =
           *simulation->run.state.material_memory.of(0);
         FEValues<3>  values(discretization.mapping,
                            discretization.fe,

@@ -51,7 +51,7 @@ namespace Voussoir
         State        &state = simulation.run.state;
         const Vector &shape = simulation.modes.list[0].shape;
         Vector        momentum(shape);
-        momentum.scale(simulation.model.mass.mass);
+        momentum.scale(simulation.model.solid.mass.mass);
         state.velocity = shape;
         std::vector<double> zeros;
         double              last = 0.;

@@ -104,12 +104,12 @@ namespace Voussoir
         const auto   parameters = make_case(file);
         const auto   simulation = make_simulation(*parameters, communicator);
         const Model &model      = simulation->model;
-        Water        water{model.discretization.create_vector(),
+        Water        water{model.solid.discretization.create_vector(),
                     std::vector<SymmetricTensor<2, 3>>(
-                      model.discretization.n_owned_nodes()),
+                      model.solid.discretization.n_owned_nodes()),
                     model.added_mass.mass,
                     model.added_mass.river};
-        for (const auto &load : parameters->load_list())
+        for (const auto &load : model.loads)
           load.second->add_steady_force(water.pressure);
         for (unsigned int slot = 0; slot < model.terms.nodes.size(); ++slot)
           water.masses[model.terms.nodes[slot]] = model.terms.added_mass[slot];

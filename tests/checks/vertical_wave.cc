@@ -39,8 +39,9 @@ namespace Voussoir
         const auto motion =
           parameters->ground_motion.build(parameters->file.folder());
 
-        const Discretization &discretization = simulation->model.discretization;
-        double                top            = -1e300;
+        const Discretization &discretization =
+          simulation->model.solid.discretization;
+        double top = -1e300;
         for (const Point<3> &p : discretization.node_positions)
           keep_largest(top, p[2]);
         top = Utilities::MPI::max(top, communicator);

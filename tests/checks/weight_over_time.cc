@@ -30,8 +30,9 @@ namespace Voussoir
         const std::vector<NamedPoint> top{{"top", Point<3>(1., 1., 30.)}};
         const auto                    parameters = make_case(file);
         const auto   simulation = make_simulation(*parameters, communicator);
-        const double c =
-          simulation->model.materials[0]->elastic_constants().p_wave_speed();
+        const double c          = simulation->model.solid.materials[0]
+                           ->elastic_constants()
+                           .p_wave_speed();
         const double L       = 30.;
         const auto   history = run_and_record(*simulation, top);
         const auto   u       = [&](const double t) {

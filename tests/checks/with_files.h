@@ -13,7 +13,8 @@ namespace Voussoir
   /** A silent simulation that writes its files anew into the folder of the
    *  case. */
   inline std::unique_ptr<Simulation>
-  make_simulation_with_files(Case &parameters, const MPI_Comm communicator)
+  make_simulation_with_files(const Case    &parameters,
+                             const MPI_Comm communicator)
   {
     RunOptions options;
     options.quiet     = true;

@@ -41,16 +41,14 @@ namespace Voussoir
      *   or null
      * @param ties        those that @p constraints have, or null
      */
-    ElasticSolver(
-      const Discretization                                  &discretization,
-      const InternalForce                                   &internal_force,
-      const std::vector<const Material *>                   &materials,
-      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
-      const dealii::AffineConstraints<double>               &constraints,
-      const NodalTerms                                      *springs,
-      Contact                                               *contact = nullptr,
-      const Vector    *displacement                                  = nullptr,
-      const TiedNodes *ties                                          = nullptr);
+    ElasticSolver(const Discretization                    &discretization,
+                  const InternalForce                     &internal_force,
+                  const std::vector<const Material *>     &materials,
+                  const dealii::AffineConstraints<double> &constraints,
+                  const NodalTerms                        *springs,
+                  Contact                                 *contact = nullptr,
+                  const Vector    *displacement                    = nullptr,
+                  const TiedNodes *ties                            = nullptr);
 
     /** The contact whose tangent is part of the stiffness, or null. */
     StaticContact *
@@ -82,10 +80,8 @@ namespace Voussoir
 
   private:
     void
-    assemble(
-      const std::vector<const Material *>                   &materials,
-      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
-      const Contact                                         *contact);
+    assemble(const std::vector<const Material *> &materials,
+             const Contact                       *contact);
 
     /** Lets the parts hold together where they touch. */
     void

@@ -5,10 +5,9 @@
 #include <voussoir/base/option.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/constraints/contact.h>
-#include <voussoir/fem/internal_force.h>
 #include <voussoir/loads/boundary_parameters.h>
 #include <voussoir/loads/reservoir.h>
-#include <voussoir/materials/material.h>
+#include <voussoir/materials/solid.h>
 
 #include <nlohmann/json.hpp>
 
@@ -72,13 +71,10 @@ namespace Voussoir
   /** What the modes are computed from. */
   struct ModalModel
   {
-    const Discretization                           &discretization;
-    const InternalForce                            &internal_force;
-    std::vector<std::string>                        material_names;
-    std::vector<const Material *>                   materials;
-    std::function<unsigned int(const Grid::Cell &)> material_of_cell;
-    const BoundaryParameters                       &boundaries;
-    const NodalTerms                               &terms;
+    const Solid              &solid;
+    std::vector<std::string>  material_names;
+    const BoundaryParameters &boundaries;
+    const NodalTerms         &terms;
 
     /** The interfaces at rest, or null. */
     const Contact *contact = nullptr;

@@ -4,17 +4,16 @@
 #include <voussoir/base/log.h>
 #include <voussoir/base/option.h>
 #include <voussoir/constraints/contact.h>
-#include <voussoir/fem/internal_force.h>
 #include <voussoir/loads/boundary_parameters.h>
 #include <voussoir/loads/load.h>
-#include <voussoir/materials/material.h>
+#include <voussoir/materials/solid.h>
 
 #include <nlohmann/json.hpp>
 
 namespace Voussoir
 {
   /** The loads of a case by their names. */
-  using NamedLoads = std::vector<std::pair<std::string, Load *>>;
+  using NamedLoads = std::vector<std::pair<std::string, const Load *>>;
 
   enum class StaticSupports
   {
@@ -62,14 +61,10 @@ namespace Voussoir
   /** What the static stage is computed from. */
   struct StaticModel
   {
-    const Discretization                           &discretization;
-    const InternalForce                            &internal_force;
-    const std::vector<const Material *>            &materials;
-    std::function<unsigned int(const Grid::Cell &)> material_of_cell;
-    const BoundaryParameters                       &boundaries;
-    const LumpedMass                               &mass;
-    const NodalTerms                               &terms;
-    Contact                                        *contact; // or null
+    const Solid              &solid;
+    const BoundaryParameters &boundaries;
+    const NodalTerms         &terms;
+    Contact                  *contact; // or null
   };
 
   /**

@@ -47,6 +47,10 @@ namespace Voussoir
     void
     parse(dealii::ParameterHandler &prm) const;
 
+    /** The same for what @p prm declares; other values are left. */
+    void
+    parse_declared(dealii::ParameterHandler &prm) const;
+
     /** Name of the file without folder and ending. */
     std::string
     name() const;

@@ -24,7 +24,8 @@ namespace Voussoir
     /** @param parameters of the interfaces of the mesh, which is split along
      * them; must live as long as this */
     Contact(const Discretization       &discretization,
-            const InterfacesParameters &parameters);
+            const InterfacesParameters &parameters,
+            const InterfaceSurfaces    &surfaces);
 
     /** The points, for those who find the same forces in another way. */
     InterfacePoints &

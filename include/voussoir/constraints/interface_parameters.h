@@ -46,14 +46,21 @@ namespace Voussoir
 
     UpliftParameters uplift;
 
-    /** The face sets, once the mesh is split. */
-    std::vector<std::string> surfaces;
-
     void
     declare(dealii::ParameterHandler &prm);
 
     void
     check() const;
+  };
+
+  /** Face sets along which a mesh was split, those of each interface. */
+  struct InterfaceSurfaces
+  {
+    std::vector<std::vector<std::string>> of_interface;
+
+    /** All of them, in order. */
+    std::vector<std::string>
+    names() const;
   };
 
   /** The section "Interfaces". */
@@ -70,13 +77,10 @@ namespace Voussoir
     void
     check() const;
 
-    /** Finds the face sets in the mesh and splits it along them. */
-    void
-    split(CoarseMesh &mesh);
-
-    /** All surfaces, in order. */
-    std::vector<std::string>
-    surfaces() const;
+    /** Finds the face sets of each interface in the mesh and splits it along
+     *  them. */
+    InterfaceSurfaces
+    split(CoarseMesh &mesh) const;
   };
 } // namespace Voussoir
 

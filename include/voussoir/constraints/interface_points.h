@@ -21,7 +21,8 @@ namespace Voussoir
     /** @param interfaces of the mesh, which is split along them; must live
      *  as long as this */
     InterfacePoints(const Discretization       &discretization,
-                    const InterfacesParameters &interfaces);
+                    const InterfacesParameters &interfaces,
+                    const InterfaceSurfaces    &surfaces);
 
     /** See Contact::set_delay. */
     double

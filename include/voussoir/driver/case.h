@@ -23,20 +23,20 @@
 namespace Voussoir
 {
   /**
-   * The objects of one kind that a case lists by name, each a section of its
-   * own: `set Names = concrete, rock` and, in the section of that name, the
-   * class it is of and the entries of that class.
+   * The objects of one kind that a case names, each a section of its own: `set
+   * Names = concrete, rock` and, in the section of that name, the class it is
+   * of and the entries of that class. They say what the file says and do not
+   * change; what changes with a model or a run is made anew.
    */
   template <typename Base>
-  struct NamedObjects
+  class NamedObjects
   {
-    std::vector<std::pair<std::string, std::unique_ptr<Base>>> objects;
-
-    /** Those with `set Active = false`, whose entries are checked all the same.
-     */
-    std::vector<std::pair<std::string, std::unique_ptr<Base>>> inactive;
+  public:
+    using List = std::vector<std::pair<std::string, std::unique_ptr<Base>>>;
 
     /**
+     * Declares those that the entry "Names" of a section lists.
+     *
      * @param section       where the list stands
      * @param what          what one of them is, for the description
      * @param default_class of one that names none
@@ -49,6 +49,38 @@ namespace Voussoir
             const std::string        &what,
             const std::string        &default_class,
             const bool                can_rest);
+
+    /** Declares one, in the section @p place that @p prm has entered. */
+    void
+    declare_one(dealii::ParameterHandler &prm,
+                const std::string        &name,
+                const std::string        &place,
+                const std::string        &class_name,
+                const std::string        &place_of_class,
+                const bool                active = true);
+
+    /** Calls @p visit for each as long as the case is being read. */
+    void
+    for_each(
+      const std::function<void(const std::string &place, Base &)> &visit);
+
+    /** New ones with the entries of the file, for those who change them. */
+    List
+    make(const ParameterFile &file) const;
+
+    std::vector<std::pair<std::string, const Base *>> objects;
+
+    /** Those with `set Active = false`, whose entries are checked all the same.
+     */
+    std::vector<std::pair<std::string, const Base *>> inactive;
+
+  private:
+    struct Origin
+    {
+      std::string           place, class_name;
+      std::unique_ptr<Base> object;
+    };
+    std::vector<Origin> origins, origins_of_inactive;
   };
 
   enum class TimeScheme
@@ -137,19 +169,18 @@ namespace Voussoir
     TimeParameters                 time;
     OutputParameters               output;
     StudyParameters                study;
-    std::vector<std::pair<std::string, std::unique_ptr<Observer>>> observers;
+    NamedObjects<Observer>         observers;
 
     /** Values that are hardly meant so, for the log. */
     std::vector<std::string> warnings;
 
-    /** The mesh that the case asks for, checked, and split along the
-     * interfaces; a report goes to @p log. */
+    /** The mesh that the case asks for, checked; a report goes to @p log. */
     CoarseMesh
-    make_mesh(std::ostream &log);
+    make_mesh(std::ostream &log) const;
 
     /**
-     * Material index of each coarse cell; refuses unknown sets, cells without
-     * material and cells with two.
+     * Number of the material of each coarse cell; refuses unknown sets, cells
+     * without material and cells with two.
      */
     std::vector<unsigned int>
     material_of_coarse_cells(const CoarseMesh &mesh) const;
@@ -159,9 +190,6 @@ namespace Voussoir
 
     std::vector<std::string>
     material_names() const;
-
-    NamedLoads
-    load_list() const;
 
     /** Whether there is an earthquake, a constraint, or a load outside the
      *  static stages: without them a model stays at rest. */
@@ -178,7 +206,7 @@ namespace Voussoir
     find_water_of_uplift();
 
     void
-    check() const;
+    check();
   };
 } // namespace Voussoir
 

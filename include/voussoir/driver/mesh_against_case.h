@@ -16,6 +16,7 @@ namespace Voussoir
   void
   check_mesh_against_case(const Case                      &parameters,
                           const CoarseMesh                &mesh,
+                          const InterfaceSurfaces         &surfaces,
                           const std::vector<unsigned int> &materials,
                           Log                             &log);
 } // namespace Voussoir

@@ -4,33 +4,24 @@
 #include <voussoir/base/log.h>
 #include <voussoir/constraints/contact.h>
 #include <voussoir/driver/case.h>
-#include <voussoir/fem/internal_force.h>
-#include <voussoir/fem/lumped_mass.h>
 #include <voussoir/loads/absorbing_boundary.h>
 #include <voussoir/loads/reservoir.h>
+#include <voussoir/materials/solid.h>
 
 namespace Voussoir
 {
   /**
    * What stands before anything moves: grid, materials, mass, internal force,
-   * boundary, reservoir, interfaces. Several runs, one after the other, may be
-   * made on one model; none of them changes it.
+   * boundary, loads, reservoir, interfaces. Several runs may stand side by side
+   * on one model; none of them changes it.
    */
   class Model
   {
   public:
     /** Throws UserError if the case does not fit its mesh. */
-    Model(Case &parameters, Log &log);
+    Model(const Case &parameters, Log &log);
 
     ~Model();
-
-    /** Index of a cell's material. */
-    unsigned int
-    material_of(const Grid::Cell &cell) const;
-
-    /** The same, for those who know no model. */
-    std::function<unsigned int(const Grid::Cell &)>
-    material_of_cell() const;
 
     /** Frequencies of the S waves that the largest cells of each material carry
      *  well, with eight nodes per wavelength; 0 for a material without cells.
@@ -46,26 +37,27 @@ namespace Voussoir
     bool
     rigid_base() const;
 
-    const Case                         &parameters;
-    const std::vector<const Material *> materials;
+    const Case &parameters;
 
   private:
-    const std::vector<unsigned int> material_of_coarse_cell;
+    /** The meshes that are needed only until the grids are made. */
+    struct Meshes
+    {
+      Meshes(const Case &parameters, Log &log);
+
+      CoarseMesh                solid, water;
+      InterfaceSurfaces         surfaces;
+      std::vector<unsigned int> materials; // of the solid's cells
+    };
 
   public:
-    const Grid           grid;
-    const Discretization discretization;
-    const LumpedMass     mass;
-
-    /** With the moduli as given; a run and the static stages take it with their
-     *  own factors. */
-    const InternalForce internal_force;
-
-    NodalTerms              terms; // springs, dashpots, added mass
+    const Grid              grid;
+    const Solid             solid;
     const AbsorbingBoundary boundary;
 
-    /** Loads that come with the earthquake, in their order. */
-    const std::vector<NodalLoad *> running_loads;
+    /** Those of the case by name, in their order. */
+    const std::vector<std::pair<std::string, std::unique_ptr<const Load>>>
+      loads;
 
     /** Westergaard's, or zero. */
     const AddedMass added_mass;
@@ -77,23 +69,22 @@ namespace Voussoir
      *  it has some. */
     const std::shared_ptr<const Reservoir> reservoir_of_modes;
 
-    /** The constraints of the case by name, in their order. */
-    const std::vector<Projection *> constraints;
+    /** What boundary, loads and water put on nodes. */
+    const NodalTerms terms;
 
     /** The interfaces before any load acts, or null. */
     const std::unique_ptr<const Contact> contact;
 
+    /** All loads of the case. */
+    NamedLoads
+    load_list() const;
+
+    /** Loads that come with the earthquake, in their order. */
+    std::vector<const Load *>
+    running_loads() const;
+
   private:
-    /** The meshes that are needed only until the grids are made. */
-    struct Meshes
-    {
-      Meshes(Case &parameters, Log &log);
-
-      CoarseMesh                solid, water;
-      std::vector<unsigned int> materials; // of the solid's cells
-    };
-
-    Model(Case &parameters, Meshes &&meshes, Log &log);
+    Model(const Case &parameters, const Meshes &meshes, Log &log);
 
     void
     report(Log &log) const;

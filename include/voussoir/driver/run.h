@@ -33,10 +33,22 @@ namespace Voussoir
         std::unique_ptr<RunSetup> setup,
         Log                      &log);
 
-    /** Steps to the end time. Throws UserError at the end if results could not
-     *  be written. */
+    /** Steps to the end time: `begin`, each `step`, `end`. */
     void
     march();
+
+    /** What comes before the first step. */
+    void
+    begin();
+
+    /** One step, with what watches it. */
+    void
+    step();
+
+    /** Writes what is left. Throws UserError if results could not be written.
+     */
+    void
+    end();
 
     const std::unique_ptr<RunSetup>     setup;
     const Model                        &model;
@@ -44,11 +56,12 @@ namespace Voussoir
     const Modes                        &modes;
     const ResultFolder                 &folder;
     Log                                &log;
-    Damping                            &damping;
+    const Damping                      &damping;
     const TimeStep                     &time_step;
     Earthquake                         &earthquake;
     const std::unique_ptr<WaterMotion> &water;   // compressible, or null
     std::optional<Contact>              contact; // none without interfaces
+    std::vector<ActingLoad>             loads;   // beside wave and water
     const EquationOfMotion              equation;
     CentralDifference                   scheme;
     State                               state;
@@ -66,7 +79,7 @@ namespace Voussoir
 
   private:
     std::vector<NodalLoad *>
-    nodal_loads() const;
+    nodal_loads();
 
     std::vector<Projection *>
     projections();
@@ -149,6 +162,7 @@ namespace Voussoir
 
     Checkpoint          checkpoint;
     State               last_good; // without the memory of materials
+    Schedule            checkpoints, loose_checks;
     dealii::TimerOutput timer;
     dealii::Timer       clock, since_checkpoint, since_look, since_stop_file;
     unsigned long long  first_step = 0;

@@ -43,10 +43,16 @@ namespace Voussoir
     summary(const MPI_Comm communicator) const;
 
     const Model &model;
-    Damping      damping;
+
+    /** Constraints and observers of the case by name, in their order. */
+    const NamedObjects<Projection>::List constraints;
+    const NamedObjects<Observer>::List   observers;
 
     /** Of the run: the moduli hold at the reference frequency of damping. */
     const InternalForce internal_force;
+
+    const double  undamped_limit; // [s], 0 where damping does not change it
+    const Damping damping;
 
     const TimeStep                     time_step;
     Earthquake                         earthquake;

@@ -14,7 +14,7 @@ namespace Voussoir
   public:
     /** Throws UserError for whatever cannot be computed, before the static
      * state is found and before the output folder is made. */
-    Simulation(Case             &parameters,
+    Simulation(const Case       &parameters,
                const RunOptions &options,
                const MPI_Comm    communicator);
 

@@ -83,7 +83,7 @@ namespace Voussoir
 
     /** @param may_go_on from a checkpoint that the folder has */
     nlohmann::json
-    do_run(Case              &parameters,
+    do_run(const Case        &parameters,
            const std::string &folder,
            const bool         may_go_on) const;
 

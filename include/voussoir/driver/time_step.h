@@ -7,22 +7,28 @@
 
 namespace Voussoir
 {
+  /** The largest stable step of the solid without damping and water [s]. */
+  double
+  undamped_step(const Model &model, const InternalForce &internal_force);
+
   /** The time step of a run, and what limits it. */
   struct TimeStep
   {
     /**
      * Finds the limits and chooses the step by the section "Time" of the case.
      * Throws UserError if the step that the case gives is above the limit.
-     * Where materials have a memory the damping gets its mesh viscosity.
      *
      * @param internal_force that of the run, which the damping goes with
+     * @param undamped_limit undamped_step(), or 0 where damping does not change
+     *   it
      * @param kept step of a checkpoint, which is taken instead [s]
      * @param interval of a record, of which the step becomes a whole part if it
      *   grows shorter by a tenth at most [s]; 0: none
      */
     TimeStep(const Model                 &model,
              const InternalForce         &internal_force,
-             Damping                     &damping,
+             const Damping               &damping,
+             const double                 undamped_limit,
              const std::optional<double> &kept,
              const double                 interval,
              Log                         &log);
@@ -31,7 +37,6 @@ namespace Voussoir
     unsigned long long
     steps_to(const double time) const;
 
-    double undamped_limit;         // [s], 0 where damping does not change it
     double closing_viscosity = 0.; // c of DampedResponse [s]
     double limit;                  // [s]
     double length;                 // [s]

@@ -67,13 +67,16 @@ namespace Voussoir
   class Damping
   {
   public:
-    explicit Damping(const DampingParameters &parameters);
-
-    /** Gives Rayleigh damping its ratio at the natural frequencies [Hz] of the
-     *  two modes that the parameters name, and Maxwell damping the first one as
-     *  its reference, if the parameters want that. */
-    void
-    adapt_to_modes(const std::vector<double> &natural_frequencies);
+    /**
+     * @param natural_frequencies at those of the two modes that the parameters
+     *   name Rayleigh damping has its ratio, and the first is the reference of
+     *   Maxwell damping, if the parameters want that [Hz]
+     * @param undamped_limit stable step without damping of a mesh that is to
+     *   have mesh viscosity [s]; 0: it has none
+     */
+    explicit Damping(const DampingParameters   &parameters,
+                     const std::vector<double> &natural_frequencies = {},
+                     const double               undamped_limit      = 0.);
 
     /** Frequency at which the given moduli hold [Hz]; 0: at rest. */
     double
@@ -97,11 +100,6 @@ namespace Voussoir
 
     /** Maxwell branches: D_i and tau_i [s]. */
     std::vector<double> coefficients, relaxation_times;
-
-    /** Sets the mesh viscosity by the parameters, for a mesh whose undamped
-     *  stable step is @p undamped_limit [s]. */
-    void
-    add_mesh_viscosity(const double undamped_limit);
 
     /** Sum of the D_i. */
     double

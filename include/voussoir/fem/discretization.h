@@ -92,17 +92,13 @@ namespace Voussoir
     using Cell       = dealii::DoFHandler<3>::active_cell_iterator;
 
     /**
-     * @param material_of_cell index of the material of each active cell; a SIMD
-     *   batch holds cells of one material only
      * @param has_memory whether the law of each material has a memory; those
      *   beyond the list have none
      */
-    Discretization(
-      const Grid                                            &grid,
-      const DiscretizationParameters                        &parameters,
-      const std::vector<Support>                            &supports,
-      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
-      const std::vector<bool>                               &has_memory = {});
+    Discretization(const Grid                     &grid,
+                   const DiscretizationParameters &parameters,
+                   const std::vector<Support>     &supports,
+                   const std::vector<bool>        &has_memory = {});
 
     const Grid        &grid;
     const unsigned int degree;
@@ -119,8 +115,22 @@ namespace Voussoir
     dealii::IndexSet                  owned_dofs, relevant_dofs;
     MatrixFree                        matrix_free;
 
-    /** Material index of each cell batch of the matrix-free data. */
+    /** Material of each cell batch of the matrix-free data, which holds cells
+     *  of one material only. */
     std::vector<unsigned int> material_of_batch;
+
+    /** Where a cell is in the matrix-free data: one SIMD lane of a batch. */
+    struct Place
+    {
+      unsigned int batch, lane;
+    };
+
+    /** Place of an owned cell. */
+    Place
+    place_of(const Cell &cell) const
+    {
+      return places[grid.owned_cell(cell)];
+    }
 
     /** Whether the cells of a material have one integration point. */
     bool
@@ -131,14 +141,13 @@ namespace Voussoir
     points(const unsigned int material) const;
 
     /**
-     * Hanging nodes, these supports, and all nodes of the cells for which
-     * @p held_cell is true. The supports of the case are not among them unless
-     * they are given.
+     * Hanging nodes, these supports, and all nodes of the cells of the
+     * materials that are true in @p held_materials, if it is not empty. The
+     * supports of the case are not among them unless they are given.
      */
     dealii::AffineConstraints<double>
-    make_constraints(
-      const std::vector<Support>                    &supports,
-      const std::function<bool(const Grid::Cell &)> &held_cell = {}) const;
+    make_constraints(const std::vector<Support> &supports,
+                     const std::vector<bool>    &held_materials = {}) const;
 
     /** Position of each owned node [m]. */
     std::vector<dealii::Point<3>> node_positions;
@@ -198,6 +207,7 @@ namespace Voussoir
     number_by_nodes();
 
     std::vector<dealii::types::global_dof_index> first_dof_of_rank;
+    std::vector<Place>                           places; // of owned cells
 
     std::function<bool(const unsigned int)> one_point_of_material;
     const dealii::QMidpoint<3>              centre;

@@ -15,15 +15,13 @@ namespace Voussoir
   {
   public:
     /**
-     * @param density        of each material index [kg/m3]
+     * @param density        of each material [kg/m3]
      * @param driven_density the part of it that an inertial earthquake force
      *                       (rigid base) acts on [kg/m3]
      */
-    LumpedMass(
-      const Discretization                                  &discretization,
-      const std::vector<double>                             &density,
-      const std::vector<double>                             &driven_density,
-      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell);
+    LumpedMass(const Discretization      &discretization,
+               const std::vector<double> &density,
+               const std::vector<double> &driven_density);
 
     /** Mass of each degree of freedom [kg], zero where held. */
     Vector mass;

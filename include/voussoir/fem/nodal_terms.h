@@ -10,22 +10,35 @@
 
 namespace Voussoir
 {
-  /** Applied force at each slot of the nodal terms [N]. */
-  using NodalForces = std::vector<dealii::Tensor<1, 3>>;
+  /** What a boundary, water or a load puts on an owned node. */
+  struct NodalTerm
+  {
+    using Matrix = dealii::SymmetricTensor<2, 3>;
+
+    unsigned int node;
+    Matrix       spring, dashpot; // [N/m], [N s/m]
+    Matrix       added_mass;      // [kg]
+  };
 
   /**
    * What stands at a few nodes only, besides the cells: springs and dashpots of
    * the absorbing boundary, water that moves with the dam, the points where
-   * loads act. All of owned nodes; `slot` numbers them.
+   * loads act. All of owned nodes; `slot` numbers those that have any.
    */
   class NodalTerms
   {
   public:
-    using Matrix = dealii::SymmetricTensor<2, 3>;
+    using Matrix = NodalTerm::Matrix;
 
-    /** Slot of an owned node, made if it is new. */
-    unsigned int
-    add_node(const unsigned int node);
+    explicit NodalTerms(const unsigned int n_owned_nodes);
+
+    /** Adds to what the nodes have. */
+    void
+    add(const std::vector<NodalTerm> &terms);
+
+    /** Gives slots to nodes that forces act on. */
+    void
+    add_nodes(const std::vector<unsigned int> &nodes);
 
     std::vector<unsigned int> nodes;
     std::vector<Matrix>       springs;    // [N/m]
@@ -53,7 +66,44 @@ namespace Voussoir
            const double  dashpot_factor) const;
 
   private:
-    std::map<unsigned int, unsigned int> slot_of_node;
+    friend class NodalForces;
+
+    unsigned int
+    slot_made_at(const unsigned int node);
+
+    std::vector<unsigned int> slot_of_node; // invalid without terms
+  };
+
+  /** Applied forces at the nodes that have terms [N]. */
+  class NodalForces
+  {
+  public:
+    /** Zero. @param terms must live as long as this */
+    explicit NodalForces(const NodalTerms &terms);
+
+    void
+    reset();
+
+    /** @param node that has a slot */
+    void
+    add(const unsigned int node, const dealii::Tensor<1, 3> &force)
+    {
+      values[slots[node]] += force;
+    }
+
+    const dealii::Tensor<1, 3> &
+    of_slot(const unsigned int slot) const
+    {
+      return values[slot];
+    }
+
+    /** Sum over the nodes of this rank. */
+    dealii::Tensor<1, 3>
+    sum() const;
+
+  private:
+    const std::vector<unsigned int>  &slots;
+    std::vector<dealii::Tensor<1, 3>> values;
   };
 } // namespace Voussoir
 

@@ -65,11 +65,7 @@ namespace Voussoir
   class PointHistory
   {
   public:
-    /** One lane of a batch. */
-    struct Place
-    {
-      unsigned int batch, lane;
-    };
+    using Place = Discretization::Place;
 
     /** @param width numbers of a point; 0 for a material without memory */
     PointHistory(const Discretization &discretization,
@@ -179,10 +175,6 @@ namespace Voussoir
     const std::vector<std::pair<Discretization::Cell, Place>> &
     cells() const;
 
-    /** Place of a cell of this material. */
-    Place
-    place_of(const Discretization::Cell &cell) const;
-
     /** Energy of the Maxwell branches above the least for their sum [J/m3],
      *  which the energy balance leaves at elastic points for the time when they
      *  leave the elastic range. */
@@ -232,7 +224,6 @@ namespace Voussoir
       unsigned int                                        per_cell = 0;
       std::vector<unsigned int>                           slot_of_batch;
       std::vector<std::pair<Discretization::Cell, Place>> cells;
-      std::vector<unsigned int>                           item_of_cell;
       dealii::AlignedVector<CrackBands>                   bands; // by slot
     };
 

@@ -6,6 +6,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/distributed/tria_base.h>
+#include <deal.II/grid/tria.h>
 
 #include <functional>
 #include <memory>
@@ -37,11 +38,20 @@ namespace Voussoir
     declare(dealii::ParameterHandler &prm);
   };
 
+  /** What a cell is made of and where it belongs. */
+  struct CellTag
+  {
+    unsigned int              material; // number
+    std::vector<unsigned int> sets;     // numbers of cell sets, ascending
+  };
+
   /**
-   * The distributed triangulation with its named sets.
+   * The distributed triangulation with its materials and named sets.
    *
-   * The sets are those of the coarse mesh; refined cells and faces belong to
-   * the sets of the coarse cell or face they lie in. Set names are checked when
+   * They are those of the coarse mesh; refined cells and faces belong to the
+   * material and the sets of the coarse cell or face they lie in. deal.II's
+   * material_id of a cell is the number of its tag: there is one tag for each
+   * combination of material and sets that occurs. Set names are checked when
    * they are looked up, with the known names in the message.
    */
   class Grid
@@ -50,14 +60,23 @@ namespace Voussoir
     using Triangulation = dealii::parallel::DistributedTriangulationBase<3>;
     using Cell          = dealii::Triangulation<3>::cell_iterator;
 
-    /**
-     * @param cost_of_cell relative cost of a cell of the set with this index in
-     *   cell_set_names(), used to balance the ranks
-     */
-    Grid(const CoarseMesh                                &mesh,
-         const GridParameters                            &parameters,
-         const std::function<double(const unsigned int)> &cost_of_coarse_cell,
-         const MPI_Comm                                   communicator);
+    using ActiveCell = dealii::Triangulation<3>::active_cell_iterator;
+
+    struct Materials
+    {
+      std::vector<unsigned int> of_cell; // number, of each coarse cell
+      std::vector<double>       costs;   // of a cell of each, to balance ranks
+    };
+
+    Grid(const CoarseMesh     &mesh,
+         const GridParameters &parameters,
+         const Materials      &materials,
+         const MPI_Comm        communicator);
+
+    /** Of one material. */
+    Grid(const CoarseMesh     &mesh,
+         const GridParameters &parameters,
+         const MPI_Comm        communicator);
 
     const Triangulation &
     triangulation() const;
@@ -65,22 +84,52 @@ namespace Voussoir
     MPI_Comm
     communicator() const;
 
-    /** Whether the cell lies in the named cell set. */
-    bool
-    in_cell_set(const Cell &cell, const std::string &name) const;
+    /** Number of a cell's material. */
+    unsigned int
+    material(const Cell &cell) const
+    {
+      return all_tags[cell->material_id()].material;
+    }
+
+    const std::vector<CellTag> &
+    tags() const;
+
+    /** Names of the cell sets that a cell is in. */
+    std::vector<std::string>
+    sets_of(const Cell &cell) const;
+
+    /** For each tag, whether cells with it are in any of these cell sets. */
+    std::vector<bool>
+    tags_in(const std::vector<std::string> &cell_sets) const;
+
+    /** A face of a cell of this rank, or of one beside those. */
+    struct Face
+    {
+      ActiveCell   cell;
+      unsigned int face;
+    };
+
+    /** Faces of a face set, in the order of the cells and their faces; none if
+     *  the mesh has no such set. */
+    const std::vector<Face> &
+    faces(const std::string &face_set) const;
 
     /** Whether this face of the cell lies in the named face set. */
     bool
-    in_face_set(const Cell        &cell,
+    in_face_set(const ActiveCell  &cell,
                 const unsigned int face,
                 const std::string &name) const;
 
     /** Calls @p visit for each locally owned cell and face of the set. */
     void
-    for_each_face(const std::string &name,
-                  const std::function<
-                    void(const dealii::Triangulation<3>::active_cell_iterator &,
-                         const unsigned int)> &visit) const;
+    for_each_face(const std::string                             &name,
+                  const std::function<void(const ActiveCell &,
+                                           const unsigned int)> &visit) const;
+
+    /** Number of a locally owned active cell among those, from zero, in their
+     *  order. */
+    unsigned int
+    owned_cell(const Cell &cell) const;
 
     const std::vector<std::string> &
     cell_set_names() const;
@@ -100,10 +149,6 @@ namespace Voussoir
     std::string
     describe_balance() const;
 
-    /** Index in the coarse mesh of the coarse cell that a cell lies in. */
-    static unsigned int
-    coarse_cell(const Cell &cell);
-
     /**
      * A number for a cell that does not depend on the partition: its coarse
      * cell and the path of children below it.
@@ -112,15 +157,25 @@ namespace Voussoir
     global_key(const Cell &cell);
 
   private:
-    void
-    create_p4est(const CoarseMesh                                &coarse,
-                 const GridParameters                            &parameters,
-                 const std::function<double(const unsigned int)> &cost);
+    /** The coarse cells with the numbers of their tags. */
+    std::vector<dealii::CellData<3>>
+    tagged_cells(const CoarseMesh                &coarse,
+                 const std::vector<unsigned int> &materials);
 
     void
-    create_metis(const CoarseMesh                                &coarse,
-                 const GridParameters                            &parameters,
-                 const std::function<double(const unsigned int)> &cost);
+    create_p4est(const CoarseMesh                       &coarse,
+                 const std::vector<dealii::CellData<3>> &cells,
+                 const GridParameters                   &parameters,
+                 const std::vector<double>              &costs);
+
+    void
+    create_metis(const CoarseMesh                       &coarse,
+                 const std::vector<dealii::CellData<3>> &cells,
+                 const GridParameters                   &parameters,
+                 const std::vector<double>              &costs);
+
+    void
+    find_faces(const CoarseMesh &coarse);
 
     void
     refine(dealii::Triangulation<3> &triangulation,
@@ -129,15 +184,9 @@ namespace Voussoir
     MPI_Comm                       mpi_communicator;
     std::unique_ptr<Triangulation> mesh;
 
-    std::vector<std::string> cell_sets, face_sets;
-    // by coarse cell: the sets it is in, and those of its faces
-    std::vector<std::vector<unsigned char>> sets_of_cell;
-    struct FaceInSet
-    {
-      unsigned char face;
-      unsigned int  set;
-    };
-    std::vector<std::vector<FaceInSet>> sets_of_faces;
+    std::vector<std::string>       cell_sets, face_sets;
+    std::vector<CellTag>           all_tags;
+    std::vector<std::vector<Face>> faces_of_set; // the last: of no set
   };
 } // namespace Voussoir
 

@@ -62,13 +62,13 @@ namespace Voussoir
   class AbsorbingBoundary
   {
   public:
-    AbsorbingBoundary(
-      const Discretization                                  &discretization,
-      const AbsorbingParameters                             &parameters,
-      const std::vector<const Material *>                   &materials,
-      const std::function<unsigned int(const Grid::Cell &)> &material_of_cell,
-      const QuadratureRule                                   quadrature,
-      NodalTerms                                            &terms);
+    AbsorbingBoundary(const Solid               &solid,
+                      const AbsorbingParameters &parameters,
+                      const QuadratureRule       quadrature);
+
+    /** Its springs and dashpots. */
+    const std::vector<NodalTerm> &
+    terms() const;
 
     const BoundaryGeometry &
     geometry() const;
@@ -90,8 +90,7 @@ namespace Voussoir
     add_forces(const FreeField &field, NodalForces &forces) const;
 
   private:
-    std::vector<unsigned int> slots; // of the boundary nodes in NodalTerms
-    std::vector<NodalTerms::Matrix>               springs, dashpots;
+    std::vector<NodalTerm>                        springs; // and dashpots
     BoundaryGeometry                              boundary;
     std::vector<SideFace>                         sides;
     std::pair<dealii::Point<3>, dealii::Point<3>> box;

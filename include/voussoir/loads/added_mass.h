@@ -37,11 +37,11 @@ namespace Voussoir
     declare(dealii::ParameterHandler &prm);
   };
 
-  /** Added mass against motion along the river. */
   struct AddedMass
   {
-    double               mass = 0.; // [kg]
-    dealii::Tensor<1, 3> river;
+    double                 mass = 0.; // against motion along the river [kg]
+    dealii::Tensor<1, 3>   river;     // its direction
+    std::vector<NodalTerm> terms;     // of this rank
   };
 
   /**
@@ -56,11 +56,10 @@ namespace Voussoir
    * @param density of the water [kg/m3]
    */
   AddedMass
-  add_westergaard_mass(const Discretization      &discretization,
-                       const AddedMassParameters &parameters,
-                       const double               density,
-                       NodalTerms                &terms,
-                       Log                       &log);
+  westergaard_mass(const Discretization      &discretization,
+                   const AddedMassParameters &parameters,
+                   const double               density,
+                   Log                       &log);
 } // namespace Voussoir
 
 #endif

@@ -4,7 +4,7 @@
 #include <voussoir/fem/discretization.h>
 #include <voussoir/fem/leap_frog.h>
 #include <voussoir/loads/ground_motion.h>
-#include <voussoir/materials/material.h>
+#include <voussoir/materials/solid.h>
 
 #include <deal.II/base/tensor.h>
 

@@ -6,38 +6,44 @@
 #include <voussoir/base/registry.h>
 #include <voussoir/fem/initial_state.h>
 #include <voussoir/loads/nodal_load.h>
-#include <voussoir/materials/material.h>
+#include <voussoir/materials/solid.h>
 
 #include <deal.II/base/parameter_handler.h>
 
 namespace Voussoir
 {
-  /** What loads see of a case. */
-  struct LoadedModel
-  {
-    const Discretization                           &discretization;
-    const std::vector<const Material *>            &materials;
-    std::function<unsigned int(const Grid::Cell &)> material_of_cell;
-    const ParameterFile                            &file;
-    Log                                            &log;
-  };
-
   /**
    * A load of a case: a named section of the parameter file. It belongs to the
    * static stage that names it and stays as it is afterwards, or else acts from
    * the beginning of the earthquake.
    */
-  class Load : public NodalLoad
+  class Load
   {
   public:
+    virtual ~Load() = default;
+
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 
-    /** Finds the nodes it acts on; @p place names its section in messages. */
+    /** Finds the nodes it acts on; @p place is the path of its section in the
+     *  file. */
     virtual void
-    prepare(const LoadedModel &model,
-            NodalTerms        &terms,
-            const std::string &place) = 0;
+    prepare(const Solid         &solid,
+            const ParameterFile &file,
+            const std::string   &place,
+            Log                 &log) = 0;
+
+    /** Owned nodes that `add_forces` adds to. */
+    virtual std::vector<unsigned int>
+    nodes() const
+    {
+      return {};
+    }
+
+    /** Adds its forces at @p time [s] to those of its nodes [N]. */
+    virtual void
+    add_forces(const double, NodalForces &) const
+    {}
 
     /** Whether it only makes sense in a static stage, because it would be a
      *  blow if it came on at once. */
@@ -64,6 +70,24 @@ namespace Voussoir
     virtual void
     add_temperature(Vector &) const
     {}
+  };
+
+  /** A load as the step sees it. */
+  class ActingLoad : public NodalLoad
+  {
+  public:
+    explicit ActingLoad(const Load &load)
+      : load(load)
+    {}
+
+    void
+    add_forces(const double time, NodalForces &forces) override
+    {
+      load.add_forces(time, forces);
+    }
+
+  private:
+    const Load &load;
   };
 } // namespace Voussoir
 

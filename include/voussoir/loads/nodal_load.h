@@ -16,7 +16,7 @@ namespace Voussoir
     virtual ~NodalLoad() = default;
 
     /** Adds its forces at the beginning of a step, at @p time [s], to those of
-     *  the slots of the nodal terms [N]. */
+     *  nodes that have terms [N]. */
     virtual void
     add_forces(const double, NodalForces &)
     {}

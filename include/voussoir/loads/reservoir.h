@@ -3,7 +3,6 @@
 
 #include <voussoir/base/log.h>
 #include <voussoir/fem/acoustic_space.h>
-#include <voussoir/fem/nodal_terms.h>
 #include <voussoir/loads/reservoir_end.h>
 #include <voussoir/loads/reservoir_parameters.h>
 
@@ -26,7 +25,6 @@ namespace Voussoir
   public:
     /**
      * @param water  as split_off_reservoir() makes it
-     * @param terms  gets the wet nodes of the solid
      *
      * Throws UserError if face sets are not there or nodes do not meet.
      */
@@ -34,7 +32,6 @@ namespace Voussoir
               const GridParameters      &grid,
               const ReservoirParameters &parameters,
               const Discretization      &solid,
-              NodalTerms                &terms,
               Log                       &log);
 
     const AcousticSpace space;
@@ -51,7 +48,7 @@ namespace Voussoir
      *  vectors of create_wall_vector() number it. */
     struct Pair
     {
-      unsigned int         slot, node, water;
+      unsigned int         node, water;
       dealii::Tensor<1, 3> area; // out of the water [m2]
     };
     std::vector<Pair> pairs;
@@ -73,6 +70,10 @@ namespace Voussoir
 
     /** The radiating end, or null. */
     std::unique_ptr<const ReservoirEnd> end;
+
+    /** The wet nodes of the solid. */
+    std::vector<unsigned int>
+    wet_nodes() const;
 
     /** A zero vector whose ghosts are the unknowns that the pairs name. */
     Vector
@@ -98,7 +99,7 @@ namespace Voussoir
 
   private:
     void
-    couple(const Discretization &solid, NodalTerms &terms);
+    couple(const Discretization &solid);
 
     void
     find_floor(const std::vector<std::string> &open_sets);

@@ -8,7 +8,7 @@
 #include <voussoir/fem/internal_force.h>
 #include <voussoir/fem/state.h>
 #include <voussoir/loads/rigid_base.h>
-#include <voussoir/materials/material.h>
+#include <voussoir/materials/solid.h>
 #include <voussoir/output/names.h>
 
 #include <nlohmann/json.hpp>
@@ -23,19 +23,17 @@ namespace Voussoir
   /** What observers may see of a case besides its state. */
   struct ObservedModel
   {
-    const Discretization                           &discretization;
-    const std::vector<const Material *>            &materials;
-    std::function<unsigned int(const Grid::Cell &)> material_of_cell;
-    const InternalForce                            &internal_force;
-    const Damping                                  &damping;
-    const MaterialMemory                           &material_memory;
-    const InitialState                             &initial;
-    const WaterMotion                              *water;   // or null
-    const Contact                                  *contact; // or null
-    std::string                                     folder;
-    double                                          time_step; // [s]
-    double                                          end_time;  // [s]
-    double carried_frequency; // highest that the mesh carries well [Hz]
+    const Solid          &solid;
+    const InternalForce  &internal_force; // with the moduli of the run
+    const Damping        &damping;
+    const MaterialMemory &material_memory;
+    const InitialState   &initial;
+    const WaterMotion    *water;   // or null
+    const Contact        *contact; // or null
+    std::string           folder;
+    double                time_step; // [s]
+    double                end_time;  // [s]
+    double carried_frequency;        // highest that the mesh carries well [Hz]
 
     /** Between two looks that miss no more than 1.2 % of an extreme of what
      *  oscillates as fast as the mesh carries [s]: 20 in a period. */
@@ -67,7 +65,8 @@ namespace Voussoir
     Log &log;
 
     /** Constraints of the case, interfaces not among them. */
-    const std::vector<Projection *> &constraints;
+    const std::vector<std::pair<std::string, std::unique_ptr<Projection>>>
+      &constraints;
 
     /** What marches the state; null before there is a run. */
     const CentralDifference *scheme = nullptr;

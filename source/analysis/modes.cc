@@ -1,5 +1,6 @@
 #include <voussoir/analysis/eigensolver.h>
 #include <voussoir/analysis/modal_system.h>
+#include <voussoir/analysis/modes.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
 #include <voussoir/fem/nodal_values.h>
@@ -12,84 +13,6 @@
 namespace Voussoir
 {
   using namespace dealii;
-
-  void
-  ModeParameters::declare(ParameterHandler &prm)
-  {
-    prm.add_parameter("Number",
-                      number,
-                      "How many of the lowest natural modes to compute; 0: "
-                      "none. Absorbing faces are held in them, and the moduli "
-                      "are those given.",
-                      Patterns::Integer(0, 1000));
-    prm.add_parameter("Held materials",
-                      held_materials,
-                      "Materials that do not move in the modes, separated by "
-                      "commas: rigid rock.");
-    prm.add_parameter("Massless materials",
-                      massless_materials,
-                      "Materials that are elastic but without mass in the "
-                      "modes, separated by commas.");
-    add_option(
-      prm,
-      "Interfaces",
-      interfaces,
-      "Where the two sides of interfaces are one body in the modes: where the "
-      "static state leaves them closed, sliding or not, or everywhere. "
-      "Elsewhere they are free, without the bars across them.");
-    add_option(
-      prm,
-      "Water",
-      water,
-      "None: an empty reservoir. By reservoir: the added mass of section "
-      "\"Reservoir\" or, if its model is compressible, its cells of water as "
-      "if these were incompressible. Incompressible: these cells, whatever the "
-      "model. Compressible: these cells with the sound in them; the reservoir "
-      "ends in a rigid wall then, and has modes of its own.");
-    prm.add_parameter("Relative tolerance",
-                      tolerance,
-                      "Residual |K phi - omega^2 M phi| over |K phi|; the "
-                      "frequencies are closer by far.",
-                      Patterns::Double(1e-12, 1e-2));
-  }
-
-
-  bool
-  ModeParameters::want_cells_of_water(
-    const ReservoirParameters &reservoir) const
-  {
-    return number > 0 && (water == WaterInModes::incompressible ||
-                          water == WaterInModes::compressible ||
-                          (water == WaterInModes::by_reservoir &&
-                           reservoir.model == ReservoirModel::compressible));
-  }
-
-
-  void
-  ModeParameters::check(const std::vector<std::string> &materials,
-                        const BoundaryParameters       &boundaries) const
-  {
-    if (number == 0)
-      return;
-    const auto check_names = [&](const std::string &entry,
-                                 const std::string &names) {
-      for (const std::string &name : split_list(names))
-        if (std::find(materials.begin(), materials.end(), name) ==
-            materials.end())
-          throw UserError("\"" + entry + "\" in section \"Modes\" names \"" +
-                          name +
-                          "\", which is not among the \"Names\" of section "
-                          "\"Materials\"" +
-                          known_names(name, materials) + ".");
-    };
-    check_names("Held materials", held_materials);
-    check_names("Massless materials", massless_materials);
-    if (split_list(held_materials).empty() && boundaries.empty())
-      throw UserError("Section \"Modes\" asks for modes of a model that "
-                      "nothing holds; name faces in section \"Boundaries\", or "
-                      "\"Held materials\" in section \"Modes\".");
-  }
-
 
   namespace
   {

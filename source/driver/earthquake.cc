@@ -300,8 +300,7 @@ namespace Voussoir
     if (parameters.wave.type == WaveType::vertical)
       check_layers(model, log);
     auto field = make_free_field(model.boundary,
-                                 model.solid.discretization,
-                                 model.solid.materials,
+                                 model.solid,
                                  parameters.discretization.quadrature,
                                  damping,
                                  parameters.wave,

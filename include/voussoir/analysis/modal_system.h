@@ -2,8 +2,8 @@
 #define voussoir_analysis_modal_system_h
 
 #include <voussoir/analysis/elastic_solver.h>
+#include <voussoir/analysis/modal_model.h>
 #include <voussoir/analysis/modal_water.h>
-#include <voussoir/analysis/modes.h>
 
 namespace Voussoir
 {

@@ -15,6 +15,7 @@
 #include <voussoir/loads/ground_motion.h>
 #include <voussoir/loads/load.h>
 #include <voussoir/loads/reservoir_parameters.h>
+#include <voussoir/loads/wave_field.h>
 #include <voussoir/materials/material.h>
 #include <voussoir/mesh_sources/generator.h>
 #include <voussoir/mesh_sources/reader.h>

@@ -4,6 +4,7 @@
 #include <voussoir/base/option.h>
 #include <voussoir/fem/nodal_terms.h>
 #include <voussoir/loads/free_field.h>
+#include <voussoir/materials/solid.h>
 
 namespace Voussoir
 {

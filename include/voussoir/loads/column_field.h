@@ -1,6 +1,7 @@
 #ifndef voussoir_loads_column_field_h
 #define voussoir_loads_column_field_h
 
+#include <voussoir/loads/ground_motion.h>
 #include <voussoir/loads/wave_column.h>
 
 namespace Voussoir

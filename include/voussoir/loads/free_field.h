@@ -1,60 +1,13 @@
 #ifndef voussoir_loads_free_field_h
 #define voussoir_loads_free_field_h
 
-#include <voussoir/fem/discretization.h>
-#include <voussoir/fem/leap_frog.h>
-#include <voussoir/loads/ground_motion.h>
-#include <voussoir/materials/solid.h>
-
+#include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
+
+#include <vector>
 
 namespace Voussoir
 {
-  enum class WaveEntrance
-  {
-    absorbing_boundary,
-    rigid_base
-  };
-
-  inline OptionNames<WaveEntrance>
-  option_names(const WaveEntrance)
-  {
-    return {{WaveEntrance::absorbing_boundary, "absorbing boundary"},
-            {WaveEntrance::rigid_base, "rigid base"}};
-  }
-
-
-  enum class WaveType
-  {
-    vertical,
-    oblique_p,
-    oblique_sv,
-    oblique_sh
-  };
-
-  inline OptionNames<WaveType>
-  option_names(const WaveType)
-  {
-    return {{WaveType::vertical, "vertical"},
-            {WaveType::oblique_p, "oblique P"},
-            {WaveType::oblique_sv, "oblique SV"},
-            {WaveType::oblique_sh, "oblique SH"}};
-  }
-
-
-  /** The entries of the section "Wave field". */
-  struct WaveParameters
-  {
-    WaveEntrance enters_through    = WaveEntrance::absorbing_boundary;
-    WaveType     type              = WaveType::vertical;
-    double       angle             = 15.;
-    double       azimuth           = 0.;
-    double       maximum_frequency = 25.;
-
-    void
-    declare(dealii::ParameterHandler &prm);
-  };
-
   /** What a free field must know of an absorbing boundary. */
   struct BoundaryGeometry
   {
@@ -116,24 +69,6 @@ namespace Voussoir
      *  traction over its part of the boundary [N]. */
     std::vector<dealii::Tensor<1, 3>> displacement, velocity, force;
   };
-
-  class AbsorbingBoundary;
-
-  /**
-   * The free field of a case, from what the sections "Ground motion" and "Wave
-   * field" say.
-   */
-  std::unique_ptr<FreeField>
-  make_free_field(const AbsorbingBoundary             &boundary,
-                  const Discretization                &discretization,
-                  const std::vector<const Material *> &materials,
-                  const QuadratureRule                 quadrature,
-                  const Damping                       &damping,
-                  const WaveParameters                &wave,
-                  const MotionPlace                    given_at,
-                  GroundMotionSignals                &&motion,
-                  const LeapFrog                      &leap_frog,
-                  const double                         duration);
 } // namespace Voussoir
 
 #endif

@@ -2,6 +2,8 @@
 #define voussoir_loads_oblique_wave_h
 
 #include <voussoir/loads/free_field.h>
+#include <voussoir/materials/material.h>
+#include <voussoir/signals/signal.h>
 
 namespace Voussoir
 {

@@ -1,8 +1,11 @@
 #ifndef voussoir_loads_wave_column_h
 #define voussoir_loads_wave_column_h
 
+#include <voussoir/fem/damping.h>
+#include <voussoir/fem/discretization.h>
 #include <voussoir/fem/leap_frog.h>
 #include <voussoir/loads/free_field.h>
+#include <voussoir/materials/material.h>
 
 #include <deal.II/base/polynomial.h>
 

@@ -1,8 +1,8 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/usual_range.h>
-#include <voussoir/loads/absorbing_boundary.h>
 #include <voussoir/loads/column_field.h>
 #include <voussoir/loads/oblique_wave.h>
+#include <voussoir/loads/wave_field.h>
 
 #include <iomanip>
 
@@ -138,18 +138,18 @@ namespace Voussoir
 
 
   std::unique_ptr<FreeField>
-  make_free_field(const AbsorbingBoundary             &boundary,
-                  const Discretization                &discretization,
-                  const std::vector<const Material *> &materials,
-                  const QuadratureRule                 quadrature,
-                  const Damping                       &damping,
-                  const WaveParameters                &wave,
-                  const MotionPlace                    given_at,
-                  GroundMotionSignals                &&motion,
-                  const LeapFrog                      &leap_frog,
-                  const double                         duration)
+  make_free_field(const AbsorbingBoundary &boundary,
+                  const Solid             &solid,
+                  const QuadratureRule     quadrature,
+                  const Damping           &damping,
+                  const WaveParameters    &wave,
+                  const MotionPlace        given_at,
+                  GroundMotionSignals    &&motion,
+                  const LeapFrog          &leap_frog,
+                  const double             duration)
   {
-    const bool vertical = wave.type == WaveType::vertical;
+    const Discretization &discretization = solid.discretization;
+    const bool            vertical       = wave.type == WaveType::vertical;
 
     if (!vertical && boundary.materials_at_boundary().size() != 1)
       throw UserError("\"Type\" in section \"Wave field\" is an oblique wave, "
@@ -187,13 +187,14 @@ namespace Voussoir
       return make_oblique_field(
         boundary,
         discretization,
-        materials[boundary.materials_at_boundary()[0]]->elastic_constants(),
+        solid.materials[boundary.materials_at_boundary()[0]]
+          ->elastic_constants(),
         wave,
         std::move(motion));
 
     std::vector<ElasticConstants> constants;
     std::vector<double>           factors;
-    for (const Material *material : materials)
+    for (const Material *material : solid.materials)
       {
         constants.push_back(material->elastic_constants());
         factors.push_back(material->damping_factor());

@@ -120,7 +120,6 @@ namespace Voussoir
     struct BoundaryFaces
     {
       const Solid                   &solid;
-      const Discretization          &discretization;
       const std::vector<std::string> sets;
 
       void
@@ -128,13 +127,13 @@ namespace Voussoir
               &function) const
       {
         for (const std::string &set : sets)
-          discretization.grid.for_each_face(set, function);
+          solid.grid().for_each_face(set, function);
       }
 
       const FiniteElement<3> &
       scalar() const
       {
-        return discretization.fe.base_element(0);
+        return solid.discretization.fe.base_element(0);
       }
     };
 
@@ -157,7 +156,7 @@ namespace Voussoir
     std::pair<Point<3>, Point<3>>
     find_extent(const BoundaryFaces &faces)
     {
-      FaceNodes face_nodes(faces.discretization.mapping, faces.scalar());
+      FaceNodes face_nodes(faces.solid.discretization.mapping, faces.scalar());
       Point<3>  lower(1e300, 1e300, 1e300), upper(-1e300, -1e300, -1e300);
       faces.visit([&](const Cell &cell, const unsigned int face) {
         for (const FaceNode &node : face_nodes.of(cell, face))
@@ -200,7 +199,7 @@ namespace Voussoir
     find_stiffnesses(const BoundaryFaces       &faces,
                      const AbsorbingParameters &parameters)
     {
-      const Discretization &discretization = faces.discretization;
+      const Discretization &discretization = faces.solid.discretization;
       FaceNodes             face_nodes(discretization.mapping, faces.scalar());
       std::vector<std::pair<types::global_dof_index, Stiffness>> records;
       faces.visit([&](const Cell &cell, const unsigned int face) {
@@ -227,7 +226,7 @@ namespace Voussoir
     std::vector<std::pair<unsigned int, Contribution>>
     find_tractions(const BoundaryFaces &faces, FEFaceValues<3> &at_points)
     {
-      const Discretization &discretization = faces.discretization;
+      const Discretization &discretization = faces.solid.discretization;
       std::vector<std::pair<types::global_dof_index, Contribution>> records;
       faces.visit([&](const Cell &cell, const unsigned int face) {
         at_points.reinit(cell, face);
@@ -293,9 +292,7 @@ namespace Voussoir
                                        const QuadratureRule       quadrature)
   {
     const Discretization &discretization = solid.discretization;
-    const BoundaryFaces   faces{solid,
-                              discretization,
-                              split_list(parameters.face_sets)};
+    const BoundaryFaces   faces{solid, split_list(parameters.face_sets)};
     touching_materials = find_touching_materials(faces);
     box                = find_extent(faces);
 

@@ -80,6 +80,13 @@ namespace Voussoir
       return;
     matrix /= trace / n;
     matrix.compute_inverse_svd(1e-11);
+    for (unsigned int i = 0; i < n; ++i)
+      if (matrix.singular_value(i) == 0.) // of the kernel
+        {
+          cluster.self_equilibrated.emplace_back(n);
+          for (unsigned int j = 0; j < n; ++j)
+            cluster.self_equilibrated.back()[j] = matrix.get_svd_vt()(i, j);
+        }
     Vector<double> unit(n), column(n);
     for (unsigned int j = 0; j < n; ++j)
       {
@@ -133,6 +140,8 @@ namespace Voussoir
       follow_path(points, cluster, size, effort);
     else if (last.largest > 0.)
       effort.residual = std::max(effort.residual, last.change / last.largest);
+    if (!cluster.self_equilibrated.empty())
+      remove_self_equilibrated(points, cluster, 100. * round_off * size);
   }
 
 

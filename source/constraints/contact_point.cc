@@ -55,6 +55,11 @@ namespace Voussoir
     {
       if (limit == 0.)
         return Tensor<1, 2>();
+      // it moves nothing, such as friction that has followed the pressure to
+      // next to none
+      if (const double slip = s.norm();
+          limit * flexibility.tangential[0] <= round_off * slip)
+        return -limit / slip * s;
       const std::array<double, 2> along{
         {s * flexibility.axes[0], s * flexibility.axes[1]}};
       std::array<double, 2> d{{0., 0.}};

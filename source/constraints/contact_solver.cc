@@ -65,7 +65,7 @@ namespace Voussoir
     clusters.clear();
     for (const ContactPoints::Cluster &cluster : contact.clusters())
       {
-        clusters.push_back({cluster, {}, {}});
+        clusters.push_back({cluster, {}, {}, {}});
         make_matrices(points, clusters.back());
         gaps.resize(std::max<std::size_t>(gaps.size(), cluster.n_points));
         moves.resize(std::max<std::size_t>(moves.size(), cluster.n_nodes));

@@ -291,6 +291,7 @@ namespace Voussoir
         with_friction(verdicts);
         between_held_nodes(verdicts);
         blocks_on_a_base(verdicts);
+        friction_that_fades(verdicts);
       }
 
     private:
@@ -436,6 +437,34 @@ namespace Voussoir
         worst.report("blocks on a base: ", verdicts);
       }
 
+      /** Friction that follows the pressure is next to none long after a point
+       *  has opened. */
+      static void
+      friction_that_fades(Verdicts &verdicts)
+      {
+        Random            random;
+        const Flexibility flexibility(random.inverse_mass(2.));
+        double            shear = 0., closed = 0.;
+        for (const double lasting : {1e-20, 1e-200, 1e-310, 5e-324})
+          for (const double gap : {0.2, -0.2})
+            {
+              ContactLimits limits;
+              limits.friction = limits.at_once = gap > 0. ? 0.5 : 0.;
+              limits.lasting                   = lasting;
+              const Tensor<1, 3> b({gap, -7e-5, 5e-4});
+              const ContactForce found = solve_contact(b, flexibility, limits);
+              keep_largest(shear, std::hypot(found.force[1], found.force[2]));
+              keep_largest(closed,
+                           gap > 0. ?
+                             found.force.norm() :
+                             std::abs((b + flexibility.full * found.force)[0]));
+            }
+        verdicts.below("friction that fades: shear", shear, 1e-15);
+        verdicts.below("friction that fades: gap, or force where open",
+                       closed,
+                       1e-15);
+      }
+
       static Made
       empty(const Strength &law)
       {
@@ -444,11 +473,33 @@ namespace Voussoir
         return {ContactPoints({surface}), {}, {}, {}, {}, {}, {}};
       }
 
-      /** What is worst over several steps of many clusters. */
+      static double
+      largest_force(const ContactPoints &contact)
+      {
+        double largest = 0.;
+        for (const ContactPoint &point : contact.points)
+          keep_largest(largest, point.force.norm());
+        return largest;
+      }
+
+      static bool
+      same_motion(const Made &a, const Made &b)
+      {
+        double difference = 0.;
+        for (unsigned int i = 0; i < a.displacement.size(); ++i)
+          keep_largest(difference,
+                       (a.displacement[i] - b.displacement[i]).norm());
+        return difference < 1e-9;
+      }
+
+      /** What is worst over several steps of many clusters. Each step is also
+       *  solved from forces a thousand times as large. Friction may then hold
+       *  what it does not hold otherwise; but where the motion is the same,
+       *  nothing of these forces may stay. */
       struct Worst
       {
-        double       penetration = 0.;
-        unsigned int unsolved    = 0, number[3]{0, 0, 0};
+        double       penetration = 0., run_away = 0.;
+        unsigned int unsolved = 0, number[3]{0, 0, 0};
 
         void
         add(Random &random, Made &made)
@@ -463,8 +514,18 @@ namespace Voussoir
               for (unsigned int i = 0; i < n_nodes; ++i)
                 if (made.inverse_mass[i].norm() > 0.)
                   made.displacement[i] += move[i];
+              Made other = made;
+              for (ContactPoint &point : other.contact.points)
+                point.force *= 1000.;
               made.effort =
                 made.solver.solve(made.contact, made.displacement, made.force);
+              other.solver.solve(other.contact,
+                                 other.displacement,
+                                 other.force);
+              if (largest_force(made.contact) > 0. && same_motion(made, other))
+                keep_largest(run_away,
+                             largest_force(other.contact) /
+                               largest_force(made.contact));
               keep_largest(penetration, made.effort.penetration);
               unsolved += made.effort.unsolved;
               for (const auto &point : made.contact.points)
@@ -479,6 +540,10 @@ namespace Voussoir
                            std::min({number[0], number[1], number[2]}) > 100);
           verdicts.below(what + "penetration over motion", penetration, 1e-12);
           verdicts.below(what + "unsolved clusters", unsolved, 0.);
+          verdicts.below(what +
+                           "forces from a start that ran away, over others",
+                         run_away,
+                         10.);
         }
       };
     };

@@ -65,6 +65,9 @@ namespace Voussoir
       // motion of the points under their forces; the forces that hold all
       // points are minus the stiffness times the gaps
       std::vector<double> flexibility, stiffness;
+
+      // forces over the root of the area, orthonormal, that move no node
+      std::vector<std::vector<double>> self_equilibrated;
     };
 
     /** The gap less the slip at the last stick, which is what the contact force
@@ -170,6 +173,14 @@ namespace Voussoir
 
     void
     make_matrices(const Points &points, Cluster &cluster) const;
+
+    /** Replaces the forces of a cluster by those of the most even stresses
+     *  with the same motion, as far as the laws admit.
+     *  @param smallest_slip below which a point sticks [m] */
+    void
+    remove_self_equilibrated(Points        &points,
+                             const Cluster &cluster,
+                             const double   smallest_slip);
 
     /** Takes the motion after the step into the history, that of a joined
      *  point; returns the penetration. */

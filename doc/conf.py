@@ -199,8 +199,8 @@ def fill(app, page, source):
 
 
 def look_around(app, environment):
-    """The pages tell where each of the shipped cases comes in, and links of the
-    README lead somewhere."""
+    """The pages tell where each of the shipped cases comes in, links of the README
+    lead somewhere, and messages that are explained are those of the program."""
     for target in re.findall(r"\]\(([^):#]+)[#)]", (ROOT / "README.md").read_text()):
         if not (ROOT / target).exists():
             warn("README.md has a link to %s, which is not there", target)
@@ -208,6 +208,14 @@ def look_around(app, environment):
     for case in (ROOT / "prm").rglob("*.prm"):
         if str(case.relative_to(ROOT)) not in pages:
             warn("no page names %s", case.relative_to(ROOT))
+    said = re.sub(
+        r'"\s*"', "", "".join(path.read_text() for path in (ROOT / "source").rglob("*.cc"))
+    ).replace('\\"', '"')
+    page = (ROOT / "doc" / "troubleshooting.md").read_text()
+    for message in re.findall(r"^`.*`$", page, re.M):
+        for part in re.split(r"` and `| \.\.\. | \.\.\.|^`|`$", message):
+            if part not in said:
+                warn("troubleshooting.md explains a message that no source has: %s", part)
 
 
 # ------------------------------------------------------------------ appearance

@@ -48,7 +48,7 @@ def columns(table):
     result = {}
     with open(table, newline="") as file:
         rows = list(csv.DictReader(file))
-    for name in rows[0]:
+    for name in rows[0] if rows else ():
         if "displacement" in name or "filtered" in name:
             values = [float(row[name]) for row in rows]
             result[name] = {
@@ -99,26 +99,31 @@ def inner(node, key):
 
 
 def value_of(source, path):
-    """The number at a path of a source, None if there is none."""
-    path, _, factor = path.partition(" * ")
+    """The number at a path of a source, and how far it may be off by rounding;
+    None if there is none."""
+    path, factor = re.fullmatch(r"(.*?)(?: \* ([-\d.e]+))?", path).groups()
+    factor = float(factor or 1)
     if source.suffix == ".output":
         line = re.search(
             rf"^{re.escape(path)} = ([-+.\deE]+)", source.read_text(), re.M
         )
-        found = [float(line[1])] if line else []
-    else:
-        found = [json.loads(source.read_text())]
-        for key in path.split(" > "):
-            found = [value for node in found for value in inner(node, key)]
-    return max(found) * float(factor or 1) if found else None
+        if not line:
+            return None
+        value, half = written(line[1])
+        return value * factor, half * abs(factor)
+    found = [json.loads(source.read_text())]
+    for key in path.split(" > "):
+        found = [value for node in found for value in inner(node, key)]
+    return (max(found) * factor, 0.0) if found else None
 
 
 def written(text):
     """A number as the text has it, and half a unit of its last digit."""
     if text in WORDS:
         return WORDS.index(text), 0.5
-    text = text.replace(" ", "")
-    return float(text), 0.5 * 10.0 ** -len(text.partition(".")[2])
+    mantissa, _, exponent = text.replace(" ", "").lower().partition("e")
+    digit = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+    return float(text.replace(" ", "")), 0.5 * digit
 
 
 def plain(file):
@@ -141,14 +146,14 @@ def complaints(file, source, pattern, paths):
         yield f"{place} has not as many numbers as paths"
         return
     for number, path in zip(found[0].groups(), paths):
-        value = value_of(ROOT / source, path)
-        if value is None:
+        found_value = value_of(ROOT / source, path)
+        if found_value is None:
             yield f"{place}: {source} has no {path}"
             continue
-        quoted, half = written(number)
+        (value, off), (quoted, half) = found_value, written(number)
         if "about {}" in pattern:
             half = max(half, ABOUT * abs(value))
-        if abs(quoted - value) > half * (1 + 1e-9):
+        if abs(quoted - value) > (half + off) * (1 + 1e-9):
             yield f"{place}: {number} where {source} has {value:.6g} ({path})"
 
 

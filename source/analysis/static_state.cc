@@ -592,8 +592,8 @@ namespace Voussoir
       report["iterations"]      = iterations;
       report["load increments"] = increments;
       report["dissipated by materials [J]"] =
-        Utilities::MPI::sum(state.material_memory.losses().material,
-                            model.solid.grid().communicator());
+        Utilities::MPI::sum<double>(state.material_memory.losses().material,
+                                    model.solid.grid().communicator());
       report["found by multigrid"]       = by_multigrid;
       report["steps of damped motion"]   = damped_steps;
       report["sum of loads so far [N]"]  = to_json(resultant(loads));

@@ -31,21 +31,30 @@ namespace Voussoir
 
 
   // Energies summed up so far, each rank its own part.
-  std::vector<double *>
+  std::vector<Sum *>
   Run::sums_of_rank()
   {
-    EnergyAccounts       &a = state.accounts;
-    std::vector<double *> sums{&a.work_of_forces,
-                               &a.loss_in_dashpots,
-                               &a.work_of_base,
-                               &a.work_of_projections,
-                               &a.loss_by_mass};
+    EnergyAccounts    &a = state.accounts;
+    std::vector<Sum *> sums{&a.work_of_forces,
+                            &a.loss_in_dashpots,
+                            &a.work_of_base,
+                            &a.work_of_projections,
+                            &a.loss_by_mass};
     for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
       if (PointHistory *history = state.material_memory.of(m))
         sums.insert(sums.end(),
                     {&history->losses.material,
                      &history->losses.closing,
                      &history->losses.damping});
+    return sums;
+  }
+
+
+  // The same of what no reproducible sum holds.
+  std::vector<double *>
+  Run::plain_sums_of_rank()
+  {
+    std::vector<double *> sums;
     if (water)
       sums.push_back(&water->loss);
     if (contact)
@@ -126,7 +135,10 @@ namespace Voussoir
     if (water && water->end)
       content.documents["radiating end"] = water->end->save();
     std::vector<double> sums;
-    for (const double *sum : sums_of_rank())
+    for (const Sum *sum : sums_of_rank())
+      for (const double number : sum->save())
+        sums.push_back(number);
+    for (const double *sum : plain_sums_of_rank())
       sums.push_back(*sum);
     content.documents["sums of ranks"] =
       Utilities::MPI::all_gather(log.communicator(), sums);
@@ -214,13 +226,30 @@ namespace Voussoir
       Utilities::MPI::this_mpi_process(log.communicator());
     const bool same_ranks =
       of_ranks.size() == Utilities::MPI::n_mpi_processes(log.communicator());
-    const auto sums = sums_of_rank();
-    for (unsigned int i = 0; i < sums.size(); ++i)
-      {
-        *sums[i] = 0.;
+    unsigned int i = 0;
+    const auto   for_each_of_mine =
+      [&](const std::function<void(const std::vector<double> &)> &take) {
         for (unsigned int r = 0; r < of_ranks.size(); ++r)
           if (same_ranks ? r == rank : rank == 0)
-            *sums[i] += of_ranks[r].at(i);
+            take(of_ranks[r]);
+      };
+    for (Sum *const sum : sums_of_rank())
+      {
+        sum->clear();
+        for_each_of_mine([&](const std::vector<double> &numbers) {
+          std::vector<double> saved;
+          for (unsigned int k = 0; k < sum->n_saved(); ++k)
+            saved.push_back(numbers.at(i + k));
+          sum->add_saved(saved);
+        });
+        i += sum->n_saved();
+      }
+    for (double *const sum : plain_sums_of_rank())
+      {
+        *sum = 0.;
+        for_each_of_mine(
+          [&](const std::vector<double> &numbers) { *sum += numbers.at(i); });
+        ++i;
       }
     log.line("Going on from the checkpoint \"",
              folder.checkpoint_file(),

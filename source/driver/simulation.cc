@@ -101,6 +101,14 @@ namespace Voussoir
         return std::move(*rest);
       RestState rest = find_rest(model, log);
       kept.keep(rest);
+      // as all later runs, whatever their number of ranks, have it
+      if (model.solid.discretization.reproducible)
+        {
+          if (std::optional<RestState> again = kept.find())
+            return std::move(*again);
+          log.warn("the static state is not kept, so that \"Sums = "
+                   "reproducible\" holds for this number of ranks alone");
+        }
       return rest;
     }
 

@@ -7,13 +7,15 @@ namespace Voussoir
   PointHistory::PointHistory(const Discretization &discretization,
                              const unsigned int    material,
                              const unsigned int    width)
-    : n_numbers(width)
+    : losses(discretization.reproducible)
+    , n_numbers(width)
   {
     if (width == 0)
       return;
     const auto &matrix_free = discretization.matrix_free;
     Points      found;
-    found.per_cell = discretization.points(material).size();
+    found.lanes_are_alone = discretization.reproducible;
+    found.per_cell        = discretization.points(material).size();
     found.slot_of_batch.assign(matrix_free.n_cell_batches(),
                                numbers::invalid_unsigned_int);
     unsigned int n_slots = 0;
@@ -161,6 +163,22 @@ namespace Voussoir
   } // namespace
 
 
+  void
+  ActivePoint::forget_elastic()
+  {
+    const Lanes known = band;
+    if (std::all_of(known.begin(), known.end(), [](const double width) {
+          return width > 0.;
+        }))
+      return;
+    const double intact = ActivePoint().share[0];
+    for_each_number(*this, [&](Lanes &number) {
+      number = compare_and_apply_mask<SIMDComparison::equal>(
+        known, Lanes(0.), Lanes(&number == &share ? intact : 0.), number);
+    });
+  }
+
+
   KeyedValues
   PointHistory::checkpoint_values()
   {
@@ -209,7 +227,8 @@ namespace Voussoir
             load ? std::any_of(item,
                                item + n_of_active_point(),
                                [](const double x) { return x != 0.; }) :
-                   is_known;
+                   is_known && (!lanes_are_alone() ||
+                                active_point(batch, q).band[lane] > 0.);
           if (!has_numbers)
             {
               item += n_of_active_point();
@@ -276,8 +295,8 @@ namespace Voussoir
   MaterialMemory::set_losses(const PointLosses &losses)
   {
     for (PointHistory &history : histories)
-      history.losses = {};
+      history.losses = PointLosses(history.losses.material.is_exact());
     if (!histories.empty())
-      histories[0].losses = losses;
+      histories[0].losses += losses;
   }
 } // namespace Voussoir

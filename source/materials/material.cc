@@ -53,6 +53,14 @@ namespace Voussoir
 
 
   double
+  Material::wave_modulus() const
+  {
+    const ElasticConstants constants = elastic_constants();
+    return constants.lame_lambda() + 2. * constants.shear_modulus();
+  }
+
+
+  double
   Material::damping_factor() const
   {
     return damping;

@@ -80,10 +80,11 @@ namespace Voussoir
                                      communicator);
 
         const auto &names = contact->surface_names();
-        areas.assign(names.size(), 0.);
+        exact_sums        = observed.solid.discretization.reproducible;
+        std::vector<Sum> sum_of_areas(names.size(), Sum(exact_sums));
         for (const ContactPoint &point : contact->points())
-          areas[point.surface] += point.area;
-        areas = sum_over_ranks(areas, communicator);
+          sum_of_areas[point.surface] += point.area;
+        areas = sum_over_ranks(sum_of_areas, communicator);
         sums.clear();
         largest_now.clear();
         times.clear();
@@ -111,8 +112,8 @@ namespace Voussoir
       observe(const State &state) override
       {
         const std::size_t   n_surfaces = areas.size();
-        std::vector<double> sum(n_quantities * n_surfaces),
-          largest(2 * n_surfaces);
+        std::vector<Sum>    sum(n_quantities * n_surfaces, Sum(exact_sums));
+        std::vector<double> largest(2 * n_surfaces);
         for (unsigned int k = 0; k < extremes.size(); ++k)
           {
             const ContactPoint &point = contact->points()[k];
@@ -126,8 +127,11 @@ namespace Voussoir
           }
         for (const NearestContactPoint &point : points)
           for (unsigned int d = 0; d < 3; ++d)
-            sum.push_back(
-              point.is_mine ? contact->points()[point.number].gap[d] : 0.);
+            {
+              sum.emplace_back(exact_sums);
+              sum.back() +=
+                point.is_mine ? contact->points()[point.number].gap[d] : 0.;
+            }
         sums.insert(sums.end(), sum.begin(), sum.end());
         largest_now.insert(largest_now.end(), largest.begin(), largest.end());
         times.emplace_back(state.time, schedule.due(state.step));
@@ -354,7 +358,9 @@ namespace Voussoir
       TimeTable                        table;
 
       // looks that are not written yet
-      std::vector<double>                  sums, largest_now;
+      bool                                 exact_sums = false;
+      std::vector<Sum>                     sums;
+      std::vector<double>                  largest_now;
       std::vector<std::pair<double, bool>> times; // with a line
 
       std::vector<InterfaceExtremes> extremes; // of each point, over all steps

@@ -72,6 +72,7 @@ namespace Voussoir
               const bool           restarted) override
       {
         communicator = model.solid.grid().communicator();
+        exact_sums   = model.solid.discretization.reproducible;
         schedule     = Schedule(interval, model.time_step);
         looks = Schedule(model.looking_interval(interval), model.time_step);
         lines = make_lines(model);
@@ -109,7 +110,7 @@ namespace Voussoir
         auto        tensor = stress.begin();
         for (const SectionLine &line : lines)
           {
-            std::array<double, n_quantities> sums{};
+            std::vector<Sum> sums(n_quantities, Sum(exact_sums));
             for (const auto &point : line.points)
               {
                 const double       factor  = 1e-6 * point.weight;
@@ -223,7 +224,9 @@ namespace Voussoir
       std::vector<SectionLine>      lines;
       std::unique_ptr<StressPoints> stress_points;
       TimeTable                     table;
-      std::vector<double>           largest, smallest, shares;
+      std::vector<double>           largest, smallest;
+      std::vector<Sum>              shares;
+      bool                          exact_sums = false;
 
       std::vector<std::pair<double, bool>> times; // of looks; with a line
     };

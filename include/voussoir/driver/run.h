@@ -129,8 +129,11 @@ namespace Voussoir
     double
     throughput(const double seconds) const;
 
-    std::vector<double *>
+    std::vector<Sum *>
     sums_of_rank();
+
+    std::vector<double *>
+    plain_sums_of_rank();
 
     /** The live numbers that a checkpoint holds; documents are empty. */
     StateContent

@@ -2,6 +2,7 @@
 #define voussoir_fem_point_history_h
 
 #include <voussoir/base/keyed_values.h>
+#include <voussoir/base/sum.h>
 #include <voussoir/fem/crack_bands.h>
 #include <voussoir/fem/discretization.h>
 
@@ -35,6 +36,10 @@ namespace Voussoir
       return stress +
              impact * dealii::symmetrize(dealii::outer_product(normal, normal));
     }
+
+    /** Makes the lanes of elastic points as they are to begin with. */
+    void
+    forget_elastic();
   };
 
 
@@ -44,7 +49,15 @@ namespace Voussoir
    */
   struct PointLosses
   {
-    double material = 0., closing = 0., damping = 0.;
+    PointLosses() = default;
+
+    explicit PointLosses(const bool exact)
+      : material(exact)
+      , closing(exact)
+      , damping(exact)
+    {}
+
+    Sum material, closing, damping;
 
     PointLosses &
     operator+=(const PointLosses &other)
@@ -77,6 +90,14 @@ namespace Voussoir
     empty() const
     {
       return n_numbers == 0;
+    }
+
+    /** Whether what a cell does must not depend on which others share its
+     *  batch, down to round-off. */
+    bool
+    lanes_are_alone() const
+    {
+      return points->lanes_are_alone;
     }
 
     /** Points of a cell. */
@@ -221,6 +242,7 @@ namespace Voussoir
     /** Where the points are. */
     struct Points
     {
+      bool                                                lanes_are_alone;
       unsigned int                                        per_cell = 0;
       std::vector<unsigned int>                           slot_of_batch;
       std::vector<std::pair<Discretization::Cell, Place>> cells;

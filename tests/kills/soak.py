@@ -11,13 +11,14 @@ Exit code 1 if something grows, a run does not go on, or the histories differ.
 """
 
 import argparse
-import json
+import os
 import pathlib
 import random
 import shutil
 import signal
 import subprocess
 import sys
+import time
 
 STOPPED = 75
 # of what the run in one piece leaves: the same bit for bit, on any ranks
@@ -32,16 +33,22 @@ def command(options, ranks, end, restart):
     return program + (["--restart"] if restart else [])
 
 
-def run(options, folder, ranks, end, restart, seconds=None):
-    """Exit code; stops the run after so many seconds."""
+def run(options, folder, ranks, end, restart, seconds=float("inf")):
+    """Exit code and peak memory of its largest process [MB]; stops the run after so
+    many seconds."""
     with open(folder / "terminal.txt", "ab") as terminal:
         process = subprocess.Popen(command(options, ranks, end, restart), cwd=folder,
                                    stdout=terminal, stderr=subprocess.STDOUT)
-        try:
-            return process.wait(seconds)
-        except subprocess.TimeoutExpired:
+    stop, stopped = time.monotonic() + seconds, False
+    while True:
+        pid, status, usage = os.wait4(process.pid, os.WNOHANG)
+        if pid != 0:
+            process.returncode = os.waitstatus_to_exitcode(status)
+            return process.returncode, usage.ru_maxrss / 1024.
+        if not stopped and time.monotonic() > stop:
             process.send_signal(signal.SIGTERM)
-            return process.wait()
+            stopped = True
+        time.sleep(0.05)
 
 
 def sizes(folder):
@@ -88,8 +95,8 @@ def main():
     while True:
         ranks = chance.choice([n for n in ranks_to_try if n != last] or ranks_to_try)
         last = ranks
-        code = run(options, pieces, ranks, end, restart,
-                   options.piece * chance.uniform(0.3, 1.7))
+        code, memory = run(options, pieces, ranks, end, restart,
+                           options.piece * chance.uniform(0.3, 1.7))
         if code not in (0, STOPPED):
             sys.exit(f"piece {n_pieces + 1} on {ranks} ranks ends with {code}; see {pieces}")
         n_pieces += 1
@@ -97,15 +104,12 @@ def main():
         if not restart:
             continue
         found = sizes(pieces)
-        summary = pieces / "run" / "summary.json"
-        memory = (json.loads(summary.read_text())["peak memory of a rank [MB]"]
-                  if summary.exists() else float("nan"))
         checkpoint = checkpoint_bytes(found)
         print(f"piece {n_pieces}, {ranks} ranks: until {reached(pieces) / 3600:.3f} h, "
               f"{memory:.1f} MB, checkpoint {checkpoint} bytes, "
               f"{sum(size for name, size in found.items() if is_history(name))} of tables",
               flush=True)
-        if memory > first_memory.setdefault(ranks, memory) + MEMORY_PLAY:
+        if not memory <= first_memory.setdefault(ranks, memory) + MEMORY_PLAY:
             failures.append(f"memory on {ranks} ranks grew from {first_memory[ranks]:.1f} "
                             f"to {memory:.1f} MB in piece {n_pieces}")
         first_checkpoint = first_checkpoint or checkpoint
@@ -124,7 +128,7 @@ def main():
     straight.mkdir()
     # the static state depends on the ranks that found it, and is kept
     shutil.copytree(pieces / "static_states", straight / "static_states")
-    if run(options, straight, 1, end, False) != 0:
+    if run(options, straight, 1, end, False)[0] != 0:
         sys.exit(f"the run in one piece fails; see {straight}")
     for name in SAME:
         if (pieces / "run" / name).read_bytes() != (straight / "run" / name).read_bytes():

@@ -1,6 +1,5 @@
 #include <voussoir/base/error.h>
 #include <voussoir/fem/discretization.h>
-#include <voussoir/fem/one_point_cell.h>
 #include <voussoir/mesh/mesh_check.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -80,11 +79,8 @@ namespace Voussoir
     , degree(parameters.degree)
     , fe(FE_Q<3>(parameters.degree), 3)
     , dof_handler(grid.triangulation())
-    , one_point_of_material(
-        [parameters, has_memory](const unsigned int material) {
-          return parameters.one_point(material < has_memory.size() &&
-                                      has_memory[material]);
-        })
+    , parameters(parameters)
+    , has_memory(has_memory)
   {
     check_size(grid.triangulation().n_global_active_cells(),
                degree,
@@ -125,8 +121,7 @@ namespace Voussoir
     crack_share = share_of_crack(quadratures[0], degree);
     if (parameters.one_point(false))
       {
-        // the points of the second are the corners, for OnePointCell
-        static_assert(OnePointCell::corner_quadrature == 1);
+        static_assert(corner_quadrature == 1);
         quadratures.push_back(QGaussLobatto<1>(2));
         data.mapping_update_flags |= update_quadrature_points;
       }
@@ -172,7 +167,8 @@ namespace Voussoir
   bool
   Discretization::has_one_point(const unsigned int material) const
   {
-    return one_point_of_material(material);
+    return parameters.one_point(material < has_memory.size() &&
+                                has_memory[material]);
   }
 
 

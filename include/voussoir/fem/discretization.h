@@ -115,6 +115,10 @@ namespace Voussoir
     dealii::IndexSet                  owned_dofs, relevant_dofs;
     MatrixFree                        matrix_free;
 
+    /** Number of the quadrature whose points are the corners of the cells, in
+     *  the matrix-free data of cells with one point. */
+    static constexpr unsigned int corner_quadrature = 1;
+
     /** Material of each cell batch of the matrix-free data, which holds cells
      *  of one material only. */
     std::vector<unsigned int> material_of_batch;
@@ -209,8 +213,9 @@ namespace Voussoir
     std::vector<dealii::types::global_dof_index> first_dof_of_rank;
     std::vector<Place>                           places; // of owned cells
 
-    std::function<bool(const unsigned int)> one_point_of_material;
-    const dealii::QMidpoint<3>              centre;
+    const DiscretizationParameters parameters;
+    const std::vector<bool>        has_memory; // of each material
+    const dealii::QMidpoint<3>     centre;
   };
 
 

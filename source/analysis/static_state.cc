@@ -221,14 +221,15 @@ namespace Voussoir
     void
     StaticStages::make_solver()
     {
-      solver =
-        std::make_unique<ElasticSolver>(model.solid.discretization,
-                                        internal_force,
-                                        materials,
-                                        constraints,
-                                        on_springs ? &model.terms : nullptr,
-                                        model.contact,
-                                        &state.displacement);
+      ElasticSolver::Additions additions;
+      additions.springs      = on_springs ? &model.terms : nullptr;
+      additions.contact      = model.contact;
+      additions.displacement = &state.displacement;
+      solver = std::make_unique<ElasticSolver>(model.solid.discretization,
+                                               internal_force,
+                                               materials,
+                                               constraints,
+                                               additions);
     }
 
 

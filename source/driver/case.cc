@@ -1,5 +1,6 @@
 #include <voussoir/base/active.h>
 #include <voussoir/base/error.h>
+#include <voussoir/base/parameter_section.h>
 #include <voussoir/base/text.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/driver/case.h>
@@ -46,15 +47,6 @@ namespace Voussoir
             throw UserError(place + " lists \"" + *name +
                             "\"; choose a name without \"/\".");
         }
-    }
-
-    template <typename Value>
-    void
-    in_section(ParameterHandler &prm, const std::string &name, Value &&declare)
-    {
-      prm.enter_subsection(name);
-      declare();
-      prm.leave_subsection();
     }
   } // namespace
 
@@ -134,11 +126,7 @@ namespace Voussoir
         const auto &[place, class_name, read] = origins[i];
         auto             object = Registry<Base>::create(class_name, place);
         ParameterHandler prm;
-        for (const std::string &section : split_list(place, '/'))
-          prm.enter_subsection(section);
-        object->declare_parameters(prm);
-        for (unsigned int n = split_list(place, '/').size(); n > 0; --n)
-          prm.leave_subsection();
+        in_section(prm, place, [&] { object->declare_parameters(prm); });
         file.parse_declared(prm);
         list.emplace_back(objects[i].first, std::move(object));
       }

@@ -21,7 +21,7 @@ namespace Voussoir
 
   namespace
   {
-    constexpr int format = 2;
+    constexpr int format = 3;
 
     using Words = std::vector<std::uint64_t>;
     using Bytes = std::vector<std::uint8_t>;

@@ -62,10 +62,6 @@ namespace Voussoir
                   const double                         time_step,
                   const Damping                       &damping)
   {
-    if (faces.empty())
-      throw UserError("A vertical wave needs the levels of the model's sides, "
-                      "but the mesh has no vertical outer faces; let the model "
-                      "end at planes of constant x or y.");
     std::vector<double> levels;
     for (const SideFace &face : faces)
       {

@@ -1,3 +1,4 @@
+#include <voussoir/base/json_entries.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/output/energy.h>
 
@@ -21,6 +22,41 @@ namespace Voussoir
     // may change by so much of itself, or of this share of what came in.
     constexpr double largest_change = 0.06, share_that_counts = 0.01;
   } // namespace
+
+
+  template <typename Entry>
+  void
+  for_each_entry(EnergySummary &part, const Entry &entry)
+  {
+    entry("kinetic [J]", part.terms.kinetic);
+    entry("strain [J]", part.terms.strain);
+    entry("damping memory [J]", part.terms.memory);
+    entry("lost in damping [J]", part.terms.damping);
+    entry("gone through the boundary [J]", part.terms.boundary);
+    entry("lost to cracks and plastic flow [J]", part.terms.material);
+    entry("lost by cracks that closed [J]", part.terms.closing);
+    entry("input [J]", part.terms.input);
+    entry("work of constraints [J]", part.terms.constraints);
+    entry("initial [J]", part.initial);
+    entry("unaccounted [J]", part.unaccounted);
+    entry("energy-balance error, share of the input", part.error_of_input);
+    entry("largest energy-balance error", part.largest_error);
+    entry("energy-balance error, share of the losses", part.error_of_losses);
+  }
+
+
+  void
+  to_json(nlohmann::json &json, const EnergySummary &summary)
+  {
+    write_entries(json, summary);
+  }
+
+
+  void
+  from_json(const nlohmann::json &json, EnergySummary &summary)
+  {
+    read_entries(json, summary);
+  }
 
 
   EnergyBalance::EnergyBalance(const EquationOfMotion &equation,
@@ -290,23 +326,15 @@ namespace Voussoir
   }
 
 
-  nlohmann::json
+  EnergySummary
   EnergyBalance::summary() const
   {
-    return {{"kinetic [J]", terms_now.kinetic},
-            {"strain [J]", terms_now.strain},
-            {"damping memory [J]", terms_now.memory},
-            {"lost in damping [J]", terms_now.damping},
-            {"gone through the boundary [J]", terms_now.boundary},
-            {"lost to cracks and plastic flow [J]", terms_now.material},
-            {"lost by cracks that closed [J]", terms_now.closing},
-            {"input [J]", terms_now.input},
-            {"work of constraints [J]", terms_now.constraints},
-            {"initial [J]", initial},
-            {"unaccounted [J]", terms_now.error(initial)},
-            {"energy-balance error, share of the input", relative_error()},
-            {"largest energy-balance error", largest_error},
-            {"energy-balance error, share of the losses", error_of_losses()}};
+    return {terms_now,
+            initial,
+            terms_now.error(initial),
+            relative_error(),
+            largest_error,
+            error_of_losses()};
   }
 
 

@@ -55,16 +55,16 @@ namespace Voussoir
 
 
   void
-  PointRecorder::prepare(const ObservedModel &model,
-                         const double         interval,
-                         const double         window)
+  PointRecorder::prepare(const ObservedRun &run,
+                         const double       interval,
+                         const double       window)
   {
     record          = Record();
-    record.window   = std::max(1LL, std::llround(window / model.time_step));
-    record.model    = std::make_unique<ObservedModel>(model);
-    record.schedule = Schedule(interval, model.time_step);
+    record.window   = std::max(1LL, std::llround(window / run.time_step));
+    record.run      = std::make_unique<const ObservedRun>(run);
+    record.schedule = Schedule(interval, run.time_step);
     std::tie(record.points, record.reference) = parse();
-    record.weights = std::make_unique<PointWeights>(model.solid.discretization,
+    record.weights = std::make_unique<PointWeights>(run.solid.discretization,
                                                     record.points,
                                                     place);
   }
@@ -93,7 +93,7 @@ namespace Voussoir
     std::vector<double>       values;
     for (const Tensor<1, 3> &share : shares)
       values.insert(values.end(), share.begin_raw(), share.end_raw());
-    values = sum_over_ranks(values, record.model->solid.grid().communicator());
+    values = sum_over_ranks(values, record.run->solid.grid().communicator());
     for (std::size_t i = 0; i < values.size(); ++i)
       result[i / 3][i % 3] = values[i];
     return result;
@@ -103,7 +103,7 @@ namespace Voussoir
   void
   PointRecorder::observe(const State &state)
   {
-    const double time_step = record.model->time_step;
+    const double time_step = record.run->time_step;
     // after a restart the last one comes once more
     if (!record.velocities.empty() && !record.has_last)
       record.velocities.pop_back();
@@ -140,7 +140,7 @@ namespace Voussoir
     for (const auto &velocity : record.velocities)
       for (const Tensor<1, 3> &v : velocity)
         values.insert(values.end(), v.begin_raw(), v.end_raw());
-    return sum_over_ranks(values, record.model->solid.grid().communicator());
+    return sum_over_ranks(values, record.run->solid.grid().communicator());
   }
 
 
@@ -153,7 +153,7 @@ namespace Voussoir
       return;
     // the first rank has all of them
     const bool mine = Utilities::MPI::this_mpi_process(
-                        record.model->solid.grid().communicator()) == 0;
+                        record.run->solid.grid().communicator()) == 0;
     record.velocities.assign(values.size() / (3 * n),
                              std::vector<Tensor<1, 3>>(n));
     auto value = values.begin();
@@ -176,13 +176,13 @@ namespace Voussoir
   PointRecorder::take()
   {
     const auto sums =
-      sum_over_ranks(record.shares, record.model->solid.grid().communicator());
+      sum_over_ranks(record.shares, record.run->solid.grid().communicator());
     std::vector<Line> lines;
     auto              value = sums.begin();
     for (const unsigned long long step : record.steps)
       {
-        const RigidBase &ground    = record.model->base;
-        const double     time_step = record.model->time_step,
+        const RigidBase &ground    = record.run->base;
+        const double     time_step = record.run->time_step,
                      time          = double(step) * time_step,
                      window        = double(record.window) * time_step,
                      end           = time + 0.5 * time_step;

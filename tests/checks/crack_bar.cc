@@ -64,7 +64,7 @@ namespace Voussoir
                        made / turnover,
                        1e-3);
         verdicts.below("largest energy-balance error over the input",
-                       run.energy.summary()["largest energy-balance error"],
+                       run.energy.summary().largest_error,
                        0.01);
       }
 

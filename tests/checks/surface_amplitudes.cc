@@ -1,0 +1,84 @@
+#include <voussoir/base/parse_numbers.h>
+
+#include "check.h"
+#include "histories.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * Amplitudes at points over that of the wave that comes in, by the Fourier
+     * sums of a pulse, against those of steady waves.
+     */
+    class SurfaceAmplitudes : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Points", points, "Where to compare.");
+        prm.add_parameter("Frequencies", frequencies, "[Hz]");
+        prm.add_parameter("Amplitudes",
+                          amplitudes,
+                          "Of displacement in x per unit of the incident wave, "
+                          "at the points; those of the frequencies separated "
+                          "by \";\".");
+        prm.add_parameter("Tolerance", tolerance, "Of each amplitude.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto parameters = make_case(file);
+        const auto simulation = make_simulation(*parameters, communicator);
+        const auto motion     = parameters->ground_motion.build(file.folder());
+        const auto places     = parse_points(points, "\"Points\"");
+        const auto histories  = run_and_record(*simulation, places);
+        const auto rows       = split_list(amplitudes, ';');
+        AssertThrow(rows.size() == frequencies.size(),
+                    ExcDimensionMismatch(rows.size(), frequencies.size()));
+
+        std::vector<double> incident;
+        for (const double t : histories.times)
+          incident.push_back(motion[0]->displacement(t));
+        for (unsigned int i = 0; i < frequencies.size(); ++i)
+          {
+            const auto row = split_list(rows[i]);
+            AssertThrow(row.size() == places.size(),
+                        ExcDimensionMismatch(row.size(), places.size()));
+            const auto amplitude = [&](const std::vector<double> &values) {
+              return std::abs(fourier_sum(histories.times,
+                                          values,
+                                          frequencies[i],
+                                          0.,
+                                          parameters->time.end_time));
+            };
+            for (unsigned int p = 0; p < places.size(); ++p)
+              {
+                std::ostringstream name;
+                name << frequencies[i] << " Hz at " << places[p].name;
+                verdicts.near(name.str(),
+                              amplitude(histories.component(p, 0)) /
+                                amplitude(incident),
+                              parse_number(row[p]).value(),
+                              tolerance);
+              }
+          }
+      }
+
+    private:
+      std::string         points, amplitudes;
+      std::vector<double> frequencies;
+      double              tolerance = 0.03;
+    };
+
+    // Reference: closed form
+    const Registry<Check>::Add<SurfaceAmplitudes>
+      registered("surface amplitudes", "Steady waves on ground of any shape.");
+  } // namespace
+} // namespace Voussoir

@@ -364,7 +364,7 @@ namespace Voussoir
                 includers.end())
               throw UserError(place + ": \"" + name +
                               "\" includes itself; remove this line.");
-            included.filename = filename;
+            included.filename = name;
             included.read(name, includers);
           }
         else if (keyword == "set" && rest.find('=') != std::string::npos &&

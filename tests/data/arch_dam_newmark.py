@@ -4,14 +4,15 @@ solvers, Newmark's constant mean acceleration. Shares nothing with Voussoir but
 mesh and ground motion, which it takes from a run's fields and ground_motion.csv.
 
     K   2 x 2 x 2 points      M   at the corners, as Voussoir has it (or row sums, or full)
-    C = a M + b K, of each material its own b; a from the ratio at two frequencies
+    C = a (M + M_w) + b K, of each material its own b; a, b from the ratio at two frequencies
     water: mass 7/8 rho sqrt(H h) n n^T per area (Westergaard), H the depth below
-           the level, of the column of faces, h that of the node; none of it damped
+           the level, of the column of faces, h that of the node
     rigid base: the forces - (M + M_w) a of what is no light rock
     boundary: springs and dashpots per area; K u + C v + sigma n of the free field,
            which is a column of linear elements under Newmark, too
 
-usage: arch_dam_newmark.py RUN [--massless] [--step DT] [--mass KIND] [--write FILE]
+usage: arch_dam_newmark.py RUN [--massless] [--step DT] [--mass KIND] [--all-levels] [--write FILE]
+                           [--picture FILE]
        RUN is one of doc/published/arch_dam_*.prm
 """
 import argparse
@@ -257,7 +258,7 @@ class Newmark:
 class Boundary:
     """Absorbing planes around the rock, with the vertical waves that enter there."""
 
-    def __init__(self, model, step):
+    def __init__(self, model, step, all_levels):
         mesh = model.mesh
         E, nu, rho = ROCK
         G, M = E / 2 / (1 + nu), E * (1 - nu) / (1 + nu) / (1 - 2 * nu)
@@ -273,10 +274,10 @@ class Boundary:
         self.dashpots = model.blocks(nodes, size[shape] * rho * (cp * normal + cs * across))
         self.nodes = mesh.nodes
 
-        # the column: levels of the planes across the valley, x and y (S), z (P)
+        # the column: levels of the planes on the two banks, or of all; x and y (S), z (P)
         a, b = rayleigh()
         x = mesh.nodes[faces]
-        upright = abs(normals[:, 0]) > 0.5
+        upright = abs(normals[:, 2]) < 0.1 if all_levels else abs(normals[:, 0]) > 0.5
         self.levels = np.unique(np.round(x[upright, :, 2], 2))
         h = np.diff(self.levels)
         lumped = rho * np.convolve(h, [0.5, 0.5])
@@ -317,13 +318,13 @@ def integral(values, step):
     return np.concatenate([0 * values[:1], np.cumsum((values[1:] + values[:-1]) * step / 2, axis=0)])
 
 
-def response(model, motion, points, step, every, massless):
+def response(model, motion, points, step, every, massless, all_levels):
     """Absolute displacements of points [m], by time, every so many steps."""
     a, b = rayleigh()
     concrete, rock = model.stiffness
     times = np.arange(0, motion[-1, 0] + step / 2, step)
     ground = np.stack([np.interp(times, motion[:, 0], motion[:, d]) for d in (1, 2, 3)], axis=1)
-    damping = a * model.mass + b * (concrete if massless else concrete + rock)
+    damping = a * (model.mass + model.added) + b * (concrete if massless else concrete + rock)
     stiffness = concrete + rock
     if massless:
         model.hold()
@@ -332,7 +333,7 @@ def response(model, motion, points, step, every, massless):
         force = lambda n: (sum(ground[n, d] * directions[d] for d in range(3)))[model.free]
         ground_displacement = integral(integral(ground, step), step)
     else:
-        boundary = Boundary(model, step)
+        boundary = Boundary(model, step, all_levels)
         damping, stiffness = damping + boundary.dashpots, stiffness + boundary.springs
         # of outcrop motion half comes in
         velocity = integral(ground / 2, step)
@@ -403,6 +404,7 @@ def main():
     parser.add_argument("--massless", action="store_true", help="with modes and static state")
     parser.add_argument("--mass", choices=("corners", "rows", "full"), default="corners")
     parser.add_argument("--step", type=float, default=0.002, help="[s]")
+    parser.add_argument("--all-levels", action="store_true", help="free field on the levels of all planes")
     parser.add_argument("--write", help="table of the histories")
     parser.add_argument("--picture")
     options = parser.parse_args()
@@ -424,7 +426,7 @@ def main():
     points = [np.argmin(np.linalg.norm(mesh.nodes - p, axis=1)) for p in places]
     print("points off nodes by", *(f"{np.linalg.norm(mesh.nodes[n] - p):.4f}" for n, p in zip(points, places)), "m")
     every = round((table[1, 0] - table[0, 0]) / options.step)
-    rows = response(model, motion, points, options.step, every, options.massless)
+    rows = response(model, motion, points, options.step, every, options.massless, options.all_levels)
     if options.write:
         np.savetxt(options.write, rows, delimiter=",", fmt="%.6g", header=",".join(names), comments="")
     if options.picture:

@@ -12,7 +12,7 @@ mesh and ground motion, which it takes from a run's fields and ground_motion.csv
            which is a column of linear elements under Newmark, too
 
 usage: arch_dam_newmark.py RUN [--massless] [--step DT] [--mass KIND] [--all-levels] [--write FILE]
-                           [--picture FILE]
+                           [--picture FILE] [--calculix FILE]
        RUN is one of doc/published/arch_dam_*.prm
 """
 import argparse
@@ -380,6 +380,35 @@ def compare_static(mesh):
               f"{-1e3 * theirs[cell, a, 1]:.3f}", *(f"{mesh.data[n + '_principal_stress_MPa'][connectivity[cell, a]]:.4f}" for n in ("largest", "smallest")))
 
 
+def write_calculix(mesh, name):
+    """The dam under its loads at rest, and empty natural modes, for ccx."""
+    model = Model(mesh, True)
+    model.hold()
+    force = (model.stiffness[0] + model.stiffness[1]) @ model.static_state()
+    with open(name, "w") as file:
+        print("*NODE, NSET=ALL", file=file)
+        for n, x in enumerate(mesh.nodes, 1):
+            print(n, *(f"{c:.9g}" for c in x), sep=", ", file=file)
+        for part, cells, (E, nu, density) in (
+            ("DAM", np.flatnonzero(~mesh.rock), CONCRETE),
+            ("ROCK", np.flatnonzero(mesh.rock), (*ROCK[:2], LIGHT * ROCK[2])),
+        ):
+            print(f"*ELEMENT, TYPE=C3D8, ELSET={part}", file=file)
+            for cell in cells:
+                print(cell + 1, *(mesh.cells[cell] + 1), sep=", ", file=file)
+            print(f"*MATERIAL, NAME={part}\n*ELASTIC\n{E}, {nu}\n*DENSITY\n{density}", file=file)
+            print(f"*SOLID SECTION, ELSET={part}, MATERIAL={part}", file=file)
+        print("*NSET, NSET=HELD", *(n + 1 for n in np.unique(mesh.rim())), sep="\n", file=file)
+        print("*BOUNDARY\nHELD, 1, 3\n*STEP\n*STATIC\n*CLOAD", file=file)
+        for dof in model.free[abs(force[model.free]) > 1e-3]:
+            print(dof // 3 + 1, dof % 3 + 1, f"{force[dof]:.10g}", sep=", ", file=file)
+        print("*NODE PRINT, NSET=ALL\nU\n*END STEP\n*STEP\n*FREQUENCY\n6\n*END STEP", file=file)
+    crest = np.argmin(np.linalg.norm(mesh.nodes - [0, -7, 289], axis=1))
+    model = Model(mesh, True, "full")
+    model.hold()
+    print(f"{name}: node {crest + 1} is the middle of the crest; empty modes with full mass [Hz]", *(f"{f:.6f}" for f in model.modes(6, False)[0]))
+
+
 def draw(names, ours, theirs, file):
     import matplotlib
 
@@ -405,11 +434,14 @@ def main():
     parser.add_argument("--mass", choices=("corners", "rows", "full"), default="corners")
     parser.add_argument("--step", type=float, default=0.002, help="[s]")
     parser.add_argument("--all-levels", action="store_true", help="free field on the levels of all planes")
+    parser.add_argument("--calculix", help="only write an input of CalculiX")
     parser.add_argument("--write", help="table of the histories")
     parser.add_argument("--picture")
     options = parser.parse_args()
 
     mesh = Mesh(options.run)
+    if options.calculix:
+        return write_calculix(mesh, options.calculix)
     model = Model(mesh, options.massless, options.mass)
     print(f"{len(mesh.cells)} cells, {len(mesh.nodes)} nodes, dam {model.concrete_mass.sum() / 3:.5g} kg, "
           f"water along the river {model.added[1::3][:, 1::3].sum():.5g} kg")

@@ -68,7 +68,7 @@ class Page(html.parser.HTMLParser):
 
     def judged(self, criterion):
         """How the first criterion of this name is judged."""
-        return next(cells[-1] for cells in self.rows if cells[0] == criterion)
+        return next(cells[1] for cells in self.rows if cells[0] == criterion)
 
     def of(self, row):
         """The first number of the row of this name."""

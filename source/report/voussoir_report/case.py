@@ -1,5 +1,7 @@
 """The case in words, the headline figures, and what the run took."""
 
+import re
+
 import numpy as np
 
 from . import grid as grids, verdict
@@ -315,6 +317,7 @@ def input_entries_section(runs):
 def statistics_section(runs):
     table = comparison(runs, [
         ("program", lambda run: run.summary.get("version")),
+        ("built with", lambda run: next(iter(re.findall(r"^Voussoir .* with (.+)$", run.log, re.MULTILINE)), None)),
         ("cells", of_summary("cells")), ("unknowns", of_summary("unknowns")),
         ("degree of the elements", of_summary("degree")),
         ("time step [ms]", of_summary("time step [s]", 1e3)),

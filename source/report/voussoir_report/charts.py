@@ -40,9 +40,9 @@ class Picture:
         return f"data:image/{kind};base64," + base64.b64encode(self.data).decode()
 
 
-def picture(figure, caption, name="", vector=True, dpi=None):
+def picture(figure, caption, name="", vector=True, dpi=None, shaded=False):
     """Draws a figure, as curves and letters or else as dots, with few colours, which
-    makes the page smaller."""
+    makes the page smaller; those of a shaded one are chosen with more care."""
     memory = io.BytesIO()
     if vector:
         figure.savefig(memory, format="svg", metadata={"Date": None, "Creator": None})
@@ -51,7 +51,7 @@ def picture(figure, caption, name="", vector=True, dpi=None):
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     image = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-    image = image.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    image = image.quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=int(shaded), dither=Image.Dither.NONE)
     image.save(memory, "png", dpi=(figure.dpi, figure.dpi), optimize=True)
     return Picture(memory.getvalue(), caption, name)
 
@@ -196,7 +196,7 @@ def framed(image, across, caption, name, scale=None, legend=None, dpi=None):
     if legend:
         figure.legend([Rectangle((0, 0), 1, 1, color=colour) for colour in legend.values()], list(legend),
                       ncols=3, frameon=False, loc="lower center", borderaxespad=0.)
-    return picture(figure, caption, name, vector=False, dpi=dpi)
+    return picture(figure, caption, name, vector=False, dpi=dpi, shaded=True)
 
 
 def triangles(n_quadrilaterals):

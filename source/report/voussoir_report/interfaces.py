@@ -76,7 +76,7 @@ def opening_profiles(run, most):
     """Largest opening over the elevation on both faces, a chart for each joint, with
     openings up to @p most [mm]."""
     names = joints_of(run)
-    columns = min(len(names), 4)
+    columns = min(len(names), 5)
     rows = -(-len(names) // columns)
     width, height = (charts.WIDTH - 0.7) / columns, 1.75
     figure = charts.Figure(figsize=(charts.WIDTH, rows * height + 0.55))

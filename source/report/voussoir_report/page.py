@@ -144,7 +144,10 @@ def scene_program(sections):
     if file is None or not any(isinstance(part, Scene) for section in sections for part in section.parts):
         return None
     script = pathlib.Path(__file__).with_name("scene.js").read_text(encoding="utf-8")
-    return {"library": base64.b64encode(gzip.compress(file.read_bytes(), 9, mtime=0)).decode(), "script": script}
+    licence = file.with_name("LICENSE")
+    return {"licence": licence.read_text(encoding="utf-8") if licence.is_file() else "BSD 3-Clause, Kitware Inc.",
+            "library": base64.b64encode(gzip.compress(file.read_bytes(), 9, mtime=0)).decode(),
+            "script": script}
 
 
 def vtk_js():

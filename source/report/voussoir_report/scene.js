@@ -61,12 +61,12 @@
     camera.setPosition(...scene.eye);
     camera.setViewUp(0, 0, 1);
     renderer.resetCamera(dam.data.getBounds());
-    camera.zoom(1.3);
+    camera.zoom(Math.min(1.3, canvas.clientWidth / canvas.clientHeight));
     renderer.resetCameraClippingRange();
 
     const render = () => window3d.getRenderWindow().render();
-    const slider = place.querySelector("input[type=range]");
-    slider.addEventListener("input", () => {
+    const slider = place.querySelector("input[type=range]"); // where there is a motion
+    if (slider) slider.addEventListener("input", () => {
       const factor = Number(slider.value);
       place.querySelector("output").textContent = `${factor.toPrecision(3)} times`;
       dam.data.getPoints().setData(start.map((value, i) => value + factor * motion[i]), 3);

@@ -141,7 +141,7 @@ def engineering_results(run):
                                opening_line(run), *slip_lines(run), *block_lines(run)) if line]
     remarks = [text for text in run.warnings if is_engineering(text)]
     judged = worst(lines)
-    if remarks and judged == MET:
+    if remarks and RANK[judged] < RANK[TO_JUDGE]:
         judged = TO_JUDGE
     title = {MET: "The criteria looked at are met", NOT_MET: "Not all criteria are met",
              TO_JUDGE: "To be judged: results without a limit in the case",

@@ -3,6 +3,7 @@
 import base64
 import dataclasses
 import io
+import re
 
 import matplotlib
 import numpy as np
@@ -46,7 +47,9 @@ def picture(figure, caption, name="", vector=True, dpi=None, shaded=False):
     memory = io.BytesIO()
     if vector:
         figure.savefig(memory, format="svg", metadata={"Date": None, "Creator": None})
-        return Picture(memory.getvalue(), caption, name, "svg")
+        # the shorthand is beyond what makes a PDF
+        text = re.sub(r"\bfont: ([\d.]+px) ([^;\"]+)", r"font-size: \1; font-family: \2", memory.getvalue().decode())
+        return Picture(text.encode(), caption, name, "svg")
     figure.set_dpi(dpi or DPI)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
@@ -240,11 +243,11 @@ def face_map(panels, scale, caption, name, unit="", largest=None):
     width = WIDTH - 0.8
     spans = [np.ptp(panel.places.reshape(-1, 2), axis=0) for panel in panels]
     heights = [min(width * span[1] / span[0], 4.) for span in spans]
-    figure = Figure(figsize=(WIDTH, sum(heights) + 0.85 * len(panels) + 0.75))
+    figure = Figure(figsize=(WIDTH, sum(heights) + 0.74 * len(panels) + 0.7))
     top = figure.get_size_inches()[1]
     for panel, height in zip(panels, heights):
-        top -= height + 0.85
-        axes = place(figure, 0.68, top + 0.55, width, height)
+        top -= height + 0.74
+        axes = place(figure, 0.68, top + 0.49, width, height)
         draw_panel(axes, panel, scale, unit, largest)
     scale.bar(figure)
     return picture(figure, caption, name, vector=False)

@@ -156,10 +156,11 @@ def check_abscissa(run):
 
 
 def check_colours():
-    scale = charts.Scale([np.array([-10., 4.])], "stress", 0.)
-    compare("tension and pressure of the same amount, distances from white", scale.norm(3.) - 0.5,
-            0.5 - scale.norm(-3.), 0.)
-    compare("white is zero", scale.norm(0.), 0.5, 0.)
+    for ends in ((-10., 4.), (-4., 10.)):
+        scale = charts.Scale([np.array(ends)], "stress", 0.)
+        compare("tension and pressure of the same amount, distances from white", scale.norm(3.) - 0.5,
+                0.5 - scale.norm(-3.), 0.)
+        compare("white is zero", scale.norm(0.), 0.5, 0.)
     noise = charts.Scale([np.array([0., 3e-14])], "opening [mm]", 0., "inferno_r", low=0.)
     compare("end of the bar of noise", noise.levels[-1], 1., 0.)
     is_true("noise is said to be zero", noise.label == "opening [mm]: 0 everywhere")

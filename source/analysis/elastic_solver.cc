@@ -92,23 +92,20 @@ namespace Voussoir
                                const InternalForce  &internal_force,
                                const std::vector<const Material *> &materials,
                                const AffineConstraints<double>     &constraints,
-                               const NodalTerms                    *springs,
-                               Contact                             *contact,
-                               const Vector    *displacement,
-                               const TiedNodes *ties)
+                               const Additions                     &additions)
     : discretization(discretization)
     , internal_force(internal_force)
-    , springs(springs)
+    , springs(additions.springs)
     , constraints(constraints)
-    , ties(ties)
+    , ties(additions.ties)
   {
     for (unsigned int i = 0; i < 3 * discretization.n_owned_nodes(); ++i)
       if (constraints.is_constrained(
             discretization.owned_dofs.nth_index_in_set(i)))
         held.push_back(i);
-    assemble(materials, contact);
-    if (contact != nullptr)
-      tie(*contact, *displacement);
+    assemble(materials, additions.contact);
+    if (additions.contact != nullptr)
+      tie(*additions.contact, *additions.displacement);
     set_up_multigrid();
   }
 

@@ -166,14 +166,13 @@ namespace Voussoir
   void
   ModalSystem::set_up()
   {
+    ElasticSolver::Additions additions;
+    additions.ties = ties ? &*ties : nullptr;
     solver.emplace(model.solid.discretization,
                    moduli_as_given,
                    model.solid.materials,
                    constraints,
-                   nullptr,
-                   nullptr,
-                   nullptr,
-                   ties ? &*ties : nullptr);
+                   additions);
     if (model.reservoir != nullptr)
       water.emplace(*model.reservoir,
                     parameters.water == WaterInModes::compressible ?

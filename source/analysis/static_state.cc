@@ -221,14 +221,15 @@ namespace Voussoir
     void
     StaticStages::make_solver()
     {
-      solver =
-        std::make_unique<ElasticSolver>(model.solid.discretization,
-                                        internal_force,
-                                        materials,
-                                        constraints,
-                                        on_springs ? &model.terms : nullptr,
-                                        model.contact,
-                                        &state.displacement);
+      ElasticSolver::Additions additions;
+      additions.springs      = on_springs ? &model.terms : nullptr;
+      additions.contact      = model.contact;
+      additions.displacement = &state.displacement;
+      solver = std::make_unique<ElasticSolver>(model.solid.discretization,
+                                               internal_force,
+                                               materials,
+                                               constraints,
+                                               additions);
     }
 
 
@@ -592,8 +593,8 @@ namespace Voussoir
       report["iterations"]      = iterations;
       report["load increments"] = increments;
       report["dissipated by materials [J]"] =
-        Utilities::MPI::sum(state.material_memory.losses().material,
-                            model.solid.grid().communicator());
+        Utilities::MPI::sum<double>(state.material_memory.losses().material,
+                                    model.solid.grid().communicator());
       report["found by multigrid"]       = by_multigrid;
       report["steps of damped motion"]   = damped_steps;
       report["sum of loads so far [N]"]  = to_json(resultant(loads));

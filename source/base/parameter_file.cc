@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/base/parameter_section.h>
 #include <voussoir/base/parse_numbers.h>
 #include <voussoir/base/text.h>
 
@@ -42,7 +43,7 @@ namespace Voussoir
     }
 
     std::string
-    in_section(const std::string &section)
+    section_text(const std::string &section)
     {
       return section.empty() ? "at the top level" :
                                "in section \"" + section + "\"";
@@ -215,7 +216,7 @@ namespace Voussoir
       const std::string section = section_of(path);
       const auto        refuse  = [&](const std::string &remedy) {
         throw UserError(place + ": \"" + entry_of(path) + "\" " +
-                        in_section(section) + " cannot be \"" + text + "\"" +
+                        section_text(section) + " cannot be \"" + text + "\"" +
                         remedy + ".");
       };
       const std::string allowed = pattern.description();
@@ -224,20 +225,17 @@ namespace Voussoir
       if (is_too_large(allowed, text))
         refuse("; no quantity in SI units is beyond 1e30");
 
-      const auto names = split_list(section, '/');
-      for (const std::string &name : names)
-        prm.enter_subsection(name);
-      try
-        {
-          prm.set(entry_of(path), text);
-        }
-      catch (const std::exception &)
-        {
-          // what fits the pattern but not the variable behind it
-          refuse(what_is_allowed(allowed, text));
-        }
-      for (std::size_t i = 0; i < names.size(); ++i)
-        prm.leave_subsection();
+      in_section(prm, section, [&] {
+        try
+          {
+            prm.set(entry_of(path), text);
+          }
+        catch (const std::exception &)
+          {
+            // what fits the pattern but not the variable behind it
+            refuse(what_is_allowed(allowed, text));
+          }
+      });
     }
   } // namespace
 
@@ -364,7 +362,7 @@ namespace Voussoir
                 includers.end())
               throw UserError(place + ": \"" + name +
                               "\" includes itself; remove this line.");
-            included.filename = filename;
+            included.filename = name;
             included.read(name, includers);
           }
         else if (keyword == "set" && rest.find('=') != std::string::npos &&
@@ -431,7 +429,7 @@ namespace Voussoir
             "; which ones there are depends on \"" + entry + "\"" +
             (entry == "Names" && given(path).empty() ? ", which is empty" : "");
       throw UserError(place + ": there is no section \"" + entry_of(section) +
-                      "\" " + in_section(parent) +
+                      "\" " + section_text(parent) +
                       known_names(entry_of(section), siblings) + cause + ".");
     };
     for (const auto &[section, place] : sections)
@@ -449,7 +447,7 @@ namespace Voussoir
             if (other.second.section == section)
               siblings.push_back(entry_of(other.first));
           throw UserError(value.place + ": there is no entry \"" +
-                          entry_of(path) + "\" " + in_section(section) +
+                          entry_of(path) + "\" " + section_text(section) +
                           known_names(entry_of(path), siblings) + ".");
         }
   }

@@ -11,7 +11,8 @@ namespace Voussoir
   Contact::Contact(const Discretization       &discretization,
                    const InterfacesParameters &parameters,
                    const InterfaceSurfaces    &surfaces)
-    : interfaces(discretization, parameters, surfaces)
+    : exact_sums(discretization.reproducible)
+    , interfaces(discretization, parameters, surfaces)
     , displacement(interfaces.n_nodes())
     , force(displacement.size())
     , applied(interfaces.exchange().owned_nodes().size())
@@ -122,6 +123,7 @@ namespace Voussoir
     total.unsolved += effort.unsolved;
 
     Result result;
+    result.work            = Sum(exact_sums);
     result.violation       = effort.penetration;
     const double frequency = 1. / time_step;
     const auto  &owned     = interfaces.exchange().owned_nodes();

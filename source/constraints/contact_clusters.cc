@@ -173,8 +173,8 @@ namespace Voussoir
              << record.position[0] << ", " << record.position[1] << ", "
              << record.position[2]
              << ") m, so that not every node has a partner on the other side; "
-                "keep \"Local refinement\" in section \"Mesh\" away from "
-                "interfaces.";
+                "refine all cells on both sides of it alike by \"Local "
+                "refinement\" in section \"Mesh\", or none.";
         const auto problem = std::make_pair(record.key, text.str());
         if (first.second.empty() || problem < first)
           first = problem;
@@ -224,9 +224,13 @@ namespace Voussoir
                      r->side != record->side &&
                      r->face_center.distance(record->face_center) < tolerance;
             });
-          if (partner == records.end() || record->hanging)
+          if (partner == records.end())
             problems.add(*record, interfaces);
-          else if (record->side == 0 && record->node != (*partner)->node)
+          else if (record->node == (*partner)->node)
+            continue; // the end of the interface, where it may hang
+          else if (record->hanging)
+            problems.add(*record, interfaces);
+          else if (record->side == 0)
             {
               const NodeKey first  = key_of_node[record->node],
                             second = key_of_node[(*partner)->node];

@@ -13,8 +13,20 @@ namespace Voussoir
 
   namespace
   {
+    // Of the way to a limit, which is left so that no round-off leads beyond
+    // it.
+    constexpr double margin = 1e-6;
+
+    // Of the largest force, by which a limit may be exceeded.
+    constexpr double tolerated = 1e-11;
+
     // Rows of a linear system of unit vectors that are combinations of others.
     constexpr double dependent = 1e-10;
+
+    // Of the sum of F^2 / A that self-equilibrated forces may have. Below it
+    // the forces stay as they are: those of the step before are where the next
+    // search begins, and should change little from step to step.
+    constexpr double largest_share = 0.5;
 
     /** How the force of a point may change with its status and motion kept. */
     class FreeForce
@@ -27,8 +39,10 @@ namespace Voussoir
         , slides(point.status == ContactStatus::sliding)
         , under_pressure(force[0] >= 0.)
       {
-        // closed by a part of its cohesion, which goes by the motion
-        if (slides && shear() < (1. - 1e-9) * limits.shear(false, force[0]))
+        // closed by a part of its cohesion, which goes by the motion; or
+        // without any force that says in which direction it slides
+        if (slides && (shear() < (1. - 1e-9) * limits.shear(false, force[0]) ||
+                       (shear() == 0. && limits.with_pressure() > 0.)))
           fixed = true;
       }
 
@@ -67,18 +81,9 @@ namespace Voussoir
       {
         if (fixed)
           return 1.;
-        double part = 1.;
-        if (!normal_fixed)
-          {
-            const double lowest = under_pressure ?
-                                    std::max(limits.opening_force(), 0.) :
-                                    limits.opening_force();
-            if (force[0] + change[0] < lowest)
-              part = std::max(0., (force[0] - lowest) / -change[0]);
-            if (!under_pressure && force[0] + change[0] > 0.)
-              part = std::min(part, -force[0] / change[0]);
-          }
-        return slides || limits.locked ? part : std::min(part, to_slip(change));
+        return std::min({1.,
+                         normal_fixed ? 1. : to_bound(change),
+                         slides || limits.locked ? 1. : to_slip(change)});
       }
 
       void
@@ -92,12 +97,23 @@ namespace Voussoir
       void
       stop(const Tensor<1, 3> &change)
       {
-        if (!slides && !limits.locked && to_slip(change) < 1.)
-          slides = true;
-        else if (!normal_fixed)
+        const bool may_slip = !slides && !limits.locked;
+        if (!normal_fixed && !(may_slip && to_slip(change) < to_bound(change)))
           normal_fixed = true;
+        else if (may_slip)
+          slides = true;
         else
           fixed = true;
+      }
+
+      /** Whether it is within its limits. */
+      bool
+      is_admissible(const double tolerance) const
+      {
+        return fixed ||
+               (force[0] >= limits.opening_force() - tolerance &&
+                (limits.locked ||
+                 shear() <= limits.shear(false, force[0]) + tolerance));
       }
 
       const Tensor<1, 3> &
@@ -119,15 +135,30 @@ namespace Voussoir
         return under_pressure ? limits.with_pressure() : 0.;
       }
 
-      /** Change of the force at its limit of shear with the pressure. */
+      /** Smallest part of a change at which the normal force is at the end of
+       *  its side of zero pressure. */
+      double
+      to_bound(const Tensor<1, 3> &change) const
+      {
+        const double lowest = under_pressure ?
+                                std::max(limits.opening_force(), 0.) :
+                                limits.opening_force();
+        if (change[0] < 0.)
+          return std::max(0., (lowest - force[0]) / change[0]);
+        if (change[0] > 0. && !under_pressure)
+          return -force[0] / change[0];
+        return std::numeric_limits<double>::infinity();
+      }
+
+      /** Change of the force with the pressure along which the shear keeps its
+       *  direction and its share of the limit. */
       Tensor<1, 3>
       limit_line() const
       {
-        const double size =
-          std::sqrt(force[1] * force[1] + force[2] * force[2]);
+        const double limit = limits.shear(false, force[0]);
         Tensor<1, 3> result({1., 0., 0.});
-        for (unsigned int d = 1; d < 3 && size > 0.; ++d)
-          result[d] = friction() * force[d] / size;
+        for (unsigned int d = 1; d < 3 && limit > 0.; ++d)
+          result[d] = friction() * force[d] / limit;
         return result;
       }
 
@@ -188,9 +219,30 @@ namespace Voussoir
                                           const Cluster &cluster,
                                           const double   smallest_slip)
   {
+    const auto        &basis = cluster.self_equilibrated;
+    const unsigned int m     = basis.size();
+    double             self = 0., whole = 0.; // sums of F^2 / A
+    for (const std::vector<double> &direction : basis)
+      {
+        double along = 0.;
+        for (unsigned int k = 0; k < cluster.n_points; ++k)
+          {
+            const ContactPoint &point = points[cluster.first_point + k];
+            for (unsigned int d = 0; d < 3; ++d)
+              along +=
+                direction[3 * k + d] * point.force[d] / std::sqrt(point.area);
+          }
+        self += along * along;
+      }
+    for (unsigned int k = 0; k < cluster.n_points; ++k)
+      {
+        const ContactPoint &point = points[cluster.first_point + k];
+        whole += point.force.norm_square() / point.area;
+      }
+    if (self <= largest_share * whole)
+      return;
+
     find_moves(points, cluster);
-    const auto            &basis = cluster.self_equilibrated;
-    const unsigned int     m     = basis.size();
     std::vector<double>    root_of_area;
     std::vector<FreeForce> forces;
     for (unsigned int k = 0; k < cluster.n_points; ++k)
@@ -250,13 +302,20 @@ namespace Voussoir
           {
             const bool ends =
               part < 1. && forces[k].admissible(change[k]) <= part;
-            forces[k].add(part, change[k]);
+            forces[k].add(part < 1. ? (1. - margin) * part : 1., change[k]);
             if (ends)
               forces[k].stop(change[k]);
           }
         if (part == 1.)
           break;
       }
+    double largest = 0.; // before: what is left of it has its round-off
+    for (unsigned int k = 0; k < cluster.n_points; ++k)
+      largest = std::max(largest, points[cluster.first_point + k].force.norm());
+    if (!std::all_of(forces.begin(), forces.end(), [&](const FreeForce &force) {
+          return force.is_admissible(tolerated * largest);
+        }))
+      return;
     for (unsigned int k = 0; k < cluster.n_points; ++k)
       if (points[cluster.first_point + k].joined)
         points[cluster.first_point + k].force = forces[k].value();

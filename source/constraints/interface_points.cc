@@ -111,6 +111,7 @@ namespace Voussoir
     Vector times(discretization.owned_dofs,
                  discretization.relevant_dofs,
                  communicator);
+    std::vector<std::pair<types::global_dof_index, double>> records;
     for (const std::string &name : names)
       for (const std::string &side : {name, name + other_side})
         discretization.grid.for_each_face(
@@ -119,12 +120,20 @@ namespace Voussoir
               cell->minimum_vertex_distance() / discretization.degree;
             for (const types::global_dof_index node :
                  discretization.cell_nodes(discretization.dof_cell(cell)))
-              {
-                times(3 * node) += length / wave_speed(cell);
-                times(3 * node + 1) += 1.;
-              }
+              if (discretization.reproducible)
+                records.emplace_back(node, length / wave_speed(cell));
+              else
+                {
+                  times(3 * node) += length / wave_speed(cell);
+                  times(3 * node + 1) += 1.;
+                }
           });
     times.compress(VectorOperation::add);
+    for (const auto &[node, time] : discretization.send_to_owners(records))
+      {
+        times.local_element(3 * node) += time;
+        times.local_element(3 * node + 1) += 1.;
+      }
     std::vector<Tensor<1, 3>> at_nodes(n_nodes());
     exchange().to_clusters(times, at_nodes);
     const auto mean_at = [&](const unsigned int node) {

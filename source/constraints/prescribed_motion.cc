@@ -42,7 +42,8 @@ namespace Voussoir
               const std::string &place) override
       {
         factor.prepare("\"Time function\" in section \"" + place + "\"");
-        mass = &lumped_mass;
+        mass       = &lumped_mass;
+        exact_sums = discretization.reproducible;
         take_components(place);
         const auto &scalar = discretization.fe.base_element(0);
         std::set<types::global_dof_index> face_nodes;
@@ -101,7 +102,8 @@ namespace Voussoir
       Result
       project(State &state, const double time_step) override
       {
-        Result       result;
+        Result result;
+        result.work      = Sum(exact_sums);
         const double now = state.time, before = now - time_step;
         const auto   rate = [&](const double end) {
           return (factor(end) - factor(end - time_step)) / time_step;
@@ -184,7 +186,8 @@ namespace Voussoir
       TimeFactor          factor;
       std::array<bool, 3> prescribed{};
 
-      const LumpedMass         *mass = nullptr;
+      bool                      exact_sums = false; // of the work
+      const LumpedMass         *mass       = nullptr;
       std::vector<unsigned int> moved_nodes;
 
       // of each node: impulse by change of velocity, velocity by impulse

@@ -1,5 +1,6 @@
 #include <voussoir/base/active.h>
 #include <voussoir/base/error.h>
+#include <voussoir/base/parameter_section.h>
 #include <voussoir/base/text.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/driver/case.h>
@@ -46,15 +47,6 @@ namespace Voussoir
             throw UserError(place + " lists \"" + *name +
                             "\"; choose a name without \"/\".");
         }
-    }
-
-    template <typename Value>
-    void
-    in_section(ParameterHandler &prm, const std::string &name, Value &&declare)
-    {
-      prm.enter_subsection(name);
-      declare();
-      prm.leave_subsection();
     }
   } // namespace
 
@@ -134,11 +126,7 @@ namespace Voussoir
         const auto &[place, class_name, read] = origins[i];
         auto             object = Registry<Base>::create(class_name, place);
         ParameterHandler prm;
-        for (const std::string &section : split_list(place, '/'))
-          prm.enter_subsection(section);
-        object->declare_parameters(prm);
-        for (unsigned int n = split_list(place, '/').size(); n > 0; --n)
-          prm.leave_subsection();
+        in_section(prm, place, [&] { object->declare_parameters(prm); });
         file.parse_declared(prm);
         list.emplace_back(objects[i].first, std::move(object));
       }
@@ -367,6 +355,7 @@ namespace Voussoir
     modes.check(material_names(), boundaries);
     ground_motion.check();
     damping.check(modes.number);
+    check_reproducible();
     study.check();
     const bool rigid_base = wave.enters_through == WaveEntrance::rigid_base;
     if (ground_motion.type != GroundMotionType::none && !rigid_base &&
@@ -381,6 +370,37 @@ namespace Voussoir
       throw UserError("The earthquake of section \"Ground motion\" enters "
                       "through a rigid base, but \"Fixed\" in section "
                       "\"Boundaries\" names no face sets; name the base.");
+  }
+
+
+  void
+  Case::check_reproducible() const
+  {
+    if (discretization.sums != Sums::reproducible)
+      return;
+    const auto refuse = [](const std::string &what, const std::string &remedy) {
+      throw UserError("\"Sums = reproducible\" in section \"Discretization\" "
+                      "does not cover " +
+                      what + "; " + remedy +
+                      ", or leave \"Sums\" as they are dealt.");
+    };
+    if (discretization.degree != 1)
+      refuse("cells of \"Degree\" " + std::to_string(discretization.degree),
+             "set \"Degree = 1\"");
+    if (reservoir.model == ReservoirModel::compressible)
+      refuse("compressible water",
+             "set \"Model = added mass\" in section \"Reservoir\"");
+    if (modes.number > 0 && damping.depends_on_modes())
+      refuse("damping that goes by modes, as \"" +
+               std::string(damping.modes.empty() ? "Reference frequency" :
+                                                   "From modes") +
+               "\" in section \"Damping\" says",
+             damping.modes.empty() ?
+               "give it in Hz" :
+               "give the ends of the band and leave it empty");
+    if (!static_state.stage_names().empty() && static_state.kept.empty())
+      refuse("a static state that is found again for each number of ranks",
+             "name a folder in \"Keep in\" of section \"Static state\"");
   }
 
 

@@ -26,7 +26,7 @@ namespace Voussoir
               const double  time = 0.,
               const double  away = 0.)
     {
-      constexpr double resolution = Earthquake::sample_interval;
+      constexpr double resolution = EarthquakeMotion::sample_interval;
       Peak             peak;
       for (std::size_t i = 0; i * resolution <= end; ++i)
         if (const double now = std::abs(motion.acceleration(i * resolution));
@@ -169,8 +169,8 @@ namespace Voussoir
       std::partial_sum(power.begin(), power.end(), power.begin());
       const auto half =
         std::lower_bound(power.begin(), power.end(), 0.5 * power.back());
-      return double(half - power.begin()) /
-             (2. * double(power.size() - 1) * Earthquake::sample_interval);
+      return double(half - power.begin()) / (2. * double(power.size() - 1) *
+                                             EarthquakeMotion::sample_interval);
     }
 
 
@@ -254,29 +254,25 @@ namespace Voussoir
   } // namespace
 
 
-  Earthquake::Earthquake(const Model    &model,
-                         const Damping  &damping,
-                         const TimeStep &time_step,
-                         Log            &log)
+  EarthquakeMotion::EarthquakeMotion(const Model &model, Log &log)
   {
     const Case         &parameters    = model.parameters;
     const GroundMotion &ground_motion = parameters.ground_motion;
     if (ground_motion.type == GroundMotionType::none)
       return;
-    const double        end_time = parameters.time.end_time;
-    GroundMotionSignals motion =
-      ground_motion.build(parameters.file.folder(), &fits);
-    log(ground_motion.summary(motion, end_time));
+    const double end_time = parameters.time.end_time;
+    signals = ground_motion.build(parameters.file.folder(), &fits);
+    log(ground_motion.summary(signals, end_time));
     for (const SpectrumFit &fit : fits)
       say_fit(fit, ground_motion.match, log);
     for (unsigned int d = 0; d < 3; ++d)
-      if (motion[d])
+      if (signals[d])
         for (std::size_t i = 0; i * sample_interval <= end_time; ++i)
           accelerations[d].push_back(
-            motion[d]->acceleration(i * sample_interval));
+            signals[d]->acceleration(i * sample_interval));
     if (end_time > 0.)
       {
-        check_peaks(motion, ground_motion, end_time, log);
+        check_peaks(signals, ground_motion, end_time, log);
         check_frequencies(model, accelerations, log);
       }
     if (model.rigid_base())
@@ -290,24 +286,44 @@ namespace Voussoir
                           "nothing, because the \"Inertia factor\" of all "
                           "materials is below one, as that of rock without "
                           "inertial force; set it to 1 for the dam.");
-        base = RigidBase(std::move(motion));
         return;
       }
     if (ground_motion.given_at == MotionPlace::free_surface)
-      for (const auto &component : motion)
+      for (const auto &component : signals)
         if (component && std::isinf(component->end()))
           followed_to = end_time;
+    check_wave(model.boundary,
+               model.solid,
+               parameters.wave,
+               ground_motion.given_at,
+               signals);
     if (parameters.wave.type == WaveType::vertical)
       check_layers(model, log);
+  }
+
+
+  Earthquake::Earthquake(const Model          &model,
+                         GroundMotionSignals &&motion,
+                         const Damping        &damping,
+                         const TimeStep       &time_step)
+  {
+    const Case &parameters = model.parameters;
+    if (parameters.ground_motion.type == GroundMotionType::none)
+      return;
+    if (model.rigid_base())
+      {
+        base = RigidBase(std::move(motion));
+        return;
+      }
     auto field = make_free_field(model.boundary,
                                  model.solid,
-                                 parameters.discretization.quadrature,
-                                 damping,
-                                 parameters.wave,
-                                 ground_motion.given_at,
+                                 {parameters.wave,
+                                  parameters.ground_motion.given_at,
+                                  parameters.discretization.quadrature,
+                                  parameters.time.end_time},
                                  std::move(motion),
-                                 time_step.leap_frog(),
-                                 end_time);
+                                 damping,
+                                 time_step.leap_frog());
     if (field)
       wave = std::make_unique<IncomingWave>(model.boundary, std::move(field));
   }

@@ -122,11 +122,16 @@ namespace Voussoir
     Grid::Materials
     materials_of_grid(const Case &parameters, std::vector<unsigned int> of_cell)
     {
-      Grid::Materials result{std::move(of_cell), {}};
+      Grid::Materials result{std::move(of_cell), {}, {}};
       for (const Material *material : parameters.material_list())
-        result.costs.push_back(
-          material->relative_cost() *
-          parameters.discretization.relative_cost(material->n_history() > 0));
+        {
+          result.costs.push_back(
+            material->relative_cost() *
+            parameters.discretization.relative_cost(material->n_history() > 0));
+          result.longest_edges.push_back(parameters.grid.longest_edge(
+            material->elastic_constants().s_wave_speed(),
+            parameters.discretization.degree));
+        }
       return result;
     }
 
@@ -456,9 +461,8 @@ namespace Voussoir
     std::vector<double> longest(solid.materials.size(), 0.);
     for (const auto &cell : grid.triangulation().active_cell_iterators())
       if (cell->is_locally_owned())
-        for (unsigned int line = 0; line < 12; ++line)
-          longest[grid.material(cell)] = std::max(longest[grid.material(cell)],
-                                                  cell->line(line)->diameter());
+        longest[grid.material(cell)] =
+          std::max(longest[grid.material(cell)], longest_edge(cell));
     Utilities::MPI::max(longest, grid.communicator(), longest);
     return longest;
   }

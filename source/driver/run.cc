@@ -1,14 +1,9 @@
-#include <voussoir/base/error.h>
 #include <voussoir/base/interruption.h>
+#include <voussoir/base/text.h>
+#include <voussoir/driver/first_files.h>
 #include <voussoir/driver/run.h>
-#include <voussoir/driver/summary_file.h>
-#include <voussoir/output/field_writer.h>
-#include <voussoir/output/material_memory.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <iomanip>
-#include <tuple>
 
 namespace Voussoir
 {
@@ -16,16 +11,6 @@ namespace Voussoir
 
   namespace
   {
-    // Between two looks at the clock and at what is asked from outside [s]:
-    // those who ask may kill a second later. And in steps, as short runs of
-    // small models take less.
-    constexpr double look_interval = 0.01, look_steps = 100.;
-
-    // Between two looks at cracks and slips [s], and how wide one may be over
-    // its cell: at a fiftieth, what it cuts off is a block of its own.
-    constexpr double check_interval = 0.1, widest_share = 0.02;
-
-
     std::vector<ActingLoad>
     acting_loads(const Model &model)
     {
@@ -33,6 +18,23 @@ namespace Voussoir
       for (const Load *load : model.running_loads())
         list.emplace_back(*load);
       return list;
+    }
+
+
+    void
+    refuse_missing_files(const std::map<std::string, std::string> &missing)
+    {
+      if (missing.empty())
+        return;
+      const auto &[name, reason] = *missing.begin();
+      throw UserError(
+        "Done, but \"" + name + "\" " +
+        (missing.size() > 1 ?
+           "and " + counted(missing.size() - 1, "other file", "other files") +
+             " (see the warnings) " :
+           "") +
+        "could not be written because " + reason +
+        "; see to it and run the case again.");
     }
   } // namespace
 
@@ -45,7 +47,7 @@ namespace Voussoir
     : Run(rest,
           modes,
           folder,
-          std::make_unique<RunSetup>(model, modes, folder, log),
+          std::make_unique<RunSetup>(RunPlan(model, log), modes, folder, log),
           log)
   {}
 
@@ -63,8 +65,6 @@ namespace Voussoir
     , log(log)
     , damping(setup->damping)
     , time_step(setup->time_step)
-    , earthquake(setup->earthquake)
-    , water(setup->water)
     , contact(rest.contact)
     , loads(acting_loads(model))
     , equation{model.solid.discretization,
@@ -75,27 +75,37 @@ namespace Voussoir
                rest.initial,
                nodal_loads(),
                projections(),
-               earthquake.base.moves() ? &earthquake.base : nullptr,
+               setup->earthquake.base.moves() ? &setup->earthquake.base :
+                                                nullptr,
                time_step.closing_viscosity}
     , scheme(equation, time_step.leap_frog())
     , state(scheme.state_at_rest())
-    , observed(setup->observed(folder.path(),
-                               rest.initial,
-                               state.material_memory,
-                               contact ? &*contact : nullptr,
-                               log,
-                               &scheme))
+    , observed{setup->plan.observed(log),
+               setup->internal_force,
+               damping,
+               state.material_memory,
+               rest.initial,
+               setup->water.get(),
+               contact ? &*contact : nullptr,
+               setup->earthquake.base,
+               scheme,
+               folder.path(),
+               time_step.length,
+               folder.start_time(),
+               folder.restarts()}
     , energy(equation,
              time_step.length,
              model.parameters.output.energy_interval)
-    , checkpoint(folder.checkpoints(), log.communicator())
-    , timer(std::cout, TimerOutput::never, TimerOutput::wall_times)
+    , times(model.solid.discretization.dof_handler.n_dofs())
+    , supervision(observed, energy, model.parameters.output.energy_limit)
+    , checkpoints(*setup, folder, contact ? &*contact : nullptr, log)
+    , requests(model.parameters.output, folder, log)
   {
     if (folder.exists())
       open_output();
     const bool resumes = folder.exists() && folder.restarts();
     if (resumes)
-      read_checkpoint();
+      checkpoints.read(state, energy);
     for (Projection *projection : equation.projections)
       projection->start(state);
     if (resumes && contact)
@@ -103,7 +113,7 @@ namespace Voussoir
     // the table has its line of a checkpoint between two
     if (!folder.restarts() || energy.is_due(state.step))
       energy.evaluate(state);
-    keep_last_good();
+    supervision.keep(state);
   }
 
 
@@ -111,12 +121,12 @@ namespace Voussoir
   Run::nodal_loads()
   {
     std::vector<NodalLoad *> list;
-    if (earthquake.wave)
-      list.push_back(earthquake.wave.get());
+    if (setup->earthquake.wave)
+      list.push_back(setup->earthquake.wave.get());
     for (ActingLoad &load : loads)
       list.push_back(&load);
-    if (water)
-      list.push_back(water.get());
+    if (setup->water)
+      list.push_back(setup->water.get());
     return list;
   }
 
@@ -125,7 +135,7 @@ namespace Voussoir
   Run::projections()
   {
     std::vector<Projection *> list;
-    for (const auto &constraint : setup->constraints)
+    for (const auto &constraint : setup->plan.constraints)
       list.push_back(constraint.second.get());
     if (contact)
       list.push_back(&*contact);
@@ -141,26 +151,33 @@ namespace Voussoir
 
 
   void
+  Run::open_output()
+  {
+    write_modes(modes, observed);
+    write_ground_motion(setup->plan.motion, folder.path(), log);
+    energy.open(folder.path(), folder.start_time(), folder.restarts(), log);
+    for (const auto &observer : setup->plan.observers)
+      observer.second->begin(observed);
+  }
+
+
+  RunSummary
   Run::march()
   {
     begin();
     while (state.step < n_steps())
       step();
-    end();
+    return end();
   }
 
 
   void
   Run::begin()
   {
-    const OutputParameters &output = model.parameters.output;
-    checkpoints  = Schedule(output.checkpoint_time, time_step.length);
-    loose_checks = Schedule(check_interval, time_step.length);
-    first_step = last_look = next_look = state.step;
-    clock.restart();
-    since_checkpoint.restart();
-    since_look.restart();
-    if (folder.exists() && output.has_checkpoints() && !folder.restarts())
+    times.start(state.step);
+    requests.start(state.step);
+    if (folder.exists() && model.parameters.output.has_checkpoints() &&
+        !folder.restarts())
       write_checkpoint();
     if (state.step < n_steps() && !model.parameters.moves())
       log.warn(
@@ -175,38 +192,50 @@ namespace Voussoir
   void
   Run::step()
   {
-    const unsigned long long next = state.step + 1;
-    const bool balances           = energy.is_due(next) || next == n_steps();
+    const bool at_end   = state.step + 1 == n_steps();
+    const bool balances = energy.is_due(state.step + 1) || at_end;
     if (balances)
       energy.before_step(state);
     {
-      TimerOutput::Scope scope(timer, "step");
+      TimerOutput::Scope scope(times.sections, "step");
       scheme.step(state);
     }
     observe();
     if (balances)
       {
-        check_energy();
-        keep_last_good();
+        TimerOutput::Scope scope(times.sections, "energy balance");
+        energy.evaluate(state, at_end);
+        if (const std::string reason = supervision.check_energy(state);
+            !reason.empty())
+          abort(reason);
       }
-    if (loose_checks.due(state.step) || state.step == n_steps())
-      {
-        check_cracks();
-        check_slips();
-      }
-    if (folder.exists() && model.parameters.output.checkpoint_time > 0. &&
-        checkpoints.due(state.step))
+    supervision.check_motion(state, at_end);
+    if (folder.exists() && checkpoints.are_due(state.step))
       write_checkpoint();
-    if (state.step >= next_look)
+    if (requests.are_due(state.step))
       attend();
   }
 
 
-  void
+  RunSummary
   Run::end()
   {
-    finish();
-    refuse_missing_files();
+    times.stop();
+    supervision.check_contact();
+    RunSummary summary = summary_of(*this);
+    if (folder.exists())
+      {
+        TimerOutput::Scope scope(times.sections, "output");
+        for (const auto &observer : setup->plan.observers)
+          observer.second->finish(state, summary.observers);
+        log.write_growing_files();
+        log.look_for_lost_files();
+        write_summary(folder.path(), summary, log);
+      }
+    log(conclusion(*this, summary));
+    log(times.table());
+    refuse_missing_files(log.missing_files());
+    return summary;
   }
 
 
@@ -215,171 +244,38 @@ namespace Voussoir
   {
     if (!folder.exists())
       return;
-    TimerOutput::Scope scope(timer, "output");
-    for (const auto &observer : setup->observers)
+    TimerOutput::Scope scope(times.sections, "output");
+    for (const auto &observer : setup->plan.observers)
       observer.second->observe(state);
   }
 
 
-  void
-  Run::check_energy()
+  bool
+  Run::write_checkpoint()
   {
-    TimerOutput::Scope scope(timer, "energy balance");
-    energy.evaluate(state, state.step == n_steps());
-    if (const std::string reason =
-          energy.alarm(model.parameters.output.energy_limit);
-        !reason.empty())
-      abort(reason);
-    // what damping takes between two evaluations is known to a per cent or two
-    const bool is_large =
-      energy.relative_error() > 0.01 || energy.error_of_losses() > 0.03;
-    if (is_large && !warned_of_energy)
-      {
-        std::ostringstream text;
-        text << std::setprecision(3) << "from t = " << state.time
-             << " s on the energy-balance error is large: "
-             << 100. * energy.relative_error() << " % of what came in, "
-             << 100. * energy.error_of_losses()
-             << " % of what damping, cracks, friction and impacts took";
-        warned_of_energy = true;
-        log.warn(text.str());
-      }
-  }
-
-
-  void
-  Run::check_cracks()
-  {
-    if (warned_of_cracks || !model.solid.internal_force.has_memory())
-      return;
-    const WidestCrack widest = widest_crack(observed);
-    warned_of_cracks         = widest.share > widest_share;
-    if (!warned_of_cracks)
-      return;
-    std::ostringstream text;
-    text << std::setprecision(3) << "at t = " << state.time
-         << " s a crack is open by " << 1e3 * widest.opening << " mm, "
-         << 100. * widest.share
-         << " % of its cell: what cracks have cut off is loose from now on; "
-            "that it comes loose can be relied on, how it moves then cannot";
-    log.warn(text.str());
-  }
-
-
-  void
-  Run::check_slips()
-  {
-    if (warned_of_slips || !contact)
-      return;
-    double       farthest = 0.;
-    unsigned int surface  = 0;
-    for (const ContactPoint &point : contact->points())
-      {
-        const double slip = std::hypot(point.gap[1], point.gap[2]);
-        if (point.joined && slip > farthest)
-          {
-            farthest = slip;
-            surface  = point.surface;
-          }
-      }
-    const auto all =
-      Utilities::MPI::all_gather(log.communicator(),
-                                 std::make_pair(farthest, surface));
-    std::tie(farthest, surface) = *std::max_element(all.begin(), all.end());
-    warned_of_slips             = farthest > 0.5 * contact->cell_size();
-    if (!warned_of_slips)
-      return;
-    std::ostringstream text;
-    text << std::setprecision(3) << "at t = " << state.time << " s \""
-         << contact->surface_names()[surface] << "\" has slipped by "
-         << farthest
-         << " m, more than half a cell of the interfaces: nodes still act on "
-            "those they faced at the start; that it slides so far can be "
-            "relied on, where it comes to rest cannot";
-    log.warn(text.str());
-  }
-
-
-  void
-  Run::check_contact()
-  {
-    if (!contact)
-      return;
-    const ContactSolver::Effort effort = contact->effort();
-    if (effort.unsolved == 0)
-      return;
-    std::ostringstream text;
-    text << std::setprecision(3) << "the contact of " << effort.unsolved
-         << " clusters of nodes was not solved: gaps miss the laws of their "
-            "interfaces by up to "
-         << 100. * effort.residual
-         << " % of the motion in a step; compare with a run with a smaller "
-            "\"Safety factor\" in section \"Time\"";
-    log.warn(text.str());
-  }
-
-
-  void
-  Run::keep_last_good()
-  {
-    last_good.displacement = state.displacement;
-    last_good.velocity     = state.velocity;
-    last_good.time         = state.time;
-    if (!model.solid.internal_force.has_memory())
-      last_good.memory = state.memory; // for the stress
+    TimerOutput::Scope scope(times.sections, "checkpoint");
+    requests.checkpoint_tried();
+    return checkpoints.write(state, energy);
   }
 
 
   void
   Run::attend()
   {
-    const OutputParameters &output = model.parameters.output;
-    const bool              first =
-      Utilities::MPI::this_mpi_process(log.communicator()) == 0;
-    const std::string stop_file = folder.path() + "/stop";
-
-    // the first rank looks at the clock and the folder; anybody may have got a
-    // signal
-    enum
-    {
-      report,
-      save,
-      stop_now,
-      steps,
-      n_wishes
-    };
-    std::vector<double> mine(n_wishes), wanted(n_wishes);
-    mine[stop_now] = stop_requested();
-    mine[save]     = take_checkpoint_request();
-    if (first)
+    const RunRequests::Requests asked = requests.look(state.step);
+    std::ostringstream          text;
+    if (asked.report)
       {
-        mine[report] = log.progress_is_due();
-        if (output.checkpoint_interval > 0. &&
-            since_checkpoint.wall_time() > 60. * output.checkpoint_interval)
-          mine[save] = 1.;
-        if (folder.exists() && since_stop_file.wall_time() > 0.5)
-          {
-            std::error_code none;
-            mine[stop_now] =
-              std::filesystem::remove(stop_file, none) || mine[stop_now] > 0.;
-            since_stop_file.restart();
-          }
-        const double of_step =
-          since_look.wall_time() / std::max<double>(state.step - last_look, 1.);
-        mine[steps] =
-          std::min(look_interval / std::max(of_step, 1e-9), look_steps);
+        text << std::fixed << std::setprecision(3) << "t = " << state.time
+             << " s  " << times.time_left(state.step, n_steps())
+             << "  energy-balance error " << 100. * energy.relative_error()
+             << " %  " << std::setprecision(1) << times.throughput(state.step)
+             << " MDOF-steps/s";
+        log.progress(double(state.step) / double(n_steps()), text.str());
       }
-    Utilities::MPI::max(mine, log.communicator(), wanted);
-    last_look = state.step;
-    next_look = state.step + 1 + static_cast<unsigned long long>(wanted[steps]);
-    since_look.restart();
-
-    if (wanted[report] > 0.)
-      report_progress();
-    const bool stops = wanted[stop_now] > 0.;
     const bool saved =
-      folder.exists() && (stops || wanted[save] > 0.) && write_checkpoint();
-    if (stops)
+      folder.exists() && (asked.stop || asked.save) && write_checkpoint();
+    if (asked.stop)
       {
         std::ostringstream text;
         text << "Stopped on request at t = " << state.time << " s"
@@ -393,29 +289,24 @@ namespace Voussoir
   void
   Run::abort(const std::string &reason)
   {
+    supervision.check_contact();
+    RunSummary summary = summary_of(*this);
+    summary.end        = RunEnd::stopped;
+    summary.reason     = reason;
     std::string written;
-    check_contact();
     if (folder.exists())
       {
-        const std::string picture =
-          write_fields(observed,
-                       {{&last_good.displacement, {"displacement"}},
-                        {&last_good.velocity, {"velocity"}}},
-                       // cracks have gone on since
-                       model.solid.internal_force.has_memory() ? nullptr :
-                                                                 &last_good,
-                       "last_good",
-                       last_good.time);
+        const std::string picture = supervision.draw_last_good();
         if (!picture.empty())
           written =
             "; the last good state is in " + folder.path() + "/" + picture;
-        write_summary(folder.path(), summary(), "stopped: " + reason, log);
+        write_summary(folder.path(), summary, log);
       }
     std::ostringstream text;
     text << "Stopped at t = " << state.time << " s, because " << reason
          << written
          << ". The time step may be too large for the model: take a smaller "
             "\"Safety factor\" in section \"Time\".";
-    throw RunStopped(text.str());
+    throw StoppedRun(text.str(), summary);
   }
 } // namespace Voussoir

@@ -3,7 +3,6 @@
 #include <voussoir/driver/kept_states.h>
 #include <voussoir/driver/simulation.h>
 #include <voussoir/driver/stored_rest.h>
-#include <voussoir/driver/summary_file.h>
 #include <voussoir/output/field_writer.h>
 
 namespace Voussoir
@@ -36,22 +35,31 @@ namespace Voussoir
     }
 
 
-    /** Refuses what cannot be computed or recorded before that costs time or
-     *  leaves something behind; then the folder is that of this run. */
+    /** The setup, unless it waits for the modes; then what can be refused of it
+     *  is refused all the same, before that costs time or leaves something
+     *  behind. After that the folder is that of this run. */
     std::unique_ptr<RunSetup>
-    checked_setup(const Model      &model,
-                  ResultFolder     &folder,
-                  const RunOptions &options,
-                  Log              &log)
+    early_setup(RunPlan          &plan,
+                ResultFolder     &folder,
+                const RunOptions &options,
+                Log              &log)
     {
-      const Case &parameters = model.parameters;
-      if (parameters.modes.number > 0 && parameters.damping.depends_on_modes())
+      const Case &parameters = plan.model.parameters;
+      check_modes(plan.model);
+      const bool needs_modes =
+        parameters.modes.number > 0 && parameters.damping.depends_on_modes();
+      const bool waits = needs_modes && !options.validate;
+      if (needs_modes)
         log.line("Before the modes are known, ",
-                 parameters.damping.follows_first_mode() ?
+                 !waits && parameters.damping.follows_first_mode() ?
                    "with moduli of another frequency:" :
                    "without damping:");
-      auto setup = std::make_unique<RunSetup>(model, Modes(), folder, log);
-      check_modes(model);
+      std::unique_ptr<RunSetup> setup;
+      if (waits)
+        check_without_damping(plan, folder, log);
+      else
+        setup =
+          std::make_unique<RunSetup>(std::move(plan), Modes(), folder, log);
       if (folder.wanted() && !options.validate)
         folder.claim(log);
       return setup;
@@ -101,6 +109,14 @@ namespace Voussoir
         return std::move(*rest);
       RestState rest = find_rest(model, log);
       kept.keep(rest);
+      // as all later runs, whatever their number of ranks, have it
+      if (model.solid.discretization.reproducible)
+        {
+          if (std::optional<RestState> again = kept.find())
+            return std::move(*again);
+          log.warn("the static state is not kept, so that \"Sums = "
+                   "reproducible\" holds for this number of ranks alone");
+        }
       return rest;
     }
 
@@ -109,41 +125,41 @@ namespace Voussoir
      *  and passes the error on. */
     [[noreturn]] void
     report_lost(const LostEquilibrium &lost,
-                const RunSetup        &setup,
+                const RunPlan         &plan,
+                const RunSetup        *setup,
                 const ResultFolder    &folder,
                 Log                   &log)
     {
-      const RestState     rest(setup.model);
-      const ObservedModel observed =
-        setup.observed(folder.path(),
-                       rest.initial,
-                       rest.initial.material_memory,
-                       nullptr,
-                       log);
       const std::string picture =
-        write_fields(observed,
+        write_fields(plan.observed(log),
+                     folder.path(),
                      {{&lost.before, {"displacement"}},
                       {&lost.moved, {"displacement when it was given up"}}},
-                     nullptr,
-                     "last_good",
-                     0.);
-      write_summary(folder.path(),
-                    setup.summary(log.communicator()),
-                    std::string("stopped: ") + lost.what(),
-                    log);
-      throw RunStopped(std::string(lost.what()) +
-                       (picture.empty() ?
-                          "" :
-                          " The state before this stage and the "
-                          "motion from there are in " +
-                            folder.path() + "/" + picture + "."));
+                     "last_good");
+      RunSummary summary;
+      summary.end    = RunEnd::stopped;
+      summary.reason = lost.what();
+      summary.model  = summary_of(plan.model);
+      if (setup != nullptr)
+        summary.step = summary_of(*setup);
+      write_summary(folder.path(), summary, log);
+      throw StoppedRun(std::string(lost.what()) +
+                         (picture.empty() ?
+                            "" :
+                            " The state before this stage and the "
+                            "motion from there are in " +
+                              folder.path() + "/" + picture + "."),
+                       summary);
     }
 
 
     RestState
-    rest_of(const RunSetup &setup, const ResultFolder &folder, Log &log)
+    rest_of(const RunPlan      &plan,
+            const RunSetup     *setup,
+            const ResultFolder &folder,
+            Log                &log)
     {
-      const Model &model = setup.model;
+      const Model &model = plan.model;
       if (model.parameters.static_state.stage_names().empty())
         return RestState(model);
       try
@@ -163,7 +179,8 @@ namespace Voussoir
         {
           if (!folder.exists())
             throw;
-          report_lost(lost, setup, folder, log);
+          report_lost(
+            lost, setup != nullptr ? setup->plan : plan, setup, folder, log);
         }
     }
 
@@ -185,20 +202,6 @@ namespace Voussoir
         store_modes,
         log);
     }
-
-
-    /** The setup again, if it depends on the modes. */
-    std::unique_ptr<RunSetup>
-    adapted_setup(std::unique_ptr<RunSetup> setup,
-                  const Modes              &modes,
-                  const ResultFolder       &folder,
-                  Log                      &log)
-    {
-      const Model &model = setup->model;
-      if (!model.parameters.damping.depends_on_modes() || modes.list.empty())
-        return setup;
-      return std::make_unique<RunSetup>(model, modes, folder, log);
-    }
   } // namespace
 
 
@@ -208,11 +211,14 @@ namespace Voussoir
     : log(opened_log(parameters, options, communicator))
     , folder(parameters, options, log)
     , model(parameters, log)
-    , checked(checked_setup(model, folder, options, log))
+    , plan(model, log)
+    , early(early_setup(plan, folder, options, log))
     , found(options.validate ? RestState(model) :
-                               rest_of(*checked, folder, log))
+                               rest_of(plan, early.get(), folder, log))
     , modes(options.validate ? Modes() : modes_of(model, found, folder, log))
-    , setup(adapted_setup(std::move(checked), modes, folder, log))
+    , setup(early ?
+              std::move(early) :
+              std::make_unique<RunSetup>(std::move(plan), modes, folder, log))
     , rest(handed_over(std::move(found), model, setup->internal_force, log))
     , run(rest, modes, folder, std::move(setup), log)
   {}

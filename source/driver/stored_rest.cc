@@ -96,9 +96,6 @@ namespace Voussoir
 
     StateContent content = content_of(model, rest);
     read_state(file, content, communicator);
-    for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
-      if (PointHistory *history = initial.material_memory.of(m))
-        history->load();
     if (rest.contact)
       rest.contact->load(header.at("contact"));
     rest.summary = header.at("summary");

@@ -1,8 +1,8 @@
 #include <voussoir/base/error.h>
-#include <voussoir/base/parse_numbers.h>
 #include <voussoir/base/text.h>
 #include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/simulation.h>
+#include <voussoir/driver/strength_reduction.h>
 #include <voussoir/driver/study.h>
 #include <voussoir/driver/study_statistics.h>
 #include <voussoir/files/table.h>
@@ -62,25 +62,6 @@ namespace Voussoir
     }
 
 
-    /** Whether this is the summary of a run, which has a verdict. */
-    bool
-    is_summary(const nlohmann::json &json)
-    {
-      return json.is_object() && json.contains("verdict") &&
-             json.at("verdict").is_string();
-    }
-
-
-    /** The summary that a run has left in a file; null: none. */
-    nlohmann::json
-    read_summary(const std::string &name, const MPI_Comm communicator)
-    {
-      const auto json =
-        nlohmann::json::parse(read_text(name, communicator), nullptr, false);
-      return is_summary(json) ? json : nlohmann::json();
-    }
-
-
     /** What a study has noted of a run: "identity" and, once the run has ended,
      *  "summary". Null: the run has not been begun. */
     nlohmann::json
@@ -101,9 +82,9 @@ namespace Voussoir
 
     /** What became of a run, without the advice that follows. */
     std::string
-    verdict_of(const nlohmann::json &summary)
+    verdict_of(const RunSummary &summary)
     {
-      const std::string verdict = summary.value("verdict", "no verdict");
+      const std::string verdict = summary.verdict();
       return verdict.substr(0, verdict.find(". "));
     }
 
@@ -138,91 +119,17 @@ namespace Voussoir
         object[entry] = value;
       return object;
     }
-
-
-    bool
-    ends_with(const std::string &text, const std::string &end)
-    {
-      return text.size() >= end.size() &&
-             text.compare(text.size() - end.size(), end.size(), end) == 0;
-    }
-
-
-    /** Whether an entry of a material or an interface says how much it bears
-     *  before it breaks, or on the way. */
-    bool
-    is_strength(const std::string &entry)
-    {
-      if (entry.rfind("Materials/", 0) != 0 &&
-          entry.rfind("Interfaces/", 0) != 0)
-        return false;
-      const std::string last = entry.substr(entry.rfind('/') + 1);
-      for (const std::string part : {"trength",
-                                     "ohesion",
-                                     "riction",
-                                     "cut-off",
-                                     "nergy",
-                                     "Yield stress"})
-        if (last.find(part) != std::string::npos)
-          return last != "Strength increase";
-      return false;
-    }
-
-
-    /** Strengths of a case that are above zero and not among those reduced, as
-     *  "Entry = value". */
-    std::vector<std::string>
-    strengths_left(const Case                     &parameters,
-                   const std::vector<std::string> &reduced)
-    {
-      std::vector<std::string> result;
-      for (const nlohmann::json &line : identity_of(parameters))
-        {
-          const std::string           text   = line;
-          const auto                  equals = text.find(" =");
-          const std::string           entry  = text.substr(0, equals);
-          const std::optional<double> value =
-            parse_number(Utilities::trim(text.substr(equals + 2)));
-          if (is_strength(entry) && value && *value > 0. &&
-              std::find(reduced.begin(), reduced.end(), entry) == reduced.end())
-            result.push_back(entry + " = " + number_text(*value));
-        }
-      return result;
-    }
-
-
-    /** A strength divided by what reduces it; of an angle of friction the
-     *  tangent is. */
-    std::string
-    reduced(const std::string &entry,
-            const std::string &strength,
-            const std::string &divisor)
-    {
-      const std::optional<double> whole = parse_number(strength),
-                                  by    = parse_number(divisor);
-      if (!whole)
-        throw UserError("\"Reduced strengths\" in section \"Study\" names \"" +
-                        entry +
-                        "\", to which this file gives no number; set it, or "
-                        "leave it out there.");
-      if (!is_strength(entry))
-        throw UserError("\"Reduced strengths\" in section \"Study\" names \"" +
-                        entry +
-                        "\", which is no strength, cohesion, friction or "
-                        "fracture energy of a material or an interface; leave "
-                        "it out there, or vary it by \"Vary\".");
-      if (!by || *by <= 0.)
-        throw UserError("Section \"Study\" has a " + strength_reduction +
-                        " of \"" + divisor + "\"; give numbers above 0.");
-      if (ends_with(entry, "Friction angle"))
-        {
-          constexpr double degree = numbers::PI / 180.;
-          return number_text(std::atan(std::tan(*whole * degree) / *by) /
-                             degree);
-        }
-      return number_text(*whole / *by);
-    }
   } // namespace
+
+
+  Study::Outcome::Outcome(const StudyValues &values,
+                          const std::string &folder,
+                          const RunSummary  &summary)
+    : values(values)
+    , folder(folder)
+    , summary(summary)
+    , numbers(summary)
+  {}
 
 
   Study::Study(const ParameterFile &file,
@@ -296,8 +203,9 @@ namespace Voussoir
     for (const auto &[entry, value] : values)
       if (entry == strength_reduction)
         for (const std::string &strength : split_list(parameters.reduced, ';'))
-          changes.push_back(strength + "=" +
-                            reduced(strength, changed.given(strength), value));
+          changes.push_back(
+            strength + "=" +
+            reduced_strength(strength, changed.given(strength), value));
     return changed.with(changes);
   }
 
@@ -358,15 +266,15 @@ namespace Voussoir
   void
   Study::conclude() const
   {
-    const auto number_of = [this](bool (*is)(const nlohmann::json &)) {
+    const auto number_of = [this](const RunEnd end) {
       return std::count_if(outcomes.begin(),
                            outcomes.end(),
-                           [is](const Outcome &run) {
-                             return is(run.summary);
+                           [end](const Outcome &run) {
+                             return run.summary.end == end;
                            });
     };
-    const auto n_failed  = number_of(has_failed),
-               n_stopped = number_of(was_stopped),
+    const auto n_failed  = number_of(RunEnd::failed),
+               n_stopped = number_of(RunEnd::stopped),
                n_stand = std::ptrdiff_t(outcomes.size()) - n_failed - n_stopped;
     const std::string count =
       "Of " + counted(outcomes.size(), "run", "runs") + " in \"" + folder +
@@ -421,18 +329,17 @@ namespace Voussoir
     // of no interest where all is done anew
     const nlohmann::json known =
       options.overwrite ? nlohmann::json() : read_record(record, group);
-    const bool has_ended     = known.is_object() && known.contains("summary"),
-               has_been_done = has_ended && !has_failed(known.at("summary"));
+    const bool has_ended = known.is_object() && known.contains("summary");
+    RunSummary summary;
+    if (has_ended)
+      known.at("summary").get_to(summary);
+    const bool has_been_done = has_ended && summary.end != RunEnd::failed;
     // entries of a run that failed may have been mended
     if (known.is_object() && (has_been_done || !has_ended))
       check_same(known.at("identity"), identity, run_folder);
-    nlohmann::json summary;
-    const Timer    clock_of_run;
+    const Timer clock_of_run;
     if (has_been_done)
-      {
-        summary = known.at("summary");
-        say(description(values) + ": taken, " + verdict_of(summary));
-      }
+      say(description(values) + ": taken, " + verdict_of(summary));
     else
       {
         const auto write = [&](const nlohmann::json &text) {
@@ -451,8 +358,7 @@ namespace Voussoir
         ++n_done;
         seconds_of_runs += clock_of_run.wall_time();
         const std::size_t expected = n_expected(), ended = outcomes.size() + 1;
-        say(description(values) + ": " +
-            summary.value("verdict", "no verdict") + ", " +
+        say(description(values) + ": " + summary.verdict() + ", " +
             duration_text(clock_of_run.wall_time()) +
             (ended < expected ? ", about " +
                                   duration_text(double(expected - ended) *
@@ -460,12 +366,12 @@ namespace Voussoir
                                   " left" :
                                 std::string()));
       }
-    outcomes.push_back({values, run_folder, summary});
+    outcomes.emplace_back(values, run_folder, summary);
     return outcomes.back();
   }
 
 
-  nlohmann::json
+  RunSummary
   Study::do_run(const Case        &run,
                 const std::string &run_folder,
                 const bool         may_go_on) const
@@ -477,29 +383,28 @@ namespace Voussoir
     how.restart =
       may_go_on &&
       !Checkpoint(run_folder + "/checkpoint", group).newest(damaged).empty();
+    RunSummary summary;
     try
       {
-        Simulation simulation(run, how, group);
-        simulation.run.march();
+        summary = Simulation(run, how, group).run.march();
+      }
+    catch (const StoppedRun &stopped)
+      {
+        summary = stopped.summary;
       }
     catch (const RunStopped &stopped)
       {
-        const nlohmann::json summary =
-          read_summary(run_folder + "/summary.json", group);
-        return summary.is_object() && was_stopped(summary) ?
-                 summary :
-                 nlohmann::json{
-                   {"verdict", std::string("stopped: ") + stopped.what()}};
+        summary.end    = RunEnd::stopped;
+        summary.reason = stopped.what();
       }
     catch (const UserError &error)
       {
-        return {{"verdict", std::string("failed: ") + error.what()}};
+        summary.end    = RunEnd::failed;
+        summary.reason = error.what();
       }
-    const nlohmann::json summary =
-      read_summary(run_folder + "/summary.json", group);
-    return summary.is_object() ?
-             summary :
-             nlohmann::json{{"verdict", "failed: it has left no summary.json"}};
+    // what the first rank knows
+    return nlohmann::json::parse(
+      Utilities::MPI::broadcast(group, nlohmann::json(summary).dump()));
   }
 
 
@@ -507,11 +412,11 @@ namespace Voussoir
   Study::is_met(StudyValues values, const double value)
   {
     values.emplace_back(parameters.varied_to_limit, number_text(value));
-    const Outcome        outcome = outcome_of(values);
-    const nlohmann::json summary = outcome.summary;
-    const std::string    where =
+    const Outcome     outcome = outcome_of(values);
+    const RunSummary &summary = outcome.summary;
+    const std::string where =
       "At " + parameters.varied_to_limit + " = " + number_text(value) + " ";
-    if (has_failed(summary))
+    if (summary.end == RunEnd::failed)
       throw UserError(where + "the run in \"" + outcome.folder + "\" " +
                       verdict_of(summary) +
                       ", which says nothing about the criterion of section "
@@ -526,7 +431,7 @@ namespace Voussoir
             return true;
           }
       }
-    if (was_stopped(summary))
+    if (summary.end == RunEnd::stopped)
       throw UserError(
         where + "the run in \"" + outcome.folder + "\" was " +
         verdict_of(summary) +
@@ -610,7 +515,9 @@ namespace Voussoir
       {
         const nlohmann::json theirs = nlohmann::json::parse(part);
         for (const nlohmann::json &outcome : theirs.at("outcomes"))
-          outcomes.push_back({outcome.at(0), outcome.at(1), outcome.at(2)});
+          outcomes.emplace_back(outcome.at(0).get<StudyValues>(),
+                                outcome.at(1).get<std::string>(),
+                                outcome.at(2).get<RunSummary>());
         for (const nlohmann::json &limit : theirs.at("limits"))
           limits.push_back({limit.at(0), limit.at(1), limit.at(2)});
       }
@@ -627,7 +534,7 @@ namespace Voussoir
                                               all_results().dump(2) + '\n'}};
     if (!parameters.spread.empty() &&
         !std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome &run) {
-          return has_failed(run.summary);
+          return run.summary.end == RunEnd::failed;
         }))
       files["/study_statistics.csv"] = statistics();
     for (const auto &[name, text] : files)
@@ -660,11 +567,11 @@ namespace Voussoir
         for (const Outcome &outcome : outcomes)
           {
             // what failed is not beyond the others
-            if (has_failed(outcome.summary))
+            if (outcome.summary.end == RunEnd::failed)
               continue;
             samples.push_back({outcome.values, {}});
             for (const SummaryNumber &number : numbers)
-              samples.back().quantities.push_back(number.in(outcome.summary));
+              samples.back().quantities.push_back(number.in(outcome.numbers));
           }
       }
     return statistics_table(samples, parameters.spread_entries(), names);
@@ -677,7 +584,7 @@ namespace Voussoir
     const std::vector<SummaryNumber> numbers = parameters.numbers();
     const auto                       is_in   = [](const SummaryNumber &number) {
       return [&number](const Outcome &outcome) {
-        return number.in(outcome.summary).has_value();
+        return number.in(outcome.numbers).has_value();
       };
     };
     std::vector<std::string> heading;
@@ -699,7 +606,7 @@ namespace Voussoir
           line.push_back(item.second);
         for (const SummaryNumber *number : columns)
           {
-            const std::optional<double> value = number->in(outcome.summary);
+            const std::optional<double> value = number->in(outcome.numbers);
             line.push_back(value ? number_text(*value) : "");
           }
         line.push_back(verdict_of(outcome.summary));
@@ -716,10 +623,10 @@ namespace Voussoir
     for (const Outcome &outcome : outcomes)
       {
         nlohmann::json run{{"folder", outcome.folder},
-                           {"verdict", outcome.summary.value("verdict", "")},
+                           {"verdict", outcome.summary.verdict()},
                            {"values", as_object(outcome.values)}};
         for (const SummaryNumber &number : parameters.numbers())
-          if (const std::optional<double> value = number.in(outcome.summary))
+          if (const std::optional<double> value = number.in(outcome.numbers))
             run["quantities"][number.path] = *value;
         all["runs"].push_back(run);
       }

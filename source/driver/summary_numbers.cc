@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parse_numbers.h>
+#include <voussoir/driver/run_summary.h>
 #include <voussoir/driver/summary_numbers.h>
 
 #include <deal.II/base/utilities.h>
@@ -118,30 +119,16 @@ namespace Voussoir
 
 
   std::pair<std::optional<double>, bool>
-  Criterion::look(const nlohmann::json &summary) const
+  Criterion::look(const RunSummary &summary) const
   {
+    const bool was_stopped = summary.end == RunEnd::stopped;
     if (!number)
-      return {{}, was_stopped(summary)};
+      return {{}, was_stopped};
     const std::optional<double> value = number->in(summary);
-    if (!value && !was_stopped(summary))
+    if (!value && !was_stopped)
       throw UserError("The summary of the run has no number \"" + number->path +
                       "\"; take one that its summary.json has, "
                       "or add the observer that gives it.");
     return {value, value && (above ? *value > limit : *value < limit)};
-  }
-
-
-  bool
-  was_stopped(const nlohmann::json &summary)
-  {
-    return summary.value("verdict", "").rfind("stopped: ", 0) == 0;
-  }
-
-
-  bool
-  has_failed(const nlohmann::json &summary)
-  {
-    return !summary.is_object() ||
-           summary.value("verdict", "").rfind("failed: ", 0) == 0;
   }
 } // namespace Voussoir

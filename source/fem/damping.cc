@@ -125,13 +125,8 @@ namespace Voussoir
 
 
   Damping::Damping(const DampingParameters   &parameters,
-                   const std::vector<double> &natural_frequencies,
-                   const double               undamped_limit)
-    // xi = pi f beta; the mesh ends at w = 2 / (its stable step)
-    : mesh_viscosity(
-        std::min(parameters.mesh_viscosity * undamped_limit,
-                 0.005 / (numbers::PI * parameters.highest_frequency)))
-    , parameters(parameters)
+                   const std::vector<double> &natural_frequencies)
+    : parameters(parameters)
     , reference(parse_number(parameters.reference).value_or(usual_reference))
   {
     if (parameters.model == DampingModel::maxwell && parameters.ratio > 0.)
@@ -151,6 +146,16 @@ namespace Voussoir
     if (!parameters.modes.empty())
       fit_rayleigh(natural_frequencies.at(parameters.modes[0] - 1),
                    natural_frequencies.at(parameters.modes[1] - 1));
+  }
+
+
+  void
+  Damping::add_mesh_viscosity(const double undamped_limit)
+  {
+    // xi = pi f beta; the mesh ends at w = 2 / (its stable step)
+    mesh_viscosity =
+      std::min(parameters.mesh_viscosity * undamped_limit,
+               0.005 / (numbers::PI * parameters.highest_frequency));
   }
 
 

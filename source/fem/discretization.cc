@@ -1,6 +1,5 @@
 #include <voussoir/base/error.h>
 #include <voussoir/fem/discretization.h>
-#include <voussoir/fem/one_point_cell.h>
 #include <voussoir/mesh/mesh_check.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -36,6 +35,15 @@ namespace Voussoir
       "elastic\" has one point in materials that stay elastic and Gauss points "
       "in those that crack or yield: for a dam in much rock. The mass is "
       "always lumped at the Gauss-Lobatto nodes.");
+    add_option(prm,
+               "Sums",
+               sums,
+               "As dealt: what cells bring to a node is summed in the order in "
+               "which the partition deals them, so that results on other "
+               "numbers of ranks differ by round-off, which cracks and joints "
+               "that clap multiply. Reproducible: so that they do not depend "
+               "on the number of ranks, bit for bit, for a small price; "
+               "doc/running.md says which results.");
   }
 
 
@@ -78,13 +86,11 @@ namespace Voussoir
                                  const std::vector<bool>        &has_memory)
     : grid(grid)
     , degree(parameters.degree)
+    , reproducible(parameters.sums == Sums::reproducible)
     , fe(FE_Q<3>(parameters.degree), 3)
     , dof_handler(grid.triangulation())
-    , one_point_of_material(
-        [parameters, has_memory](const unsigned int material) {
-          return parameters.one_point(material < has_memory.size() &&
-                                      has_memory[material]);
-        })
+    , parameters(parameters)
+    , has_memory(has_memory)
   {
     check_size(grid.triangulation().n_global_active_cells(),
                degree,
@@ -125,8 +131,7 @@ namespace Voussoir
     crack_share = share_of_crack(quadratures[0], degree);
     if (parameters.one_point(false))
       {
-        // the points of the second are the corners, for OnePointCell
-        static_assert(OnePointCell::corner_quadrature == 1);
+        static_assert(corner_quadrature == 1);
         quadratures.push_back(QGaussLobatto<1>(2));
         data.mapping_update_flags |= update_quadrature_points;
       }
@@ -136,6 +141,16 @@ namespace Voussoir
                          &hanging_nodes},
                        quadratures,
                        data);
+    if (reproducible)
+      {
+        use_own_geometry();
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            for (const unsigned int line : cell->line_indices())
+              longest_edge =
+                std::max(longest_edge, cell->line(line)->diameter());
+        longest_edge = Utilities::MPI::max(longest_edge, grid.communicator());
+      }
 
     places.resize(grid.triangulation().n_locally_owned_active_cells());
     for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
@@ -172,7 +187,8 @@ namespace Voussoir
   bool
   Discretization::has_one_point(const unsigned int material) const
   {
-    return one_point_of_material(material);
+    return parameters.one_point(material < has_memory.size() &&
+                                has_memory[material]);
   }
 
 
@@ -180,6 +196,68 @@ namespace Voussoir
   Discretization::points(const unsigned int material) const
   {
     return has_one_point(material) ? centre : matrix_free.get_quadrature();
+  }
+
+
+  void
+  Discretization::use_own_geometry()
+  {
+    using namespace internal::MatrixFreeFunctions;
+    auto &geometry = const_cast<MappingInfo<3, double, Lanes> &>(
+      matrix_free.get_mapping_info());
+    const unsigned int n_batches = matrix_free.n_cell_batches();
+    std::fill(geometry.cell_type.begin(), geometry.cell_type.end(), general);
+    for (auto &data : geometry.cell_data)
+      {
+        const Quadrature<3> &quadrature = data.descriptor[0].quadrature;
+        const unsigned int   n          = quadrature.size();
+        const bool has_points = !data.quadrature_point_offsets.empty();
+        data.JxW_values.resize(n * n_batches);
+        data.jacobians[0].resize(n * n_batches);
+        if (has_points)
+          data.quadrature_points.resize(n * n_batches);
+        for (unsigned int batch = 0; batch < n_batches; ++batch)
+          {
+            data.data_index_offsets[batch] = n * batch;
+            if (has_points)
+              data.quadrature_point_offsets[batch] = n * batch;
+            std::array<Point<3, Lanes>, 8> corners;
+            const unsigned int             n_cells =
+              matrix_free.n_active_entries_per_cell_batch(batch);
+            for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+              for (unsigned int v = 0; v < 8; ++v)
+                for (unsigned int d = 0; d < 3; ++d)
+                  corners[v][d][lane] =
+                    matrix_free
+                      .get_cell_iterator(batch, std::min(lane, n_cells - 1))
+                      ->vertex(v)[d];
+            for (unsigned int q = 0; q < n; ++q)
+              {
+                const Point<3>     &unit = quadrature.point(q);
+                Tensor<2, 3, Lanes> jacobian;
+                Point<3, Lanes>     place;
+                for (unsigned int v = 0; v < 8; ++v)
+                  {
+                    const Tensor<1, 3> gradient =
+                      GeometryInfo<3>::d_linear_shape_function_gradient(unit,
+                                                                        v);
+                    const double value =
+                      GeometryInfo<3>::d_linear_shape_function(unit, v);
+                    for (unsigned int d = 0; d < 3; ++d)
+                      {
+                        place[d] += value * corners[v][d];
+                        for (unsigned int e = 0; e < 3; ++e)
+                          jacobian[d][e] += gradient[e] * corners[v][d];
+                      }
+                  }
+                data.JxW_values[n * batch + q] =
+                  determinant(jacobian) * quadrature.weight(q);
+                data.jacobians[0][n * batch + q] = transpose(invert(jacobian));
+                if (has_points)
+                  data.quadrature_points[n * batch + q] = place;
+              }
+          }
+      }
   }
 
 

@@ -13,7 +13,8 @@ namespace Voussoir
                  const std::vector<double> &factors,
                  const unsigned int         first,
                  const unsigned int         last,
-                 const Run                 &run)
+                 const Run                 &run,
+                 Rounding                  *rounding = nullptr)
     {
       const auto &material_of_batch = discretization.material_of_batch;
       for (unsigned int begin = first; begin < last;)
@@ -28,7 +29,9 @@ namespace Voussoir
                         begin,
                         end,
                         discretization.has_one_point(material),
-                        factors[material]});
+                        factors[material],
+                        discretization.reproducible,
+                        rounding});
           begin = end;
         }
     }
@@ -46,19 +49,22 @@ namespace Voussoir
     CellLoop
     on_runs(const Discretization      &discretization,
             const std::vector<double> &factors,
-            const Run                 &run)
+            const Run                 &run,
+            Rounding                  *rounding = nullptr)
     {
-      return [&](const Discretization::MatrixFree &,
-                 Vector                                      &dst,
-                 const Vector                                &src,
-                 const std::pair<unsigned int, unsigned int> &range) {
-        for_each_run(discretization,
-                     factors,
-                     range.first,
-                     range.second,
-                     [&](const unsigned int material, const CellRange &cells) {
-                       run(material, cells, dst, src);
-                     });
+      return [&, rounding](const Discretization::MatrixFree &,
+                           Vector                                      &dst,
+                           const Vector                                &src,
+                           const std::pair<unsigned int, unsigned int> &range) {
+        for_each_run(
+          discretization,
+          factors,
+          range.first,
+          range.second,
+          [&](const unsigned int material, const CellRange &cells) {
+            run(material, cells, dst, src);
+          },
+          rounding);
       };
     }
   } // namespace
@@ -123,7 +129,18 @@ namespace Voussoir
   }
 
 
-  void
+  double
+  InternalForce::limit_of_forces(const double strain) const
+  {
+    double modulus = 0.;
+    for (unsigned int m = 0; m < kernels.size(); ++m)
+      modulus = std::max(modulus, factors[m] * kernels[m]->wave_modulus());
+    return strain * modulus * discretization.longest_edge *
+           discretization.longest_edge;
+  }
+
+
+  bool
   InternalForce::sweep(Vector           &force,
                        const SweepInput &input,
                        MaterialMemory   &memory,
@@ -140,7 +157,32 @@ namespace Voussoir
       else
         kernels[material]->add_force(cells, input, dst);
     };
-    const CellLoop loop = on_runs(discretization, factors, run);
+    // beyond it linear kinematics mean nothing
+    constexpr double largest_strain = 1. / 16.;
+    Rounding         rounding(limit_of_forces(largest_strain));
+    const CellLoop   loop =
+      on_runs(discretization,
+              factors,
+              run,
+              discretization.reproducible ? &rounding : nullptr);
+
+    // what a sum begins with must be in quanta, too
+    const auto begin_sums = [&](const unsigned int begin,
+                                const unsigned int end) {
+      before(begin, end);
+      if (!discretization.reproducible)
+        return;
+      double *f = force.begin();
+      for (unsigned int first = begin; first < end; first += Lanes::size())
+        {
+          const unsigned int n =
+            std::min<unsigned int>(Lanes::size(), end - first);
+          Lanes parts = 0.;
+          std::copy_n(f + first, n, parts.begin());
+          rounding(&parts, 1);
+          std::copy_n(parts.begin(), n, f + first);
+        }
+    };
 
     // The library overlaps the exchange of one source vector with the cell
     // work; the others are exchanged beforehand.
@@ -150,10 +192,10 @@ namespace Voussoir
       input.displacement.update_ghost_values();
     if (input.damping != Damping::by_material)
       discretization.matrix_free.cell_loop(
-        loop, force, input.filtered, before, after);
+        loop, force, input.filtered, begin_sums, after);
     else
       {
-        before(0, force.locally_owned_size());
+        begin_sums(0, force.locally_owned_size());
         input.damping_memory->update_ghost_values();
         discretization.matrix_free.cell_loop(
           loop, force, input.filtered, {}, after);
@@ -161,6 +203,7 @@ namespace Voussoir
       }
     if (reads_undamped)
       input.displacement.zero_out_ghost_values();
+    return !rounding.exceeded();
   }
 
 
@@ -176,10 +219,31 @@ namespace Voussoir
                          const Vector &) {
       kernels[material]->add_force(cells, input, dst);
     };
-    discretization.matrix_free.cell_loop(on_runs(discretization, factors, run),
-                                         force,
-                                         input.filtered,
-                                         true);
+    const auto loop = [&](Rounding *rounding) {
+      discretization.matrix_free.cell_loop(
+        on_runs(discretization, factors, run, rounding),
+        force,
+        input.filtered,
+        true);
+    };
+    if (!discretization.reproducible)
+      loop(nullptr);
+    else
+      {
+        const double longest = discretization.longest_edge;
+        double       motion  = input.filtered.linfty_norm();
+        if (by_material)
+          motion += input.damping_memory->linfty_norm();
+        force = 0.;
+        for (bool exceeded = motion > 0.; exceeded; motion *= 256.)
+          {
+            Rounding rounding(limit_of_forces(motion / longest));
+            loop(&rounding);
+            exceeded =
+              Utilities::MPI::logical_or(rounding.exceeded(),
+                                         discretization.grid.communicator());
+          }
+      }
     if (by_material)
       input.damping_memory->zero_out_ghost_values();
   }

@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/fem/lanczos.h>
+#include <voussoir/fem/nodal_values.h>
 
 #include <deal.II/lac/tridiagonal_matrix.h>
 
@@ -10,8 +11,12 @@ namespace Voussoir
   double
   largest_eigenvalue(const Vector &start,
                      const Vector &inverse_mass,
-                     const std::function<void(Vector &, const Vector &)> &apply)
+                     const std::function<void(Vector &, const Vector &)> &apply,
+                     const bool reproducible)
   {
+    const auto norm_of = [&](const Vector &x) {
+      return reproducible ? std::sqrt(product(x, x, true)) : x.l2_norm();
+    };
     constexpr unsigned int max_iterations = 10000;
     Vector                 root(inverse_mass); // M^-1/2
     for (double &entry : root)
@@ -21,7 +26,7 @@ namespace Voussoir
     for (unsigned int i = 0; i < q.locally_owned_size(); ++i)
       if (root.local_element(i) == 0.)
         q.local_element(i) = 0.;
-    const double norm = q.l2_norm();
+    const double norm = norm_of(q);
     if (norm == 0.)
       return 0.; // all is held
     q /= norm;
@@ -35,11 +40,11 @@ namespace Voussoir
         scaled.scale(root);
         apply(w, scaled);
         w.scale(root);
-        alpha.push_back(w * q);
+        alpha.push_back(product(w, q, reproducible));
         w.add(-alpha.back(), q);
         if (k > 0)
           w.add(-beta.back(), previous);
-        beta.push_back(w.l2_norm());
+        beta.push_back(norm_of(w));
         if (!std::isfinite(alpha.back() + beta.back()))
           throw UserError("The stiffness over the mass of the model is no "
                           "finite number, so no time step can be found; look "

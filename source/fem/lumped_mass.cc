@@ -13,6 +13,7 @@ namespace Voussoir
              discretization.fe.base_element(0),
              QGaussLobatto<3>(discretization.degree + 1),
              update_JxW_values)
+    , from_corners(discretization.reproducible)
     , volumes(discretization.fe.base_element(0).n_dofs_per_cell())
   {
     // the points are the nodes, in lexicographic instead of hierarchic order
@@ -25,6 +26,19 @@ namespace Voussoir
   const std::vector<double> &
   NodalVolumes::of(const Triangulation<3>::active_cell_iterator &cell)
   {
+    if (from_corners)
+      {
+        // FEValues keep the numbers of the cell before if it looks the same
+        for (unsigned int v = 0; v < 8; ++v)
+          {
+            Tensor<2, 3> edges;
+            for (unsigned int k = 0; k < 3; ++k)
+              edges[k] =
+                cell->vertex(v | (1 << k)) - cell->vertex(v & ~(1 << k));
+            volumes[v] = 0.125 * determinant(edges);
+          }
+        return volumes;
+      }
     values.reinit(cell);
     for (unsigned int q = 0; q < volumes.size(); ++q)
       volumes[node_of_point[q]] = values.JxW(q);
@@ -45,6 +59,8 @@ namespace Voussoir
                 discretization.relevant_dofs,
                 communicator);
     Vector         full_driven(full);
+    using Masses = std::array<double, 2>; // full and driven
+    std::vector<std::pair<types::global_dof_index, Masses>> records;
 
     const auto            &scalar = discretization.fe.base_element(0);
     NodalVolumes           nodal_volumes(discretization);
@@ -67,6 +83,17 @@ namespace Voussoir
                   cell_driven[i] = driven_density[material] * volumes[j];
                 }
             }
+          if (discretization.reproducible)
+            {
+              const auto nodes = discretization.cell_nodes(cell);
+              for (unsigned int j = 0; j < nodes.size(); ++j)
+                for (const auto &share : discretization.carriers(nodes[j]))
+                  records.push_back(
+                    {share.node,
+                     {{share.weight * density[material] * volumes[j],
+                       share.weight * driven_density[material] * volumes[j]}}});
+              continue;
+            }
           cell->get_dof_indices(dofs);
           // row sum of C^T M C for the hanging nodes
           discretization.hanging_nodes.distribute_local_to_global(cell_mass,
@@ -78,6 +105,12 @@ namespace Voussoir
         }
     full.compress(VectorOperation::add);
     full_driven.compress(VectorOperation::add);
+    for (const auto &[node, masses] : discretization.send_to_owners(records))
+      for (unsigned int d = 0; d < 3; ++d)
+        {
+          full.local_element(3 * node + d) += masses[0];
+          full_driven.local_element(3 * node + d) += masses[1];
+        }
     total = sum_over_ranks(total, communicator);
 
     for (unsigned int i = 0; i < mass.locally_owned_size(); ++i)

@@ -58,10 +58,10 @@ namespace Voussoir
   }
 
 
-  double
-  NodalTerms::kinetic_energy(const Vector &velocity) const
+  Sum
+  NodalTerms::kinetic_energy(const Vector &velocity, const bool exact) const
   {
-    double sum = 0.;
+    Sum sum(exact);
     for (unsigned int slot = 0; slot < nodes.size(); ++slot)
       {
         const Tensor<1, 3> v = node_value(velocity, nodes[slot]);
@@ -71,11 +71,12 @@ namespace Voussoir
   }
 
 
-  double
+  Sum
   NodalTerms::spring_energy(const Vector &displacement,
-                            const Vector &previous) const
+                            const Vector &previous,
+                            const bool    exact) const
   {
-    double sum = 0.;
+    Sum sum(exact);
     for (unsigned int slot = 0; slot < nodes.size(); ++slot)
       sum += 0.5 * (node_value(displacement, nodes[slot]) *
                     (springs[slot] * node_value(previous, nodes[slot])));

@@ -1,4 +1,5 @@
 #include <voussoir/base/mpi.h>
+#include <voussoir/base/reproducible_sum.h>
 #include <voussoir/fem/nodal_values.h>
 
 namespace Voussoir
@@ -16,6 +17,18 @@ namespace Voussoir
     discretization.hanging_nodes.distribute(full);
     full.update_ghost_values();
     return full;
+  }
+
+
+  double
+  product(const Vector &a, const Vector &b, const bool reproducible)
+  {
+    if (!reproducible)
+      return a * b;
+    std::vector<double> terms(a.locally_owned_size());
+    for (unsigned int i = 0; i < terms.size(); ++i)
+      terms[i] = a.local_element(i) * b.local_element(i);
+    return reproducible_sum(terms, a.get_mpi_communicator());
   }
 
 

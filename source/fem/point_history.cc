@@ -7,13 +7,15 @@ namespace Voussoir
   PointHistory::PointHistory(const Discretization &discretization,
                              const unsigned int    material,
                              const unsigned int    width)
-    : n_numbers(width)
+    : losses(discretization.reproducible)
+    , n_numbers(width)
   {
     if (width == 0)
       return;
     const auto &matrix_free = discretization.matrix_free;
     Points      found;
-    found.per_cell = discretization.points(material).size();
+    found.lanes_are_alone = discretization.reproducible;
+    found.per_cell        = discretization.points(material).size();
     found.slot_of_batch.assign(matrix_free.n_cell_batches(),
                                numbers::invalid_unsigned_int);
     unsigned int n_slots = 0;
@@ -161,67 +163,85 @@ namespace Voussoir
   } // namespace
 
 
+  void
+  ActivePoint::forget_elastic()
+  {
+    const Lanes known = band;
+    if (std::all_of(known.begin(), known.end(), [](const double width) {
+          return width > 0.;
+        }))
+      return;
+    const double intact = ActivePoint().share[0];
+    for_each_number(*this, [&](Lanes &number) {
+      number = compare_and_apply_mask<SIMDComparison::equal>(
+        known, Lanes(0.), Lanes(&number == &share ? intact : 0.), number);
+    });
+  }
+
+
   KeyedValues
   PointHistory::checkpoint_values()
   {
-    const unsigned int of_cell =
-      n_points() * (n_numbers + 1 + n_of_active_point());
-    packed.assign(points->cells.size() * of_cell, 0.);
-    exchange(false);
-    KeyedValues values{of_cell, {}};
-    for (unsigned int i = 0; i < points->cells.size(); ++i)
-      values.items.emplace_back(Grid::global_key(points->cells[i].first),
-                                packed.data() + i * values.width);
+    KeyedValues values{n_points() * (n_numbers + 1 + n_of_active_point()),
+                       {},
+                       [this](const std::size_t cell, double *row) {
+                         pack(points->cells[cell].second, row);
+                       },
+                       [this](const std::size_t cell, const double *row) {
+                         unpack(points->cells[cell].second, row);
+                       }};
+    for (const auto &cell : points->cells)
+      values.items.emplace_back(Grid::global_key(cell.first), nullptr);
     return values;
   }
 
 
   void
-  PointHistory::load()
+  PointHistory::pack(const Place &place, double *row) const
   {
-    exchange(true);
-    packed.clear();
+    const unsigned int batch = place.batch, lane = place.lane;
+    for (unsigned int q = 0; q < n_points(); ++q)
+      {
+        for (unsigned int i = 0; i < n_numbers; ++i)
+          *row++ = values(batch, q)[i][lane];
+        *row++ = imbalances[index(batch, q)][lane];
+        // points of batches that are elastic leave zeros
+        if (is_active(batch, q) &&
+            (!lanes_are_alone() || active_point(batch, q).band[lane] > 0.))
+          {
+            ActivePoint point = active_point(batch, q);
+            for_each_number(point, [&](const Lanes &number) {
+              *row++ = number[lane];
+            });
+          }
+        else
+          {
+            std::fill_n(row, n_of_active_point(), 0.);
+            row += n_of_active_point();
+          }
+      }
   }
 
 
   void
-  PointHistory::exchange(const bool load)
+  PointHistory::unpack(const Place &place, const double *row)
   {
-    auto         item  = packed.begin();
-    unsigned int lane  = 0;
-    const auto   trade = [&](Lanes &number) {
-      if (load)
-        number[lane] = *item++;
-      else
-        *item++ = number[lane];
-    };
-    for (const auto &place : points->cells)
-      for (unsigned int q = 0; q < n_points(); ++q)
-        {
-          const unsigned int batch = place.second.batch;
-          lane                     = place.second.lane;
-          for (unsigned int i = 0; i < n_numbers; ++i)
-            trade(values(batch, q)[i]);
-          trade(imbalance(batch, q));
-          // points of batches that are elastic leave zeros
-          const bool is_known = is_active(batch, q);
-          const bool has_numbers =
-            load ? std::any_of(item,
-                               item + n_of_active_point(),
-                               [](const double x) { return x != 0.; }) :
-                   is_known;
-          if (!has_numbers)
-            {
-              item += n_of_active_point();
-              continue;
-            }
-          ActivePoint point = is_known ? active_point(batch, q) : ActivePoint();
-          for_each_number(point, trade);
-          if (load && is_known)
-            active_point(batch, q) = point;
-          else if (load)
-            activate(batch, q, point);
-        }
+    const unsigned int batch = place.batch, lane = place.lane;
+    for (unsigned int q = 0; q < n_points(); ++q)
+      {
+        for (unsigned int i = 0; i < n_numbers; ++i)
+          values(batch, q)[i][lane] = *row++;
+        imbalance(batch, q)[lane] = *row++;
+        const double *end         = row + n_of_active_point();
+        if (std::any_of(row, end, [](const double x) { return x != 0.; }))
+          {
+            if (!is_active(batch, q))
+              activate(batch, q, ActivePoint());
+            for_each_number(active_point(batch, q),
+                            [&](Lanes &number) { number[lane] = *row++; });
+          }
+        row = end;
+      }
   }
 
 
@@ -276,8 +296,8 @@ namespace Voussoir
   MaterialMemory::set_losses(const PointLosses &losses)
   {
     for (PointHistory &history : histories)
-      history.losses = {};
+      history.losses = PointLosses(history.losses.material.is_exact());
     if (!histories.empty())
-      histories[0].losses = losses;
+      histories[0].losses += losses;
   }
 } // namespace Voussoir

@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/fem/point_weights.h>
 
@@ -40,27 +41,31 @@ namespace Voussoir
                              const std::vector<NamedPoint> &points,
                              const std::string             &place)
     : n_points(points.size())
+    , communicator(discretization.grid.communicator())
   {
-    const auto            &scalar       = discretization.fe.base_element(0);
-    const MPI_Comm         communicator = discretization.grid.communicator();
-    constexpr unsigned int nowhere      = numbers::invalid_unsigned_int;
+    const auto             &scalar  = discretization.fe.base_element(0);
+    constexpr std::uint64_t nowhere = std::numeric_limits<std::uint64_t>::max();
     const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
+    const bool         reproducible = discretization.reproducible;
 
     struct Send
     {
-      unsigned int point;
+      unsigned int point, part;
       double       weight;
     };
     std::vector<std::pair<types::global_dof_index, Send>> records;
     for (unsigned int p = 0; p < points.size(); ++p)
       {
-        // the lowest rank that finds the point has it
+        // the lowest rank that finds the point has it, or that of the lowest
+        // cell
         Discretization::Cell found;
-        Point<3>             unit;
-        bool                 here = false;
+        Point<3>             unit, here_unit;
+        std::uint64_t        mine = nowhere;
         for (const auto &cell :
              discretization.dof_handler.active_cell_iterators())
-          if (cell->is_locally_owned() && !here &&
+          if (const std::uint64_t key =
+                reproducible ? Grid::global_key(cell) : rank;
+              cell->is_locally_owned() && key < mine &&
               cell->bounding_box().point_inside(points[p].position, 1e-6))
             {
               try
@@ -75,13 +80,15 @@ namespace Voussoir
                 }
               if (GeometryInfo<3>::is_inside_unit_cell(unit, 1e-6))
                 {
-                  found = cell;
-                  here  = true;
+                  found     = cell;
+                  here_unit = unit;
+                  mine      = key;
                 }
             }
-        const unsigned int finder =
-          Utilities::MPI::min(here ? rank : nowhere, communicator);
-        if (finder == nowhere)
+        // MPI_MIN of 64 bits without sign is wrong in Open MPI 4.1 with AVX-512
+        const auto all = Utilities::MPI::all_gather(communicator, mine);
+        const std::uint64_t first = *std::min_element(all.begin(), all.end());
+        if (first == nowhere)
           {
             std::ostringstream position;
             position << points[p].position;
@@ -90,30 +97,48 @@ namespace Voussoir
                             ") m lies outside the mesh; correct its "
                             "coordinates.");
           }
-        if (finder == rank)
+        if (first == mine)
           {
             const auto nodes = discretization.cell_nodes(found);
             for (unsigned int j = 0; j < nodes.size(); ++j)
               for (const auto &carrier : discretization.carriers(nodes[j]))
                 records.push_back(
                   {carrier.node,
-                   {p, carrier.weight * scalar.shape_value(j, unit)}});
+                   {p,
+                    reproducible ? j : 0,
+                    carrier.weight * scalar.shape_value(j, here_unit)}});
           }
       }
+    if (reproducible)
+      n_parts = scalar.n_dofs_per_cell();
     for (const auto &[node, send] : discretization.send_to_owners(records))
       if (std::abs(send.weight) > 1e-12)
-        items.push_back({send.point, node, send.weight});
+        items.push_back({send.point, send.part, node, send.weight});
   }
 
 
   std::vector<Tensor<1, 3>>
   PointWeights::share(const Vector &vector) const
   {
-    std::vector<Tensor<1, 3>> values(n_points);
+    std::vector<Tensor<1, 3>> values(n_parts * n_points);
     for (const Weight &item : items)
       for (unsigned int d = 0; d < 3; ++d)
-        values[item.point][d] +=
+        values[n_parts * item.point + item.part][d] +=
           item.weight * vector.local_element(3 * item.node + d);
+    return values;
+  }
+
+
+  std::vector<Tensor<1, 3>>
+  PointWeights::value(const Vector &vector) const
+  {
+    std::vector<double> parts;
+    for (const Tensor<1, 3> &part : share(vector))
+      parts.insert(parts.end(), part.begin_raw(), part.end_raw());
+    parts = sum_over_ranks(parts, communicator);
+    std::vector<Tensor<1, 3>> values(n_points);
+    for (unsigned int i = 0; i < parts.size(); ++i)
+      values[i / (3 * n_parts)][i % 3] += parts[i];
     return values;
   }
 } // namespace Voussoir

@@ -77,7 +77,8 @@ namespace Voussoir
                     {src, stiffer, SweepInput::Damping::by_material, &memory});
         limits.add_diagonal(dst, src, dt);
       };
-      return 2. / std::sqrt(largest_eigenvalue(start, mass.inverse, apply));
+      return 2. / std::sqrt(largest_eigenvalue(
+                    start, mass.inverse, apply, discretization.reproducible));
     });
   }
 

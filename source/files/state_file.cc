@@ -21,7 +21,10 @@ namespace Voussoir
 
   namespace
   {
-    constexpr int format = 2;
+    constexpr int format = 3;
+
+    // Rows that are read in one exchange.
+    constexpr std::size_t items_at_once = 1 << 14;
 
     using Words = std::vector<std::uint64_t>;
     using Bytes = std::vector<std::uint8_t>;
@@ -127,14 +130,29 @@ namespace Voussoir
     }
 
 
+    std::size_t
+    n_kept(const KeyedValues &values)
+    {
+      std::size_t         n = 0;
+      std::vector<double> scratch;
+      for (std::size_t i = 0; i < values.items.size(); ++i)
+        n += is_kept(values.row(i, scratch), values.width);
+      return n;
+    }
+
+
     Rows
     rows_of(const KeyedValues &values)
     {
       Rows rows(values.width);
-      for (const auto &[key, row] : values.items)
-        if (is_kept(row, rows.width))
+      rows.keys.reserve(n_kept(values));
+      rows.numbers.reserve(rows.keys.capacity() * rows.width);
+      std::vector<double> scratch;
+      for (std::size_t i = 0; i < values.items.size(); ++i)
+        if (const double *row = values.row(i, scratch);
+            is_kept(row, rows.width))
           {
-            rows.keys.push_back(key);
+            rows.keys.push_back(values.items[i].first);
             rows.numbers.insert(rows.numbers.end(), row, row + rows.width);
           }
       return rows;
@@ -555,33 +573,41 @@ namespace Voussoir
       for (std::size_t i = 0; i < kept.keys.size(); ++i)
         place[kept.keys[i]] = i;
 
-      Words keys;
-      for (const auto &item : values.items)
-        keys.push_back(item.first);
-      const Addresses     from_keeper(keys, communicator);
-      std::vector<double> answers;
-      for (const std::uint64_t key :
-           exchange(ordered(keys, 1, from_keeper.order),
-                    1,
-                    from_keeper.n_to,
-                    from_keeper.n_from,
-                    communicator))
+      // in parts, as most rows may be zeros that only the ranks' memory holds
+      const std::size_t last =
+        Utilities::MPI::max(values.items.size(), communicator);
+      for (std::size_t first = 0; first < last; first += items_at_once)
         {
-          const auto found = place.find(key);
-          if (found == place.end())
-            answers.insert(answers.end(), width, 0.);
-          else
-            answers.insert(answers.end(),
-                           kept.row(found->second),
-                           kept.row(found->second) + width);
-        }
-      const auto numbers = exchange(
-        answers, width, from_keeper.n_from, from_keeper.n_to, communicator);
-      auto row = numbers.begin();
-      for (const std::size_t i : from_keeper.order)
-        {
-          std::copy(row, row + width, values.items[i].second);
-          row += width;
+          Words keys;
+          for (std::size_t i = first;
+               i < std::min(first + items_at_once, values.items.size());
+               ++i)
+            keys.push_back(values.items[i].first);
+          const Addresses     from_keeper(keys, communicator);
+          std::vector<double> answers;
+          for (const std::uint64_t key :
+               exchange(ordered(keys, 1, from_keeper.order),
+                        1,
+                        from_keeper.n_to,
+                        from_keeper.n_from,
+                        communicator))
+            {
+              const auto found = place.find(key);
+              if (found == place.end())
+                answers.insert(answers.end(), width, 0.);
+              else
+                answers.insert(answers.end(),
+                               kept.row(found->second),
+                               kept.row(found->second) + width);
+            }
+          const auto numbers = exchange(
+            answers, width, from_keeper.n_from, from_keeper.n_to, communicator);
+          const double *row = numbers.data();
+          for (const std::size_t i : from_keeper.order)
+            {
+              values.set(first + i, row);
+              row += width;
+            }
         }
     }
 
@@ -594,9 +620,7 @@ namespace Voussoir
     {
       double bytes = 0.;
       for (const auto &[name, values] : content.values)
-        for (const auto &item : values.items)
-          if (is_kept(item.second, values.width))
-            bytes += 8. * (values.width + 1.);
+        bytes += n_kept(values) * 8. * (values.width + 1.);
       bytes = Utilities::MPI::sum(bytes, communicator);
       std::error_code none;
       const auto      space =

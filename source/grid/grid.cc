@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace Voussoir
@@ -132,11 +133,44 @@ namespace Voussoir
       "Further refinement where it is wanted, items separated by \";\": "
       "\"set: levels\" for a cell set, or \"box x0 y0 z0 x1 y1 z1: levels\" "
       "[m] for the cells whose centre lies in the box. Hanging nodes result.");
+    prm.add_parameter(
+      "Nodes per wavelength",
+      nodes_per_wavelength,
+      "Cells are refined, material by material, until the S waves of \"Highest "
+      "frequency\" have so many nodes on their length; 8 are enough where "
+      "amplitudes count, none leave the mesh as it is. Hanging nodes result, "
+      "so that far rock may be given in cells as large as these waves allow.",
+      Patterns::Double(0., 100.));
+    prm.add_parameter("Highest frequency",
+                      highest_frequency,
+                      "The one that \"Nodes per wavelength\" is for [Hz].",
+                      Patterns::Double(0.01, 1000.));
     add_option(prm,
                "Partition",
                partition,
                "How the cells are dealt to the ranks; the results are "
                "the same.");
+  }
+
+
+  double
+  GridParameters::longest_edge(const double       s_wave_speed,
+                               const unsigned int degree) const
+  {
+    return nodes_per_wavelength > 0. ?
+             s_wave_speed * degree /
+               (nodes_per_wavelength * highest_frequency) :
+             std::numeric_limits<double>::infinity();
+  }
+
+
+  double
+  longest_edge(const Triangulation<3>::cell_iterator &cell)
+  {
+    double longest = 0.;
+    for (unsigned int line = 0; line < 12; ++line)
+      longest = std::max(longest, cell->line(line)->diameter());
+    return longest;
   }
 
 
@@ -151,9 +185,9 @@ namespace Voussoir
       face_sets.push_back(set.first);
     const auto cells = tagged_cells(coarse, materials.of_cell);
     if (parameters.partition == Partition::metis)
-      create_metis(coarse, cells, parameters, materials.costs);
+      create_metis(coarse, cells, parameters, materials);
     else
-      create_p4est(coarse, cells, parameters, materials.costs);
+      create_p4est(coarse, cells, parameters, materials);
     find_faces(coarse);
   }
 
@@ -163,7 +197,9 @@ namespace Voussoir
              const MPI_Comm        communicator)
     : Grid(coarse,
            parameters,
-           {std::vector<unsigned int>(coarse.cells.size(), 0), {1.}},
+           {std::vector<unsigned int>(coarse.cells.size(), 0),
+            {1.},
+            {std::numeric_limits<double>::infinity()}},
            communicator)
   {}
 
@@ -202,19 +238,19 @@ namespace Voussoir
   Grid::create_p4est(const CoarseMesh               &coarse,
                      const std::vector<CellData<3>> &cells,
                      const GridParameters           &parameters,
-                     const std::vector<double>      &costs)
+                     const Materials                &materials)
   {
     using Distributed = parallel::distributed::Triangulation<3>;
     auto triangulation =
       std::make_unique<Distributed>(mpi_communicator,
                                     dealii::Triangulation<3>::none,
                                     Distributed::no_automatic_repartitioning);
-    triangulation->signals.weight.connect(
-      [&](const auto &cell, const auto) -> unsigned int {
-        return static_cast<unsigned int>(1000. * costs[material(cell)]);
-      });
+    triangulation->signals.weight.connect([&](const auto &cell,
+                                              const auto) -> unsigned int {
+      return static_cast<unsigned int>(1000. * materials.costs[material(cell)]);
+    });
     triangulation->create_triangulation(coarse.vertices, cells, SubCellData());
-    refine(*triangulation, parameters);
+    refine(*triangulation, parameters, materials);
     triangulation->repartition();
     triangulation->signals.weight.disconnect_all_slots();
     mesh = std::move(triangulation);
@@ -225,17 +261,17 @@ namespace Voussoir
   Grid::create_metis(const CoarseMesh               &coarse,
                      const std::vector<CellData<3>> &cells,
                      const GridParameters           &parameters,
-                     const std::vector<double>      &costs)
+                     const Materials                &materials)
   {
     dealii::Triangulation<3> serial(
       dealii::Triangulation<3>::limit_level_difference_at_vertices);
     serial.create_triangulation(coarse.vertices, cells, SubCellData());
-    refine(serial, parameters);
+    refine(serial, parameters, materials);
 
     std::vector<unsigned int> weights;
     for (const auto &cell : serial.active_cell_iterators())
       weights.push_back(
-        static_cast<unsigned int>(100. * costs[material(cell)]));
+        static_cast<unsigned int>(100. * materials.costs[material(cell)]));
     GridTools::partition_triangulation(Utilities::MPI::n_mpi_processes(
                                          mpi_communicator),
                                        weights,
@@ -282,7 +318,8 @@ namespace Voussoir
 
   void
   Grid::refine(dealii::Triangulation<3> &triangulation,
-               const GridParameters     &parameters) const
+               const GridParameters     &parameters,
+               const Materials          &materials) const
   {
     check_size(triangulation.n_cells(0) *
                  std::pow(8., parameters.global_refinement),
@@ -314,6 +351,34 @@ namespace Voussoir
             triangulation.execute_coarsening_and_refinement();
           }
       }
+    while (refine_for_waves(triangulation, materials))
+      {}
+  }
+
+
+  bool
+  Grid::refine_for_waves(dealii::Triangulation<3> &triangulation,
+                         const Materials          &materials) const
+  {
+    unsigned int flagged = 0;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned() &&
+          longest_edge(cell) > materials.longest_edges[material(cell)])
+        {
+          cell->set_refine_flag();
+          ++flagged;
+        }
+    // a serial triangulation is the same on all ranks
+    if (dynamic_cast<const Triangulation *>(&triangulation) != nullptr)
+      flagged = Utilities::MPI::sum(flagged, mpi_communicator);
+    if (flagged == 0)
+      return false;
+    check_size(triangulation.n_global_active_cells() + 7. * flagged,
+               1,
+               "\"Nodes per wavelength\" in section \"Mesh\"",
+               mpi_communicator);
+    triangulation.execute_coarsening_and_refinement();
+    return true;
   }
 
 

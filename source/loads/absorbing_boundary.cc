@@ -282,7 +282,20 @@ namespace Voussoir
             for (const unsigned int face : cell->face_indices())
               if (cell->at_boundary(face))
                 collect(cell, face);
-      return join_over_ranks(sides, grid.communicator());
+      sides = join_over_ranks(sides, grid.communicator());
+      if (faces.solid.discretization.reproducible)
+        std::sort(sides.begin(), sides.end(), [](const auto &a, const auto &b) {
+          const auto all = [](const SideFace &side) {
+            return std::make_tuple(side.lower,
+                                   side.upper,
+                                   side.material,
+                                   side.area,
+                                   side.middle[0],
+                                   side.middle[1]);
+          };
+          return all(a) < all(b);
+        });
+      return sides;
     }
   } // namespace
 
@@ -293,8 +306,9 @@ namespace Voussoir
   {
     const Discretization &discretization = solid.discretization;
     const BoundaryFaces   faces{solid, split_list(parameters.face_sets)};
-    touching_materials = find_touching_materials(faces);
-    box                = find_extent(faces);
+    boundary.reproducible = discretization.reproducible;
+    touching_materials    = find_touching_materials(faces);
+    box                   = find_extent(faces);
 
     std::map<unsigned int, unsigned int> boundary_number; // of an owned node
     for (const auto &[node, stiffness] : find_stiffnesses(faces, parameters))

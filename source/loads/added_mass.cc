@@ -1,5 +1,6 @@
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/base/reproducible_sum.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/fem/face_nodes.h>
 #include <voussoir/fem/named_sets.h>
@@ -29,10 +30,11 @@ namespace Voussoir
               const std::vector<std::string> &sets,
               const double                    level)
     {
-      FaceNodes    face_nodes(discretization.mapping,
+      FaceNodes           face_nodes(discretization.mapping,
                            discretization.fe.base_element(0));
-      Tensor<1, 3> thrust;
-      double       area = 0.;
+      Tensor<1, 3>        thrust;
+      double              area = 0.;
+      std::vector<double> parts[4]; // of thrust and area
       for_each_face(discretization,
                     sets,
                     "\"Face sets\" in " + section,
@@ -42,12 +44,24 @@ namespace Voussoir
                           {
                             thrust -= node.area * node.normal;
                             area += node.area;
+                            for (unsigned int d = 0; d < 3; ++d)
+                              parts[d].push_back(-node.area * node.normal[d]);
+                            parts[3].push_back(node.area);
                           }
                     });
       const MPI_Comm communicator = discretization.grid.communicator();
-      thrust                      = Utilities::MPI::sum(thrust, communicator);
-      area                        = Utilities::MPI::sum(area, communicator);
-      thrust[2]                   = 0.;
+      if (discretization.reproducible)
+        {
+          for (unsigned int d = 0; d < 3; ++d)
+            thrust[d] = reproducible_sum(parts[d], communicator);
+          area = reproducible_sum(parts[3], communicator);
+        }
+      else
+        {
+          thrust = Utilities::MPI::sum(thrust, communicator);
+          area   = Utilities::MPI::sum(area, communicator);
+        }
+      thrust[2] = 0.;
       const Tensor<1, 3> up({0., 0., 1.});
       const Tensor<1, 3> river = thrust.norm() > 1e-6 * area ?
                                    thrust / thrust.norm() :

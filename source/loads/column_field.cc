@@ -62,10 +62,6 @@ namespace Voussoir
                   const double                         time_step,
                   const Damping                       &damping)
   {
-    if (faces.empty())
-      throw UserError("A vertical wave needs the levels of the model's sides, "
-                      "but the mesh has no vertical outer faces; let the model "
-                      "end at planes of constant x or y.");
     std::vector<double> levels;
     for (const SideFace &face : faces)
       {
@@ -126,13 +122,16 @@ namespace Voussoir
     displacement.resize(geometry.nodes.size());
     velocity = force = displacement;
 
-    // many nodes and points share a level
+    // many nodes and points share a level, to round-off, in which the first of
+    // a rank must not decide where results are reproducible
     const double tolerance = 1e-6 * (column.top() - column.bottom());
-    const auto   key       = [&](const double z) {
-      return static_cast<long>(std::lround((z - column.bottom()) / tolerance));
+    const auto   key       = [&](const double z) -> double {
+      return geometry.reproducible ?
+                       z :
+                       std::lround((z - column.bottom()) / tolerance);
     };
-    std::map<long, unsigned int>                          level_numbers;
-    std::map<std::pair<unsigned int, long>, unsigned int> stress_numbers;
+    std::map<double, unsigned int>                          level_numbers;
+    std::map<std::pair<unsigned int, double>, unsigned int> stress_numbers;
     for (const Point<3> &node : geometry.nodes)
       {
         const auto [place, is_new] =
@@ -141,11 +140,30 @@ namespace Voussoir
           levels.push_back(column.interpolation(node[2]));
         level_of_node.push_back(place->second);
       }
+    const auto is_lateral = [](const auto &item) {
+      return std::abs(item.area[2]) < 0.9 * item.area.norm();
+    };
+    if (geometry.reproducible)
+      {
+        // in the order of their places, in which a node sums them up
+        std::map<std::pair<unsigned int, double>, WaveColumn::StressPoint> all;
+        for (const auto &item : geometry.contributions)
+          if (is_lateral(item))
+            {
+              const auto at = column.stress_point(item.point[2], item.middle);
+              all[{at.element, key(item.point[2])}] = at;
+            }
+        for (const auto &[place, at] : all)
+          {
+            stress_numbers[place] = stress_points.size();
+            stress_points.push_back(at);
+          }
+      }
     std::map<std::pair<unsigned int, unsigned int>, Tensor<1, 3>> sums;
     for (const auto &item : geometry.contributions)
       {
         unsigned int point = numbers::invalid_unsigned_int;
-        if (std::abs(item.area[2]) < 0.9 * item.area.norm())
+        if (is_lateral(item))
           {
             const auto at = column.stress_point(item.point[2], item.middle);
             const auto [place, is_new] =

@@ -88,6 +88,15 @@ namespace Voussoir
     };
 
 
+    /** That of an oblique wave, which is one along the boundary. */
+    ElasticConstants
+    rock_at(const AbsorbingBoundary &boundary, const Solid &solid)
+    {
+      return solid.materials[boundary.materials_at_boundary()[0]]
+        ->elastic_constants();
+    }
+
+
     std::unique_ptr<FreeField>
     make_oblique_field(const AbsorbingBoundary &boundary,
                        const Discretization    &discretization,
@@ -99,19 +108,7 @@ namespace Voussoir
         wave.type == WaveType::oblique_p  ? ObliqueWave::Type::P :
         wave.type == WaveType::oblique_sv ? ObliqueWave::Type::SV :
                                             ObliqueWave::Type::SH;
-      const double critical =
-        std::asin(rock.s_wave_speed() / rock.p_wave_speed());
       const double angle = wave.angle * numbers::PI / 180.;
-      if (type == ObliqueWave::Type::SV && angle >= critical)
-        {
-          std::ostringstream text;
-          text << "\"Angle\" in section \"Wave field\" is " << wave.angle
-               << " degrees, but an oblique SV wave must stay below the "
-                  "critical angle of this rock, "
-               << std::setprecision(4) << critical * 180. / numbers::PI
-               << " degrees; choose a smaller one.";
-          throw UserError(text.str());
-        }
 
       // the incident front touches the model's boundary at t = 0
       const auto       &box = boundary.extent();
@@ -137,60 +134,80 @@ namespace Voussoir
   } // namespace
 
 
-  std::unique_ptr<FreeField>
-  make_free_field(const AbsorbingBoundary &boundary,
-                  const Solid             &solid,
-                  const QuadratureRule     quadrature,
-                  const Damping           &damping,
-                  const WaveParameters    &wave,
-                  const MotionPlace        given_at,
-                  GroundMotionSignals    &&motion,
-                  const LeapFrog          &leap_frog,
-                  const double             duration)
+  void
+  check_wave(const AbsorbingBoundary   &boundary,
+             const Solid               &solid,
+             const WaveParameters      &wave,
+             const MotionPlace          given_at,
+             const GroundMotionSignals &motion)
   {
-    const Discretization &discretization = solid.discretization;
-    const bool            vertical       = wave.type == WaveType::vertical;
-
-    if (!vertical && boundary.materials_at_boundary().size() != 1)
+    if (wave.type == WaveType::vertical)
+      {
+        if (boundary.side_faces().empty())
+          throw UserError(
+            "A vertical wave needs the levels of the model's sides, but the "
+            "mesh has no vertical outer faces; let the model end at planes of "
+            "constant x or y.");
+        return;
+      }
+    if (boundary.materials_at_boundary().size() != 1)
       throw UserError("\"Type\" in section \"Wave field\" is an oblique wave, "
                       "which needs one material along the whole absorbing "
                       "boundary; use \"vertical\" for layered rock.");
-    if (!vertical && given_at == MotionPlace::free_surface)
+    if (given_at == MotionPlace::free_surface)
       throw UserError("\"Given at\" in section \"Ground motion\" cannot be "
                       "\"free surface\" with an oblique wave; give the "
                       "incident wave or the motion of an outcrop.");
 
-    if (!vertical)
+    const auto n_given =
+      std::count_if(motion.begin(), motion.end(), [](const auto &component) {
+        return component != nullptr;
+      });
+    if (n_given > 1)
+      throw UserError("\"Type\" in section \"Wave field\" is an oblique wave, "
+                      "which has one motion, but section \"Ground motion\" "
+                      "gives " +
+                      std::to_string(n_given) +
+                      " components; leave one of them, which becomes that "
+                      "of the wave.");
+    const ElasticConstants rock = rock_at(boundary, solid);
+    const double           critical =
+      std::asin(rock.s_wave_speed() / rock.p_wave_speed());
+    if (wave.type == WaveType::oblique_sv &&
+        wave.angle * numbers::PI / 180. >= critical)
       {
-        const auto n_given = std::count_if(motion.begin(),
-                                           motion.end(),
-                                           [](const auto &component) {
-                                             return component != nullptr;
-                                           });
-        if (n_given > 1)
-          throw UserError(
-            "\"Type\" in section \"Wave field\" is an oblique wave, "
-            "which has one motion, but section \"Ground motion\" "
-            "gives " +
-            std::to_string(n_given) +
-            " components; leave one of them, which becomes that "
-            "of the wave.");
+        std::ostringstream text;
+        text << "\"Angle\" in section \"Wave field\" is " << wave.angle
+             << " degrees, but an oblique SV wave must stay below the "
+                "critical angle of this rock, "
+             << std::setprecision(4) << critical * 180. / numbers::PI
+             << " degrees; choose a smaller one.";
+        throw UserError(text.str());
       }
+  }
 
+
+  std::unique_ptr<FreeField>
+  make_free_field(const AbsorbingBoundary &boundary,
+                  const Solid             &solid,
+                  const FreeFieldCase     &field,
+                  GroundMotionSignals    &&motion,
+                  const Damping           &damping,
+                  const LeapFrog          &leap_frog)
+  {
     // the incident wave at an outcrop is half the motion there
-    if (given_at == MotionPlace::outcrop)
+    if (field.given_at == MotionPlace::outcrop)
       for (auto &component : motion)
         if (component)
           component = std::make_unique<Scaled>(std::move(component), 0.5);
 
-    if (!vertical)
-      return make_oblique_field(
-        boundary,
-        discretization,
-        solid.materials[boundary.materials_at_boundary()[0]]
-          ->elastic_constants(),
-        wave,
-        std::move(motion));
+    const Discretization &discretization = solid.discretization;
+    if (field.wave.type != WaveType::vertical)
+      return make_oblique_field(boundary,
+                                discretization,
+                                rock_at(boundary, solid),
+                                field.wave,
+                                std::move(motion));
 
     std::vector<ElasticConstants> constants;
     std::vector<double>           factors;
@@ -206,12 +223,15 @@ namespace Voussoir
                                       leap_frog.time_step,
                                       damping),
                       discretization.degree,
-                      quadrature,
+                      field.quadrature,
                       damping,
                       leap_frog);
-    if (given_at == MotionPlace::free_surface)
-      motion = incident_for_surface(
-        column, motion, leap_frog.time_step, duration, wave.maximum_frequency);
+    if (field.given_at == MotionPlace::free_surface)
+      motion = incident_for_surface(column,
+                                    motion,
+                                    leap_frog.time_step,
+                                    field.duration,
+                                    field.wave.maximum_frequency);
     return std::make_unique<ColumnField>(std::move(column),
                                          std::move(motion),
                                          boundary.geometry());

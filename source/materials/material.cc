@@ -27,7 +27,8 @@ namespace Voussoir
     prm.add_parameter("Damping factor",
                       damping,
                       "Damping of this material relative to the section "
-                      "\"Damping\"; 0 for none.",
+                      "\"Damping\"; 0 for none. What is proportional to the "
+                      "mass is the same in all materials.",
                       Patterns::Double(0., 4.));
     prm.add_parameter("Static factor",
                       static_factor,
@@ -49,6 +50,14 @@ namespace Voussoir
     if (cell_sets.empty())
       throw UserError(place + " has no \"Cell sets\"; name the cell sets that "
                               "are of this material.");
+  }
+
+
+  double
+  Material::wave_modulus() const
+  {
+    const ElasticConstants constants = elastic_constants();
+    return constants.lame_lambda() + 2. * constants.shear_modulus();
   }
 
 

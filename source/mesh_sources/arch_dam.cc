@@ -235,28 +235,21 @@ namespace Voussoir
           ledges[bank]       = wedges[bank].ledge(bank);
           ledges[bank].place = "Mesh/arch dam/" + wedge_section(bank);
         }
+      const RockGrading         rock{rock_extent, growth, largest_cell};
       const ArchDamCrossSection section(sections,
                                         shape.height,
                                         n_joints + 1,
                                         columns_per_block(sections),
-                                        rock_extent,
-                                        growth,
-                                        largest_cell,
+                                        rock,
                                         water_level,
                                         ledges);
-      const ArchDamSweep        sweep(section,
-                               sections,
-                               shape.height,
-                               rock_extent,
-                               n_thickness,
-                               cell_size,
-                               growth,
-                               largest_cell);
-      const unsigned int        water_end =
+      const ArchDamSweep        sweep(
+        section, sections, shape.height, rock, n_thickness, cell_size);
+      const unsigned int water_end =
         relative_water_length > 0. ?
-                 sweep.first_in_dam + n_thickness +
+          sweep.first_in_dam + n_thickness +
             sweep.layers_along(relative_water_length * shape.height) :
-                 sweep.n_layers;
+          sweep.n_layers;
       return make_arch_dam_mesh(section,
                                 sweep,
                                 make_wedges(sweep, section),

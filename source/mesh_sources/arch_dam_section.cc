@@ -28,9 +28,7 @@ namespace Voussoir
                                            const double           height,
                                            const unsigned int     n_blocks,
                                            const unsigned int columns_per_block,
-                                           const double       rock_extent,
-                                           const double       growth,
-                                           const double       largest_cell,
+                                           const RockGrading &rock,
                                            const double       water_level,
                                            const std::array<Ledge, 2> &wanted)
     : ledges(wanted)
@@ -38,11 +36,8 @@ namespace Voussoir
     , height(height)
     , columns_per_block(columns_per_block)
   {
-    place_columns(n_blocks * columns_per_block,
-                  rock_extent,
-                  growth,
-                  largest_cell);
-    place_rows(rock_extent, growth, largest_cell);
+    place_columns(n_blocks * columns_per_block, rock);
+    place_rows(rock);
     step_rows();
     follow_contour();
     on_surface.resize(vertices.size());
@@ -68,25 +63,26 @@ namespace Voussoir
 
   void
   ArchDamCrossSection::place_columns(const unsigned int n_dam_columns,
-                                     const double       rock_extent,
-                                     const double       growth,
-                                     const double       largest_cell)
+                                     const RockGrading &rock)
   {
     const double right = sections.right_end, left = sections.left_end;
     const double width = (left - right) / n_dam_columns;
 
     // Distances from the end of the crest into the rock.
-    const auto rock = [&](const double end) {
+    const auto beside = [&](const double end) {
       const double x      = sections.line(end, height).centre[0];
-      const double extent = (end < 0 ? -1. : 1.) * rock_extent * height;
+      const double extent = (end < 0 ? -1. : 1.) * rock.extent * height;
       const double length = std::abs(sections.arc_length_at(x + extent) - end);
-      auto         distances =
-        graded_points(length, growth * width, growth, 2. * largest_cell);
+      auto         distances = graded_points(length,
+                                     rock.growth * width,
+                                     rock.growth,
+                                     2. * rock.largest_cell);
       for (double &distance : distances)
         distance *= length;
       return distances;
     };
-    const std::vector<double> right_rock = rock(right), left_rock = rock(left);
+    const std::vector<double> right_rock = beside(right),
+                              left_rock  = beside(left);
 
     for (unsigned int i = right_rock.size() - 1; i > 0; --i)
       columns.push_back(right - right_rock[i]);
@@ -109,9 +105,7 @@ namespace Voussoir
 
   // Rows so high that the contour crosses at most one of them per column.
   void
-  ArchDamCrossSection::place_rows(const double rock_extent,
-                                  const double growth,
-                                  const double largest_cell)
+  ArchDamCrossSection::place_rows(const RockGrading &rock)
   {
     double row_height =
       columns[first_dam_column + 1] - columns[first_dam_column];
@@ -126,10 +120,12 @@ namespace Voussoir
                       "blocks; choose a smaller \"Cell size\" or gentler "
                       "banks.");
 
-    const double depth = rock_extent * height;
-    const auto   below =
-      graded_points(depth, growth * row_height, growth, 2. * largest_cell);
-    base_row = below.size() - 1;
+    const double depth = rock.extent * height;
+    const auto   below = graded_points(depth,
+                                     rock.growth * row_height,
+                                     rock.growth,
+                                     2. * rock.largest_cell);
+    base_row           = below.size() - 1;
     for (unsigned int i = base_row; i > 0; --i)
       rows.push_back(-depth * below[i]);
     for (unsigned int i = 0; i < n_dam_rows; ++i)

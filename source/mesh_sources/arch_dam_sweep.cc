@@ -54,19 +54,17 @@ namespace Voussoir
   ArchDamSweep::ArchDamSweep(const ArchDamCrossSection &section,
                              const ArchDamSections     &sections,
                              const double               height,
-                             const double               rock_extent,
+                             const RockGrading         &rock,
                              const unsigned int         n_thickness,
-                             const double               cell_size,
-                             const double               growth,
-                             const double               largest_cell)
+                             const double               cell_size)
     : sections(sections)
     , n_thickness(n_thickness)
     , turning_length(relative_turning_length * height)
-    , full_length(rock_extent * height)
+    , full_length(rock.extent * height)
     , points(graded_points(full_length + turning_length,
                            cell_size,
-                           growth,
-                           largest_cell))
+                           rock.growth,
+                           rock.largest_cell))
     , vertices(section.vertices)
   {
     for (const auto &vertex : vertices)

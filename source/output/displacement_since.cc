@@ -25,8 +25,8 @@ namespace Voussoir
     is_grouted_later(const ObservedModel &model)
     {
       bool result = false;
-      if (model.contact != nullptr)
-        for (const ContactPoint &point : model.contact->points())
+      if (model.interfaces != nullptr)
+        for (const ContactPoint &point : model.interfaces->points())
           result = result || !point.joined;
       return Utilities::MPI::logical_or(result,
                                         model.solid.grid().communicator());

@@ -1,4 +1,7 @@
+#include <voussoir/base/json_entries.h>
 #include <voussoir/base/mpi.h>
+#include <voussoir/base/sum.h>
+#include <voussoir/fem/nodal_values.h>
 #include <voussoir/output/energy.h>
 
 #include <iomanip>
@@ -23,6 +26,41 @@ namespace Voussoir
   } // namespace
 
 
+  template <typename Entry>
+  void
+  for_each_entry(EnergySummary &part, const Entry &entry)
+  {
+    entry("kinetic [J]", part.terms.kinetic);
+    entry("strain [J]", part.terms.strain);
+    entry("damping memory [J]", part.terms.memory);
+    entry("lost in damping [J]", part.terms.damping);
+    entry("gone through the boundary [J]", part.terms.boundary);
+    entry("lost to cracks and plastic flow [J]", part.terms.material);
+    entry("lost by cracks that closed [J]", part.terms.closing);
+    entry("input [J]", part.terms.input);
+    entry("work of constraints [J]", part.terms.constraints);
+    entry("initial [J]", part.initial);
+    entry("unaccounted [J]", part.unaccounted);
+    entry("energy-balance error, share of the input", part.error_of_input);
+    entry("largest energy-balance error", part.largest_error);
+    entry("energy-balance error, share of the losses", part.error_of_losses);
+  }
+
+
+  void
+  to_json(nlohmann::json &json, const EnergySummary &summary)
+  {
+    write_entries(json, summary);
+  }
+
+
+  void
+  from_json(const nlohmann::json &json, EnergySummary &summary)
+  {
+    read_entries(json, summary);
+  }
+
+
   EnergyBalance::EnergyBalance(const EquationOfMotion &equation,
                                const double            time_step,
                                const double            interval)
@@ -37,7 +75,9 @@ namespace Voussoir
   {
     const InitialState &initial_state = equation.initial;
     if (initial_state.force.size() > 0)
-      static_work = std::abs(initial_state.displacement * initial_state.force);
+      static_work = std::abs(product(initial_state.displacement,
+                                     initial_state.force,
+                                     equation.discretization.reproducible));
     if (viscous)
       velocity_before = moved;
   }
@@ -124,14 +164,15 @@ namespace Voussoir
     if (initial_state.displacement.size() > 0)
       moved -= initial_state.displacement;
 
-    double kinetic = 0.;
+    const bool is_exact = equation.discretization.reproducible;
+    Sum        kinetic(is_exact);
     for (unsigned int i = 0; i < state.velocity.locally_owned_size(); ++i)
       {
         const double v = state.velocity.local_element(i);
         kinetic += 0.5 * equation.mass.mass.local_element(i) * v * v;
         moved_before.local_element(i) = moved.local_element(i) - time_step * v;
       }
-    kinetic += equation.terms.kinetic_energy(state.velocity);
+    kinetic += equation.terms.kinetic_energy(state.velocity, is_exact);
     const bool          knows_velocity = viscous && kept_step == state.step;
     const ElasticEnergy elastic =
       equation.internal_force.elastic_energy({moved,
@@ -149,23 +190,29 @@ namespace Voussoir
                                                equation.damping);
 
     // local sums first, then one reduction
-    const EnergyAccounts     &accounts = state.accounts;
-    const PointLosses         lost     = state.material_memory.losses();
-    const std::vector<double> sums     = sum_over_ranks(
-      std::vector<double>{kinetic,
-                              elastic.strain + inelastic.stored +
-                                equation.terms.spring_energy(moved, moved_before),
-                              elastic.memory,
-                              accounts.loss_by_mass + lost.damping -
-                                inelastic.damping,
-                              elastic.next_loss,
-                              elastic.last_loss,
-                              accounts.loss_in_dashpots,
-                              lost.material,
-                              lost.closing,
-                              accounts.work_of_forces + accounts.work_of_base,
-                              accounts.work_of_projections},
-      equation.discretization.grid.communicator());
+    const EnergyAccounts &accounts = state.accounts;
+    const PointLosses     lost     = state.material_memory.losses();
+    Sum                   strain   = elastic.strain;
+    strain += inelastic.stored;
+    strain += equation.terms.spring_energy(moved, moved_before, is_exact);
+    Sum damping = accounts.loss_by_mass;
+    damping += lost.damping;
+    damping -= inelastic.damping;
+    Sum input = accounts.work_of_forces;
+    input += accounts.work_of_base;
+    std::vector<Sum>          of_rank{kinetic,
+                             strain,
+                             elastic.memory,
+                             damping,
+                             elastic.next_loss,
+                             elastic.last_loss,
+                             accounts.loss_in_dashpots,
+                             lost.material,
+                             lost.closing,
+                             input,
+                             accounts.work_of_projections};
+    const std::vector<double> sums =
+      sum_over_ranks(of_rank, equation.discretization.grid.communicator());
 
     EnergyTerms &terms = terms_now;
     terms.kinetic      = sums[0];
@@ -179,8 +226,9 @@ namespace Voussoir
     terms.constraints  = sums[10];
     // of the work of contact, what its static forces do on the way
     if (initial_state.contact_force.size() > 0)
-      terms.constraints -= 0.5 * (initial_state.contact_force * moved +
-                                  initial_state.contact_force * moved_before);
+      terms.constraints -=
+        0.5 * (product(initial_state.contact_force, moved, is_exact) +
+               product(initial_state.contact_force, moved_before, is_exact));
     if (first)
       initial = terms.stored() + terms.lost() - terms.input - terms.constraints;
     first        = false;
@@ -269,7 +317,11 @@ namespace Voussoir
   EnergyBalance::alarm(const double limit) const
   {
     if (!std::isfinite(terms_now.stored()) || !std::isfinite(made()))
-      return "the motion is no longer finite (NaN or infinite)";
+      return equation.discretization.reproducible ?
+               "the motion is no longer finite (NaN or infinite), or a cell is "
+               "strained by more than a sixteenth, where \"Sums = "
+               "reproducible\" does not hold" :
+               "the motion is no longer finite (NaN or infinite)";
     // an unstable step keeps the sum: strain energy falls as the kinetic grows,
     // as it does, within bounds, when parts fall
     if (std::max(terms_now.kinetic, terms_now.stored()) >
@@ -290,23 +342,15 @@ namespace Voussoir
   }
 
 
-  nlohmann::json
+  EnergySummary
   EnergyBalance::summary() const
   {
-    return {{"kinetic [J]", terms_now.kinetic},
-            {"strain [J]", terms_now.strain},
-            {"damping memory [J]", terms_now.memory},
-            {"lost in damping [J]", terms_now.damping},
-            {"gone through the boundary [J]", terms_now.boundary},
-            {"lost to cracks and plastic flow [J]", terms_now.material},
-            {"lost by cracks that closed [J]", terms_now.closing},
-            {"input [J]", terms_now.input},
-            {"work of constraints [J]", terms_now.constraints},
-            {"initial [J]", initial},
-            {"unaccounted [J]", terms_now.error(initial)},
-            {"energy-balance error, share of the input", relative_error()},
-            {"largest energy-balance error", largest_error},
-            {"energy-balance error, share of the losses", error_of_losses()}};
+    return {terms_now,
+            initial,
+            terms_now.error(initial),
+            relative_error(),
+            largest_error,
+            error_of_losses()};
   }
 
 

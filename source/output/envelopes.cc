@@ -29,16 +29,16 @@ namespace Voussoir
     {
     public:
       /** @param sets cell sets to look at; none for all cells */
-      StressEnvelope(const ObservedModel            &model,
+      StressEnvelope(const ObservedRun              &run,
                      const std::vector<std::string> &sets)
-        : model(model)
-        , matrix_free(model.solid.discretization.matrix_free)
-        , points(QTrapezoid<1>(), model.solid.discretization.degree)
-        , filtered(model)
+        : run(run)
+        , matrix_free(run.solid.discretization.matrix_free)
+        , points(QTrapezoid<1>(), run.solid.discretization.degree)
+        , filtered(run)
       {
-        const auto &scalar = model.solid.discretization.fe.base_element(0);
+        const auto &scalar = run.solid.discretization.fe.base_element(0);
         const auto  order  = FETools::lexicographic_to_hierarchic_numbering<3>(
-          model.solid.discretization.degree);
+          run.solid.discretization.degree);
         for (const Point<3> &point : points.get_points())
           {
             shape_values.emplace_back();
@@ -53,14 +53,14 @@ namespace Voussoir
               vertex_gradients.back()[v] =
                 GeometryInfo<3>::d_linear_shape_function_gradient(point, v);
           }
-        const bool is_static = model.initial.displacement.size() > 0;
+        const bool is_static = run.initial.displacement.size() > 0;
         if (is_static)
           {
-            model.initial.displacement.update_ghost_values();
-            model.initial.temperature.update_ghost_values();
+            run.initial.displacement.update_ghost_values();
+            run.initial.temperature.update_ghost_values();
           }
         Evaluation              cells(matrix_free);
-        const std::vector<bool> tagged = model.solid.grid().tags_in(sets);
+        const std::vector<bool> tagged = run.solid.grid().tags_in(sets);
         for (unsigned int b = 0; b < matrix_free.n_cell_batches(); ++b)
           {
             const auto watched = lanes_in(b, sets.empty(), tagged);
@@ -69,8 +69,8 @@ namespace Voussoir
           }
         if (is_static)
           {
-            model.initial.displacement.zero_out_ghost_values();
-            model.initial.temperature.zero_out_ghost_values();
+            run.initial.displacement.zero_out_ghost_values();
+            run.initial.temperature.zero_out_ghost_values();
           }
       }
 
@@ -134,7 +134,7 @@ namespace Voussoir
         std::size_t n = 0;
         for (const Batch &batch : batches)
           n += batch.watched.count();
-        const auto &triangulation = model.solid.grid().triangulation();
+        const auto &triangulation = run.solid.grid().triangulation();
         return double(
                  Utilities::MPI::sum(n, triangulation.get_communicator())) /
                double(triangulation.n_global_active_cells());
@@ -217,8 +217,8 @@ namespace Voussoir
         batch.number  = number;
         batch.watched = watched;
         batch.damping_factor =
-          model.solid
-            .materials[model.solid.discretization.material_of_batch[number]]
+          run.solid
+            .materials[run.solid.discretization.material_of_batch[number]]
             ->damping_factor();
         batch.laws.resize(points.size());
         for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
@@ -232,16 +232,16 @@ namespace Voussoir
                 batch.vertices[v][d][lane] = cell->vertex(v)[d];
             if (watched[lane])
               for (unsigned int p = 0; p < points.size(); ++p)
-                batch.laws[p].set(lane, {model, cell, points.point(p)});
+                batch.laws[p].set(lane, {run, cell, points.point(p)});
           }
         if (!is_static)
           return batch;
         cells.reinit(number);
         for (unsigned int p = 0; p < points.size(); ++p)
           {
-            cells.read_dof_values(model.initial.displacement);
+            cells.read_dof_values(run.initial.displacement);
             const SymmetricTensor3<Lanes> initial = strain(cells, batch, p);
-            cells.read_dof_values(model.initial.temperature);
+            cells.read_dof_values(run.initial.temperature);
             Lanes temperature = 0.;
             for (unsigned int j = 0; j < shape_values[p].size(); ++j)
               temperature += shape_values[p][j] * cells.begin_dof_values()[j];
@@ -258,7 +258,7 @@ namespace Voussoir
       {
         Tensor<2, 3, Lanes> jacobian, unit_gradient;
         const Lanes        *values = cells.begin_dof_values();
-        if (model.solid.discretization.degree == 1)
+        if (run.solid.discretization.degree == 1)
           // the edges that meet in the corner
           for (unsigned int k = 0; k < 3; ++k)
             {
@@ -290,7 +290,7 @@ namespace Voussoir
         return symmetrize(unit_gradient * invert(jacobian));
       }
 
-      const ObservedModel               model;
+      const ObservedRun                 run;
       const Discretization::MatrixFree &matrix_free;
       const QIterated<3>                points;
 
@@ -392,18 +392,18 @@ namespace Voussoir
 
     /** Vertices at which cells of different materials meet. */
     std::vector<bool>
-    vertices_between_materials(const ObservedModel &model)
+    vertices_between_materials(const Solid &solid)
     {
-      const auto            &triangulation = model.solid.grid().triangulation();
-      constexpr unsigned int none          = numbers::invalid_unsigned_int;
+      const auto               &triangulation = solid.grid().triangulation();
+      constexpr unsigned int    none          = numbers::invalid_unsigned_int;
       std::vector<unsigned int> first(triangulation.n_vertices(), none);
       std::vector<bool>         between(triangulation.n_vertices(), false);
       for (const auto &cell :
-           model.solid.discretization.dof_handler.active_cell_iterators())
+           solid.discretization.dof_handler.active_cell_iterators())
         if (!cell->is_artificial())
           for (const unsigned int v : cell->vertex_indices())
             {
-              const unsigned int material = model.solid.grid().material(cell);
+              const unsigned int material = solid.grid().material(cell);
               unsigned int      &known    = first[cell->vertex_index(v)];
               if (known == none)
                 known = material;
@@ -451,39 +451,11 @@ namespace Voussoir
       }
 
       void
-      check(const ObservedModel &observed) const override
+      check(const ObservedModel &model) const override
       {
         for (const std::string &set : split_list(stress_sets))
-          observed.solid.grid().check_cell_set(
+          model.solid.grid().check_cell_set(
             set, "\"Stress in\" in section \"Output/envelopes\"");
-      }
-
-      void
-      prepare(const ObservedModel &observed, const double, const bool) override
-      {
-        model    = std::make_unique<ObservedModel>(observed);
-        schedule = Schedule(interval, model->time_step);
-        looks = Schedule(model->looking_interval(interval), model->time_step);
-        // the three components of a node hold three numbers each
-        largest       = model->solid.discretization.create_vector();
-        accelerations = previous = last_look = largest;
-        last_step                            = 0;
-        stress.reset();
-        if (wants_stress)
-          {
-            stress =
-              std::make_unique<StressEnvelope>(*model, split_list(stress_sets));
-            looked_at       = stress_interval > 0. ?
-                                stress_interval :
-                                std::max(model->resolving_interval(),
-                                   steps_per_look * stress->share_of_cells() *
-                                     model->time_step);
-            stress_schedule = Schedule(looked_at, model->time_step);
-            if (stress_interval > 0.)
-              model->warn_of_coarse_looks(
-                stress_interval,
-                "\"Stress interval\" in section \"Output/envelopes\"");
-          }
       }
 
       void
@@ -501,14 +473,51 @@ namespace Voussoir
           stress->update(state);
       }
 
+    private:
       void
-      finish(const State &state, nlohmann::json &summary) override
+      prepare() override
+      {
+        schedule = Schedule(interval, run().time_step);
+        looks    = Schedule(run().looking_interval(interval), run().time_step);
+        // the three components of a node hold three numbers each
+        keep("envelope", largest);
+        keep("envelope accelerations", accelerations);
+        keep("envelope velocity", previous);
+        keep("envelope velocity of the last look", last_look);
+        keep("last step", last_step, 0);
+        stress.reset();
+        if (!wants_stress)
+          return;
+        stress =
+          std::make_unique<StressEnvelope>(run(), split_list(stress_sets));
+        keep([this] {
+          KeyedValues values{4, {}};
+          stress->for_each_cell([&](const auto &cell, auto &extremes) {
+            values.items.emplace_back(Grid::global_key(cell), extremes.data());
+          });
+          return std::map<std::string, KeyedValues>{
+            {"principal stress", values}};
+        });
+        looked_at       = stress_interval > 0. ?
+                            stress_interval :
+                            std::max(run().resolving_interval(),
+                               steps_per_look * stress->share_of_cells() *
+                                 run().time_step);
+        stress_schedule = Schedule(looked_at, run().time_step);
+        if (stress_interval > 0.)
+          run().warn_of_coarse_looks(
+            stress_interval,
+            "\"Stress interval\" in section \"Output/envelopes\"");
+      }
+
+      void
+      conclude(const State &state, nlohmann::json &summary) override
       {
         std::array<dealii::Vector<float>, 4> values;
         std::vector<CellField>               cell_fields;
         if (stress)
           {
-            const auto n = model->solid.grid().triangulation().n_active_cells();
+            const auto n = run().solid.grid().triangulation().n_active_cells();
             // cells that are not looked at
             for (auto &field : values)
               {
@@ -531,7 +540,7 @@ namespace Voussoir
               {"interval [s]", looked_at},
               {"extremes hold to 1.2 % up to [Hz]", 0.05 / looked_at}};
           }
-        write_fields(*model,
+        write_fields(run(),
                      {{&largest,
                        {"largest_displacement_m",
                         "largest_velocity_m_per_s",
@@ -546,62 +555,28 @@ namespace Voussoir
                      cell_fields);
       }
 
-      nlohmann::json
-      save() override
-      {
-        return last_step;
-      }
-
-      void
-      load(const nlohmann::json &saved) override
-      {
-        saved.get_to(last_step);
-      }
-
-      std::map<std::string, Vector *>
-      checkpoint_vectors() override
-      {
-        return {{"envelope", &largest},
-                {"envelope accelerations", &accelerations},
-                {"envelope velocity", &previous},
-                {"envelope velocity of the last look", &last_look}};
-      }
-
-      std::map<std::string, KeyedValues>
-      checkpoint_values() override
-      {
-        if (!stress)
-          return {};
-        KeyedValues values{4, {}};
-        stress->for_each_cell([&](const auto &cell, auto &extremes) {
-          values.items.emplace_back(Grid::global_key(cell), extremes.data());
-        });
-        return {{"principal stress", values}};
-      }
-
-    private:
       void
       summarise_stress(nlohmann::json &summary)
       {
-        const auto between = vertices_between_materials(*model);
-        std::vector<TensionSummary> materials(model->solid.materials.size());
+        const auto between = vertices_between_materials(run().solid);
+        std::vector<TensionSummary> materials(run().solid.materials.size());
         stress->for_each_cell([&](const auto &cell, const auto &extremes) {
           bool beside = false;
           for (const unsigned int v : cell->vertex_indices())
             beside = beside || between[cell->vertex_index(v)];
-          materials[model->solid.grid().material(cell)].add(extremes,
-                                                            cell->center(),
-                                                            cell->measure(),
-                                                            beside);
+          materials[run().solid.grid().material(cell)].add(extremes,
+                                                           cell->center(),
+                                                           cell->measure(),
+                                                           beside);
         });
         for (unsigned int m = 0; m < materials.size(); ++m)
           {
             const auto found =
-              materials[m].json(model->solid.grid().communicator());
+              materials[m].json(run().solid.grid().communicator());
             if (found.at("largest principal stress [MPa]").get<double>() >
                 -1e300)
               {
-                summary[model->names.materials[m]] = found;
+                summary[run().names.materials[m]] = found;
                 check_tension(m, found);
               }
           }
@@ -615,16 +590,15 @@ namespace Voussoir
         const double     tension =
           found.at("not exceeded in 95 % of the volume [MPa]");
         if (tension > strongest &&
-            model->material_memory.of(material) == nullptr)
-          model->log.warn(
-            "a twentieth of the volume of \"",
-            model->names.materials[material],
-            "\" has more than ",
-            tension,
-            " MPa of tension at some time, which neither concrete "
-            "nor rock bears, but its law has no strength; look at "
-            "the units of loads and motion, or choose a law with "
-            "strength");
+            run().material_memory.of(material) == nullptr)
+          run().log.warn("a twentieth of the volume of \"",
+                         run().names.materials[material],
+                         "\" has more than ",
+                         tension,
+                         " MPa of tension at some time, which neither concrete "
+                         "nor rock bears, but its law has no strength; look at "
+                         "the units of loads and motion, or choose a law with "
+                         "strength");
       }
 
       static double
@@ -650,7 +624,7 @@ namespace Voussoir
       void
       look_at_acceleration(const State &state)
       {
-        const double looked = (state.step - last_step) * model->time_step;
+        const double looked = (state.step - last_step) * run().time_step;
         for (unsigned int i = 0; i < largest.locally_owned_size(); i += 3)
           {
             const double *v    = state.velocity.begin() + i;
@@ -665,7 +639,7 @@ namespace Voussoir
             if (acceleration > m[2])
               a[2] = state.time;
             m[2] = std::max(m[2], acceleration);
-            a[0] = std::max(a[0], mean(previous.begin() + i, model->time_step));
+            a[0] = std::max(a[0], mean(previous.begin() + i, run().time_step));
           }
         last_look = state.velocity;
         last_step = state.step;
@@ -678,10 +652,9 @@ namespace Voussoir
       double      interval = 0.01, stress_interval = 0.;
       std::string stress_sets;
 
-      std::unique_ptr<ObservedModel> model;
-      Schedule                       schedule, looks, stress_schedule;
-      Vector                         largest, accelerations;
-      Vector previous, last_look; // velocities of a step and of a look before
+      Schedule schedule, looks, stress_schedule;
+      Vector   largest, accelerations;
+      Vector   previous, last_look; // velocities of a step and of a look before
       unsigned long long              last_step = 0;  // of that look
       double                          looked_at = 0.; // interval of stress [s]
       std::unique_ptr<StressEnvelope> stress;         // null: not wanted

@@ -40,14 +40,12 @@ namespace Voussoir
   } // namespace
 
 
-  FaceMesh::FaceMesh(const ObservedModel            &model,
+  FaceMesh::FaceMesh(const Discretization           &discretization,
                      const std::vector<std::string> &sets,
                      const std::string              &place,
                      const std::string              &kind,
                      const std::vector<std::string> &all_names)
-    : folder(model.folder)
-    , log(model.log)
-    , discretization(model.solid.discretization)
+    : discretization(discretization)
     , kind(kind)
     , all_names(all_names)
   {
@@ -66,14 +64,8 @@ namespace Voussoir
     set_and_node.resize(places.nodes.size());
     for (const auto &[key, node] : places.nodes)
       set_and_node[node] = key;
-    points = std::make_unique<StressPoints>(model,
-                                            places.list,
-                                            node_of_place,
-                                            places.nodes.size());
     number_nodes(places.nodes, sets.size());
     find_normals(places.normals);
-    mean_stress.resize(places.nodes.size());
-    stress_sums = make_vector(6);
   }
 
 
@@ -111,7 +103,7 @@ namespace Voussoir
               discretization.mapping.transform_unit_to_real_cell(cell, unit));
             places.normals.resize(4 * places.nodes.size(), 0.);
           }
-        places.list.push_back({cell, unit});
+        all_places.push_back({cell, unit});
         node_of_place.push_back(item->second);
         place_keys.push_back(
           {set, Grid::global_key(cell) * 128 + j, item->second});
@@ -305,28 +297,63 @@ namespace Voussoir
   }
 
 
-  const std::vector<SymmetricTensor<2, 3>> &
-  FaceMesh::stress(const State &state)
+  const std::vector<StressPoints::Place> &
+  FaceMesh::places() const
   {
-    const auto &sums = points->evaluate(state);
-    components.resize(6 * sums.size());
-    for (unsigned int node = 0; node < sums.size(); ++node)
-      for (unsigned int c = 0; c < 6; ++c)
-        components[6 * node + c] = sums[node].access_raw_entry(c);
-    sum_over_holders(stress_sums, 6, components);
-    for (unsigned int node = 0; node < mean_stress.size(); ++node)
+    return all_places;
+  }
+
+
+  const std::vector<unsigned int> &
+  FaceMesh::nodes_of_places() const
+  {
+    return node_of_place;
+  }
+
+
+  void
+  FaceMesh::mean_over_places(Vector              &work,
+                             const unsigned int   width,
+                             std::vector<double> &values) const
+  {
+    sum_over_holders(work, width, values);
+    for (unsigned int node = 0; node < entries.size(); ++node)
       {
-        const double *sum   = stress_sums.begin() + 6 * entries[node];
+        const double *sum   = work.begin() + width * entries[node];
         const double  share = 1. / n_places_of_node[node];
-        for (unsigned int c = 0; c < 6; ++c)
-          mean_stress[node].access_raw_entry(c) = share * sum[c];
+        for (unsigned int c = 0; c < width; ++c)
+          values[width * node + c] = share * sum[c];
       }
-    return mean_stress;
+  }
+
+
+  FaceStress::FaceStress(const ObservedRun &run, const FaceMesh &mesh)
+    : mesh(mesh)
+    , points(run, mesh.places(), mesh.nodes_of_places(), mesh.n_nodes())
+    , sums(mesh.make_vector(6))
+    , means(mesh.n_nodes())
+  {}
+
+
+  const std::vector<SymmetricTensor<2, 3>> &
+  FaceStress::evaluate(const State &state)
+  {
+    const auto &parts = points.evaluate(state);
+    components.resize(6 * parts.size());
+    for (unsigned int node = 0; node < parts.size(); ++node)
+      for (unsigned int c = 0; c < 6; ++c)
+        components[6 * node + c] = parts[node].access_raw_entry(c);
+    mesh.mean_over_places(sums, 6, components);
+    for (unsigned int node = 0; node < means.size(); ++node)
+      for (unsigned int c = 0; c < 6; ++c)
+        means[node].access_raw_entry(c) = components[6 * node + c];
+    return means;
   }
 
 
   std::string
-  FaceMesh::write(const std::vector<std::string> &fields,
+  FaceMesh::write(const ObservedRun              &run,
+                  const std::vector<std::string> &fields,
                   const std::vector<double>      &values,
                   const std::string              &name,
                   const double                    time,
@@ -366,7 +393,9 @@ namespace Voussoir
     all_texts.push_back({kind + "_names", all_names});
     SurfaceOutput     output(std::move(patches), all_fields);
     const std::string file = name + ".vtu";
-    return write_vtu(output, folder + "/" + file, time, all_texts, log) ? file :
-                                                                          "";
+    return write_vtu(
+             output, run.folder + "/" + file, time, all_texts, run.log) ?
+             file :
+             "";
   }
 } // namespace Voussoir

@@ -41,32 +41,7 @@ namespace Voussoir
       check(const ObservedModel &model) const override
       {
         pictures.check(model);
-        make_mesh(model)->check_not_level(place);
-      }
-
-      void
-      prepare(const ObservedModel &model,
-              const double         start_time,
-              const bool           restarted) override
-      {
-        pictures.prepare(model, start_time, restarted);
-        schedule = Schedule(envelope_interval > 0. ? envelope_interval :
-                                                     model.resolving_interval(),
-                            model.time_step);
-        if (envelope_interval > 0.)
-          model.warn_of_coarse_looks(
-            envelope_interval,
-            "\"Envelope interval\" in section \"Output/face stresses\"");
-        mesh = make_mesh(model);
-        directions.clear();
-        envelopes.assign(n_values * mesh->n_nodes(), 0.);
-        for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
-          {
-            directions.push_back(mesh->arch_and_cantilever(node));
-            for (unsigned int c = 0; c < n_extremes; ++c)
-              envelopes[n_values * node + c] =
-                (is_largest(c) ? -1. : 1.) * std::numeric_limits<double>::max();
-          }
+        make_mesh(model).check_not_level(place);
       }
 
       void
@@ -96,7 +71,8 @@ namespace Voussoir
                         &envelopes[n_values * node + 2 * n_extremes]);
         if (picture)
           pictures.add(state.time,
-                       mesh->write({"arch_stress_MPa",
+                       mesh->write(run(),
+                                   {"arch_stress_MPa",
                                     "cantilever_stress_MPa",
                                     "largest_principal_stress_MPa",
                                     "smallest_principal_stress_MPa"},
@@ -105,10 +81,37 @@ namespace Voussoir
                                    state.time));
       }
 
+    private:
       void
-      finish(const State &state, nlohmann::json &summary) override
+      prepare() override
       {
-        mesh->write({"largest_arch_stress_MPa",
+        pictures.prepare(run());
+        schedule = Schedule(envelope_interval > 0. ? envelope_interval :
+                                                     run().resolving_interval(),
+                            run().time_step);
+        if (envelope_interval > 0.)
+          run().warn_of_coarse_looks(
+            envelope_interval,
+            "\"Envelope interval\" in section \"Output/face stresses\"");
+        mesh   = std::make_unique<FaceMesh>(make_mesh(run()));
+        stress = std::make_unique<FaceStress>(run(), *mesh);
+        directions.clear();
+        envelopes.assign(n_values * mesh->n_nodes(), 0.);
+        for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
+          {
+            directions.push_back(mesh->arch_and_cantilever(node));
+            for (unsigned int c = 0; c < n_extremes; ++c)
+              envelopes[n_values * node + c] =
+                (is_largest(c) ? -1. : 1.) * std::numeric_limits<double>::max();
+          }
+        keep([this] { return mesh->keyed_values(envelopes, n_values); });
+      }
+
+      void
+      conclude(const State &state, nlohmann::json &summary) override
+      {
+        mesh->write(run(),
+                    {"largest_arch_stress_MPa",
                      "smallest_arch_stress_MPa",
                      "largest_cantilever_stress_MPa",
                      "smallest_cantilever_stress_MPa",
@@ -147,18 +150,14 @@ namespace Voussoir
           }
       }
 
-      std::map<std::string, KeyedValues>
-      checkpoint_values() override
-      {
-        return mesh->keyed_values(envelopes, n_values);
-      }
-
-    private:
-      std::unique_ptr<FaceMesh>
+      FaceMesh
       make_mesh(const ObservedModel &model) const
       {
-        return std::make_unique<FaceMesh>(
-          model, split_list(sets), place, "face_set", model.names.face_sets);
+        return FaceMesh(model.solid.discretization,
+                        split_list(sets),
+                        place,
+                        "face_set",
+                        model.names.face_sets);
       }
 
       static constexpr unsigned int n_extremes = 6,
@@ -177,7 +176,7 @@ namespace Voussoir
       std::vector<double>
       stresses(const State &state)
       {
-        const auto         &tensors = mesh->stress(state);
+        const auto         &tensors = stress->evaluate(state);
         std::vector<double> result;
         result.reserve(4 * tensors.size());
         for (unsigned int node = 0; node < tensors.size(); ++node)
@@ -200,8 +199,9 @@ namespace Voussoir
       double        envelope_interval = 0.;
       PictureSeries pictures{"face_stresses", "Output/face stresses"};
 
-      Schedule                  schedule;
-      std::unique_ptr<FaceMesh> mesh;
+      Schedule                    schedule;
+      std::unique_ptr<FaceMesh>   mesh;
+      std::unique_ptr<FaceStress> stress;
 
       // of each node: arch, cantilever
       std::vector<std::array<Tensor<1, 3>, 2>> directions;

@@ -49,14 +49,13 @@ namespace Voussoir
     /** What the static stage left there. */
     struct InitialPoints
     {
-      explicit InitialPoints(const ObservedModel &model)
-        : drawn(model.solid.discretization, model.initial.displacement)
+      explicit InitialPoints(const ObservedRun &run)
+        : drawn(run.solid.discretization, run.initial.displacement)
         , temperature(
-            with_ghosts(model.solid.discretization, model.initial.temperature))
-        , values(model.solid.discretization.mapping,
-                 model.solid.discretization.fe,
-                 QIterated<3>(QTrapezoid<1>(),
-                              model.solid.discretization.degree),
+            with_ghosts(run.solid.discretization, run.initial.temperature))
+        , values(run.solid.discretization.mapping,
+                 run.solid.discretization.fe,
+                 QIterated<3>(QTrapezoid<1>(), run.solid.discretization.degree),
                  update_values)
         , temperatures(values.n_quadrature_points)
       {}
@@ -84,14 +83,14 @@ namespace Voussoir
     {
     public:
       /** @param memory w of FilteredDisplacement, or null */
-      PrincipalStresses(const ObservedModel &model, const Vector *memory)
-        : model(model)
-        , points(QTrapezoid<1>(), model.solid.discretization.degree)
-        , initial(model.initial.displacement.size() > 0 ?
-                    std::make_unique<InitialPoints>(model) :
+      PrincipalStresses(const ObservedRun &run, const Vector *memory)
+        : run(run)
+        , points(QTrapezoid<1>(), run.solid.discretization.degree)
+        , initial(run.initial.displacement.size() > 0 ?
+                    std::make_unique<InitialPoints>(run) :
                     nullptr)
         , memory(memory != nullptr ?
-                   std::make_unique<DrawnStrains>(model.solid.discretization,
+                   std::make_unique<DrawnStrains>(run.solid.discretization,
                                                   *memory) :
                    nullptr)
       {}
@@ -103,7 +102,7 @@ namespace Voussoir
       {
         const auto   cell = inputs.get_cell<3>();
         const double damping =
-          model.solid.materials[model.solid.grid().material(cell)]
+          run.solid.materials[run.solid.grid().material(cell)]
             ->damping_factor();
         if (initial)
           initial->reinit(cell);
@@ -116,7 +115,7 @@ namespace Voussoir
             SymmetricTensor<2, 3> filtered = symmetrize(gradient);
             if (strains_of_memory != nullptr)
               filtered += damping * (*strains_of_memory)[q];
-            const LawStress law(model, cell, points.point(q));
+            const LawStress law(run, cell, points.point(q));
             const auto      elastic =
               initial ? law.elastic_strain(filtered,
                                            initial->strains[q],
@@ -149,7 +148,7 @@ namespace Voussoir
       }
 
     private:
-      const ObservedModel                 &model;
+      const ObservedRun                   &run;
       const QIterated<3>                   points;  // that are drawn
       const std::unique_ptr<InitialPoints> initial; // null: no static stage
       const std::unique_ptr<DrawnStrains>  memory;  // null: none of its own
@@ -189,66 +188,106 @@ namespace Voussoir
     {
       std::vector<VtuText> result{{"material_names", model.names.materials},
                                   {"cell_set_names", model.names.cell_sets}};
-      if (model.base.moves())
+      if (model.base_moves)
         result.push_back({"motion", {"relative to the rigid base"}});
       return result;
     }
   } // namespace
 
 
+  namespace
+  {
+    /** What is drawn. */
+    struct Picture
+    {
+      const std::vector<NodalField> &fields;
+      const std::vector<CellField>   cell_fields = {};
+
+      // stress, and the displacement that it goes with; or null
+      std::unique_ptr<const PrincipalStresses> stress   = nullptr;
+      Vector                                   filtered = {};
+    };
+
+
+    std::string
+    write(const ObservedModel  &model,
+          const MaterialMemory &memory,
+          const Picture        &picture,
+          const std::string    &folder,
+          const std::string    &name,
+          const double          time)
+    {
+      const Discretization &discretization = model.solid.discretization;
+
+      DataOut<3> data_out;
+      data_out.attach_dof_handler(discretization.dof_handler);
+      std::vector<Vector> vectors;
+      vectors.reserve(picture.fields.size());
+      for (const NodalField &field : picture.fields)
+        {
+          vectors.push_back(with_ghosts(discretization, *field.vector));
+          const bool one = field.names.size() == 1;
+          data_out.add_data_vector(
+            discretization.dof_handler,
+            vectors.back(),
+            one ? std::vector<std::string>(3, field.names[0]) : field.names,
+            std::vector<
+              DataComponentInterpretation::DataComponentInterpretation>(
+              3,
+              one ? DataComponentInterpretation::component_is_part_of_vector :
+                    DataComponentInterpretation::component_is_scalar));
+        }
+      if (picture.stress)
+        data_out.add_data_vector(picture.filtered, *picture.stress);
+
+      const auto material = material_of_cells(model);
+      const auto cell_set =
+        smallest_cell_sets(discretization.grid, model.names.cell_sets);
+      data_out.add_data_vector(material, "material");
+      data_out.add_data_vector(cell_set, "cell_set");
+      for (const CellField &field : picture.cell_fields)
+        data_out.add_data_vector(*field.values, field.name);
+      const auto remembered = memory_of_cells(model.solid, memory);
+      for (const auto &[memory_name, values] : remembered)
+        data_out.add_data_vector(values, vtk_name(memory_name));
+
+      data_out.build_patches(discretization.mapping, discretization.degree);
+      const std::string file = name + ".vtu";
+      const bool        written =
+        write_vtu(data_out, folder + "/" + file, time, texts(model), model.log);
+      return written ? file : "";
+    }
+  } // namespace
+
+
   std::string
-  write_fields(const ObservedModel           &model,
+  write_fields(const ObservedRun             &run,
                const std::vector<NodalField> &fields,
                const State                   *stress_of,
                const std::string             &name,
                const double                   time,
                const std::vector<CellField>  &cell_fields)
   {
-    const Discretization &discretization = model.solid.discretization;
-
-    DataOut<3> data_out;
-    data_out.attach_dof_handler(discretization.dof_handler);
-    std::vector<Vector> vectors;
-    vectors.reserve(fields.size() + 1);
-    for (const NodalField &field : fields)
-      {
-        vectors.push_back(with_ghosts(discretization, *field.vector));
-        const bool one = field.names.size() == 1;
-        data_out.add_data_vector(
-          discretization.dof_handler,
-          vectors.back(),
-          one ? std::vector<std::string>(3, field.names[0]) : field.names,
-          std::vector<DataComponentInterpretation::DataComponentInterpretation>(
-            3,
-            one ? DataComponentInterpretation::component_is_part_of_vector :
-                  DataComponentInterpretation::component_is_scalar));
-      }
-    std::unique_ptr<const PrincipalStresses> stresses;
+    Picture picture{fields, cell_fields};
     if (stress_of != nullptr)
       {
-        FilteredDisplacement filtered(model);
+        FilteredDisplacement filtered(run);
         filtered.update(*stress_of);
-        stresses =
-          std::make_unique<PrincipalStresses>(model, filtered.memory());
-        vectors.push_back(with_ghosts(discretization, filtered.displacement()));
-        data_out.add_data_vector(vectors.back(), *stresses);
+        picture.stress =
+          std::make_unique<PrincipalStresses>(run, filtered.memory());
+        picture.filtered =
+          with_ghosts(run.solid.discretization, filtered.displacement());
       }
+    return write(run, run.material_memory, picture, run.folder, name, time);
+  }
 
-    const auto material = material_of_cells(model);
-    const auto cell_set =
-      smallest_cell_sets(discretization.grid, model.names.cell_sets);
-    data_out.add_data_vector(material, "material");
-    data_out.add_data_vector(cell_set, "cell_set");
-    for (const CellField &field : cell_fields)
-      data_out.add_data_vector(*field.values, field.name);
-    const auto memory = memory_of_cells(model);
-    for (const auto &[memory_name, values] : memory)
-      data_out.add_data_vector(values, vtk_name(memory_name));
 
-    data_out.build_patches(discretization.mapping, discretization.degree);
-    const std::string file    = name + ".vtu";
-    const bool        written = write_vtu(
-      data_out, model.folder + "/" + file, time, texts(model), model.log);
-    return written ? file : "";
+  std::string
+  write_fields(const ObservedModel           &model,
+               const std::string             &folder,
+               const std::vector<NodalField> &fields,
+               const std::string             &name)
+  {
+    return write(model, {}, {fields}, folder, name, 0.);
   }
 } // namespace Voussoir

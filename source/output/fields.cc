@@ -32,20 +32,10 @@ namespace Voussoir
       }
 
       void
-      check(const ObservedModel &observed) const override
+      check(const ObservedModel &model) const override
       {
-        check_grouting(quantities, "Output/fields", observed);
-        pictures.check(observed);
-      }
-
-      void
-      prepare(const ObservedModel &observed,
-              const double         start_time,
-              const bool           restarted) override
-      {
-        model = std::make_unique<ObservedModel>(observed);
-        aspect_ratio.reinit(0);
-        pictures.prepare(observed, start_time, restarted);
+        check_grouting(quantities, "Output/fields", model);
+        pictures.check(model);
       }
 
       void
@@ -65,7 +55,7 @@ namespace Voussoir
           if (wants(quantity))
             {
               Vector &displacement = since[quantity] = state.displacement;
-              if (const Vector *origin = origin_of(quantity, model->initial))
+              if (const Vector *origin = origin_of(quantity, run().initial))
                 displacement -= *origin;
               std::string name = quantity;
               std::replace(name.begin(), name.end(), ' ', '_');
@@ -82,7 +72,7 @@ namespace Voussoir
                         {&aspect_ratio, "aspect_ratio"}};
           }
         pictures.add(state.time,
-                     write_fields(*model,
+                     write_fields(run(),
                                   nodal,
                                   wants("principal stress") ? &state : nullptr,
                                   pictures.next_name(state),
@@ -90,17 +80,24 @@ namespace Voussoir
                                   of_cells));
       }
 
+    private:
       void
-      finish(const State &, nlohmann::json &summary) override
+      prepare() override
+      {
+        aspect_ratio.reinit(0);
+        pictures.prepare(run());
+      }
+
+      void
+      conclude(const State &, nlohmann::json &summary) override
       {
         summary["pictures"] = pictures.size();
       }
 
-    private:
       void
       find_quality()
       {
-        const Triangulation<3> &mesh = model->solid.grid().triangulation();
+        const Triangulation<3> &mesh = run().solid.grid().triangulation();
         scaled_jacobian.reinit(mesh.n_active_cells());
         aspect_ratio.reinit(mesh.n_active_cells());
         for (const auto &cell : mesh.active_cell_iterators())
@@ -119,8 +116,6 @@ namespace Voussoir
 
       std::string   quantities = "displacement, principal stress";
       PictureSeries pictures{"fields", "Output/fields"};
-
-      std::unique_ptr<ObservedModel> model;
 
       // of the cells, once a picture wants them
       dealii::Vector<float> scaled_jacobian, aspect_ratio;

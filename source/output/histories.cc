@@ -1,7 +1,7 @@
 #include <voussoir/base/parameter_file.h>
-#include <voussoir/files/table.h>
 #include <voussoir/output/displacement_since.h>
 #include <voussoir/output/point_recorder.h>
+#include <voussoir/output/table_observer.h>
 
 namespace Voussoir
 {
@@ -27,9 +27,13 @@ namespace Voussoir
 
     /** Displacement, velocity and acceleration of named points, as columns of
      *  histories.csv. */
-    class Histories : public Observer
+    class Histories : public TableObserver
     {
     public:
+      Histories()
+        : TableObserver("histories.csv", 0.01)
+      {}
+
       void
       declare_parameters(ParameterHandler &prm) override
       {
@@ -57,11 +61,9 @@ namespace Voussoir
                           "passes by 0.71 [Hz]; 0 for the highest that the "
                           "mesh carries with eight nodes per wavelength.",
                           Patterns::Double(0.));
-        prm.add_parameter("Interval",
-                          interval,
-                          "Time between two lines [s]; the largest amounts in "
-                          "summary.json are those of all steps.",
-                          Patterns::Double(1e-6));
+        declare_interval(prm,
+                         "Time between two lines [s]; the largest amounts in "
+                         "summary.json are those of all steps.");
       }
 
       double
@@ -78,20 +80,35 @@ namespace Voussoir
       }
 
       void
-      prepare(const ObservedModel &model,
-              const double         start_time,
-              const bool           restarted) override
+      observe(const State &state) override
+      {
+        if (recorder.points().empty())
+          return;
+        recorder.observe(state);
+        if (recorder.n_waiting() >= 100)
+          flush();
+      }
+
+    private:
+      void
+      prepare() override
       {
         filtered_at =
-          filter_frequency > 0. ? filter_frequency : model.carried_frequency;
-        schedule = Schedule(interval, model.time_step);
-        recorder.prepare(model, 0., 0.443 / filtered_at);
-        largest.assign(recorder.points().size(), {});
+          filter_frequency > 0. ? filter_frequency : run().carried_frequency;
+        recorder.prepare(run(), 0., 0.443 / filtered_at);
+        keep("largest",
+             largest,
+             std::vector<std::array<double, n_quantities>>(
+               recorder.points().size()));
+        keep(
+          "window",
+          [this] { return recorder.save(); },
+          [this](const nlohmann::json &saved) { recorder.load(saved); });
         for (unsigned int k = n_recorded; k < n_quantities; ++k)
           {
             origins[k].assign(recorder.points().size(), {});
             if (const Vector *origin =
-                  origin_of(all_quantities[k].name, model.initial))
+                  origin_of(all_quantities[k].name, run().initial))
               origins[k] = recorder.displacement(*origin);
           }
         std::vector<std::string> columns;
@@ -104,30 +121,14 @@ namespace Voussoir
                   ' ' + "xyz"[d] +
                   (is_relative(p) ? " relative to " + reference_name() : "") +
                   " [" + all_quantities[k].unit + ']');
-        table.open(model.log,
-                   model.folder + "/histories.csv",
-                   columns,
-                   model.time_step,
-                   start_time,
-                   restarted);
+        open_table(columns);
       }
 
       void
-      observe(const State &state) override
+      conclude(const State &, nlohmann::json &summary) override
       {
         if (recorder.points().empty())
           return;
-        recorder.observe(state);
-        if (recorder.n_waiting() >= 100)
-          flush();
-      }
-
-      void
-      finish(const State &, nlohmann::json &summary) override
-      {
-        if (recorder.points().empty())
-          return;
-        flush();
         auto &result = summary["histories"];
         for (unsigned int p = 0; p < recorder.points().size(); ++p)
           {
@@ -147,23 +148,6 @@ namespace Voussoir
           }
       }
 
-      nlohmann::json
-      save() override
-      {
-        flush();
-        return {{"largest", largest}, {"window", recorder.save()}};
-      }
-
-      void
-      load(const nlohmann::json &saved) override
-      {
-        if (saved.at("largest").size() != largest.size())
-          return;
-        saved.at("largest").get_to(largest);
-        recorder.load(saved.at("window"));
-      }
-
-    private:
       /** Whether the motion of a point is written relative to another one,
        * which itself is not. */
       bool
@@ -201,7 +185,7 @@ namespace Voussoir
       }
 
       void
-      flush()
+      flush() override
       {
         const int reference = recorder.reference();
         for (const auto &line : recorder.take())
@@ -221,7 +205,7 @@ namespace Voussoir
                     if (wanted(k))
                       values.push_back(motion[k][d]);
               }
-            if (schedule.due(line.step))
+            if (has_line(line.step))
               table.write(line.time, values);
           }
         table.flush();
@@ -229,11 +213,9 @@ namespace Voussoir
 
       std::string quantities =
         "displacement, velocity, acceleration, filtered acceleration";
-      double interval = 0.01, filter_frequency = 0.;
+      double filter_frequency = 0.;
 
       PointRecorder recorder{"Output/histories", "Relative to"};
-      Schedule      schedule; // of lines
-      TimeTable     table;
 
       double filtered_at = 0.; // [Hz]
 

@@ -75,17 +75,17 @@ namespace Voussoir
 
 
   void
-  write_interface_envelopes(const ObservedModel                  &model,
+  write_interface_envelopes(const ObservedRun                    &run,
                             const std::vector<InterfaceExtremes> &extremes,
                             const double                          time)
   {
-    const Contact        &contact        = *model.contact;
-    const Discretization &discretization = model.solid.discretization;
-    const FaceMesh        mesh(model,
+    const Contact        &contact        = *run.contact;
+    const Discretization &discretization = run.solid.discretization;
+    const FaceMesh        mesh(discretization,
                         contact.surface_names(),
                         "\"Interfaces\"",
                         "interface",
-                        model.names.interfaces);
+                        run.names.interfaces);
 
     // from the ranks of the points to the owners of the nodes
     struct Record
@@ -122,6 +122,7 @@ namespace Voussoir
               values[n_envelopes * i + e] = known(3 * nodes[i].second);
         }
     mesh.write(
+      run,
       {"largest_opening_mm", "largest_slip_mm", "residual_slip_mm", "state"},
       values,
       "interface_envelopes",

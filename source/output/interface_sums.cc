@@ -1,3 +1,4 @@
+#include <voussoir/base/sum.h>
 #include <voussoir/output/interface_sums.h>
 
 namespace Voussoir
@@ -19,8 +20,9 @@ namespace Voussoir
   }
 
 
+  template <typename Number>
   void
-  add_to_sums(const ContactPoint &point, double *sum)
+  add_to_sums(const ContactPoint &point, Number *sum)
   {
     const Tensor<1, 3> &F      = point.force;
     const Tensor<1, 3>  global = F * point.frame;
@@ -50,6 +52,12 @@ namespace Voussoir
     sum[cohesion] += limits.bond + (open ? 0. : limits.cohesion);
     sum[friction] += open ? 0. : limits.friction * point.area;
   }
+
+  template void
+  add_to_sums(const ContactPoint &, double *);
+
+  template void
+  add_to_sums(const ContactPoint &, Sum *);
 
 
   std::array<double, n_surface_columns>

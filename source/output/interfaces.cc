@@ -2,9 +2,9 @@
 #include <voussoir/base/mpi.h>
 #include <voussoir/constraints/contact.h>
 #include <voussoir/fem/point_weights.h>
-#include <voussoir/files/table.h>
 #include <voussoir/output/interface_faces.h>
 #include <voussoir/output/interface_sums.h>
+#include <voussoir/output/table_observer.h>
 
 namespace Voussoir
 {
@@ -19,9 +19,13 @@ namespace Voussoir
                         "\"Blocks\" in section \"Output/interfaces\"";
 
     /** Opening, slip, forces and safety of all interfaces. */
-    class Interfaces : public Observer
+    class Interfaces : public TableObserver
     {
     public:
+      Interfaces()
+        : TableObserver("interfaces.csv", 0.01)
+      {}
+
       void
       declare_parameters(ParameterHandler &prm) override
       {
@@ -41,20 +45,18 @@ namespace Voussoir
           "forces: along one plane or along the line where two of them meet, "
           "zero if the block lifts off, infinite if nothing drives it or "
           "other planes block its way.");
-        prm.add_parameter("Interval",
-                          interval,
-                          "Time between two lines of interfaces.csv [s]. In it "
-                          "the sliding safety of a surface is (c A + f N) / T, "
-                          "what friction and cohesion could bear over the "
-                          "resultant of the shear, both where no keys hold. "
-                          "Extremes in summary.json are those of all steps.",
-                          Patterns::Double(1e-6));
+        declare_interval(prm,
+                         "Time between two lines of interfaces.csv [s]. In it "
+                         "the sliding safety of a surface is (c A + f N) / T, "
+                         "what friction and cohesion could bear over the "
+                         "resultant of the shear, both where no keys hold. "
+                         "Extremes in summary.json are those of all steps.");
       }
 
       void
-      check(const ObservedModel &observed) const override
+      check(const ObservedModel &model) const override
       {
-        if (observed.contact == nullptr)
+        if (model.interfaces == nullptr)
           throw UserError(
             "\"Observers\" in section \"Output\" names \"interfaces\", but the "
             "case has none; list some in section \"Interfaces\", or leave the "
@@ -62,84 +64,107 @@ namespace Voussoir
         parse_points(points_text, place);
         find_sliding_blocks(blocks_text,
                             blocks_place,
-                            observed.solid.discretization,
-                            *observed.contact);
-      }
-
-      void
-      prepare(const ObservedModel &observed,
-              const double         start_time,
-              const bool           restarted) override
-      {
-        model        = std::make_unique<ObservedModel>(observed);
-        contact      = observed.contact;
-        communicator = observed.solid.grid().communicator();
-        schedule     = Schedule(interval, observed.time_step);
-        points       = find_contact_points(*contact,
-                                     parse_points(points_text, place),
-                                     communicator);
-
-        const auto &names = contact->surface_names();
-        areas.assign(names.size(), 0.);
-        for (const ContactPoint &point : contact->points())
-          areas[point.surface] += point.area;
-        areas = sum_over_ranks(areas, communicator);
-        sums.clear();
-        largest_now.clear();
-        times.clear();
-        last_look = 0.;
-        extremes.assign(contact->points().size(), {{0., 0.}});
-        smallest_safety.assign(names.size(),
-                               std::numeric_limits<double>::infinity());
-        time_at_one.assign(names.size(), 0.);
-        blocks = find_sliding_blocks(blocks_text,
-                                     blocks_place,
-                                     observed.solid.discretization,
-                                     *contact);
-        safety_of_blocks.assign(blocks.size(), {});
-        energies_at_start = energies();
-
-        table.open(observed.log,
-                   observed.folder + "/interfaces.csv",
-                   columns(),
-                   observed.time_step,
-                   start_time,
-                   restarted);
+                            model.solid.discretization,
+                            *model.interfaces);
       }
 
       void
       observe(const State &state) override
       {
-        const std::size_t   n_surfaces = areas.size();
-        std::vector<double> sum(n_quantities * n_surfaces),
-          largest(2 * n_surfaces);
+        const std::size_t n_surfaces = areas.size();
+        Look              look{state.time,
+                  has_line(state.step),
+                  no_sums(n_quantities * n_surfaces),
+                  std::vector<double>(2 * n_surfaces)};
         for (unsigned int k = 0; k < extremes.size(); ++k)
           {
-            const ContactPoint &point = contact->points()[k];
+            const ContactPoint &point = contact().points()[k];
             const double opening = opening_of(point), slip = slip_of(point);
             extremes[k][0] = std::max(extremes[k][0], opening);
             extremes[k][1] = std::max(extremes[k][1], slip);
-            add_to_sums(point, &sum[n_quantities * point.surface]);
-            double *now = &largest[2 * point.surface];
+            add_to_sums(point, &look.parts[n_quantities * point.surface]);
+            double *now = &look.largest[2 * point.surface];
             now[0]      = std::max(now[0], opening);
             now[1]      = std::max(now[1], slip);
           }
         for (const NearestContactPoint &point : points)
           for (unsigned int d = 0; d < 3; ++d)
-            sum.push_back(
-              point.is_mine ? contact->points()[point.number].gap[d] : 0.);
-        sums.insert(sums.end(), sum.begin(), sum.end());
-        largest_now.insert(largest_now.end(), largest.begin(), largest.end());
-        times.emplace_back(state.time, schedule.due(state.step));
-        if (times.size() >= 100)
-          flush();
+            {
+              look.parts.push_back(no_sums(1)[0]);
+              look.parts.back() +=
+                point.is_mine ? contact().points()[point.number].gap[d] : 0.;
+            }
+        take(std::move(look));
+      }
+
+    private:
+      const Contact &
+      contact() const
+      {
+        return *run().contact;
       }
 
       void
-      finish(const State &state, nlohmann::json &summary) override
+      prepare() override
       {
-        flush();
-        write_interface_envelopes(*model, extremes, state.time);
+        points = find_contact_points(contact(),
+                                     parse_points(points_text, place),
+                                     communicator());
+        blocks = find_sliding_blocks(blocks_text,
+                                     blocks_place,
+                                     run().solid.discretization,
+                                     contact());
+
+        const std::size_t n_surfaces   = contact().surface_names().size();
+        std::vector<Sum>  sum_of_areas = no_sums(n_surfaces);
+        for (const ContactPoint &point : contact().points())
+          sum_of_areas[point.surface] += point.area;
+        areas = sum_over_ranks(sum_of_areas, communicator());
+
+        extremes.assign(contact().points().size(), {{0., 0.}});
+        keep([this] {
+          KeyedValues values{2, {}};
+          for (unsigned int k = 0; k < extremes.size(); ++k)
+            values.items.emplace_back(contact().keys()[k], extremes[k].data());
+          return std::map<std::string, KeyedValues>{{"extremes", values}};
+        });
+        smallest_safety.assign(n_surfaces,
+                               std::numeric_limits<double>::infinity());
+        keep(
+          "smallest safety",
+          [this] {
+            nlohmann::json saved;
+            for (const double value : smallest_safety)
+              saved.push_back(json_number(value));
+            return saved;
+          },
+          [this](const nlohmann::json &saved) {
+            for (unsigned int s = 0; s < smallest_safety.size(); ++s)
+              smallest_safety[s] = from_json_number(saved.at(s));
+          });
+        safety_of_blocks.assign(blocks.size(), {});
+        keep(
+          "blocks",
+          [this] {
+            nlohmann::json saved = nlohmann::json::array();
+            for (const SafetyHistory &block : safety_of_blocks)
+              saved.push_back(block.save());
+            return saved;
+          },
+          [this](const nlohmann::json &saved) {
+            for (unsigned int b = 0; b < blocks.size(); ++b)
+              safety_of_blocks[b].load(saved.at(b));
+          });
+        keep("time at one", time_at_one, std::vector<double>(n_surfaces, 0.));
+        keep("energies at start", energies_at_start, energies());
+        keep("last look", last_look, 0.);
+        open_table(columns());
+      }
+
+      void
+      conclude(const State &state, nlohmann::json &summary) override
+      {
+        write_interface_envelopes(run(), extremes, state.time);
 
         auto &result = summary["interfaces"];
         describe_surfaces(result["surfaces"]);
@@ -147,62 +172,19 @@ namespace Voussoir
           {
             auto &block = result["blocks"][blocks[b].name];
             block       = safety_of_blocks[b].summary();
-            block["id"] = number_of(blocks[b].name, model->names.cell_sets);
+            block["id"] = number_of(blocks[b].name, run().names.cell_sets);
           }
         for (const NearestContactPoint &point : points)
           describe_point(point, result["points"][point.name]);
         result["effort"] = effort();
       }
 
-      std::map<std::string, KeyedValues>
-      checkpoint_values() override
-      {
-        KeyedValues values{2, {}};
-        for (unsigned int k = 0; k < extremes.size(); ++k)
-          values.items.emplace_back(contact->keys()[k], extremes[k].data());
-        return {{"extremes", values}};
-      }
-
-      nlohmann::json
-      save() override
-      {
-        flush();
-        nlohmann::json safety;
-        for (const double value : smallest_safety)
-          safety.push_back(json_number(value));
-        nlohmann::json of_blocks = nlohmann::json::array();
-        for (const SafetyHistory &block : safety_of_blocks)
-          of_blocks.push_back(block.save());
-        return {{"smallest safety", safety},
-                {"blocks", of_blocks},
-                {"time at one", time_at_one},
-                {"energies at start", energies_at_start},
-                {"last look", last_look}};
-      }
-
-      void
-      load(const nlohmann::json &saved) override
-      {
-        if (saved.at("smallest safety").size() != smallest_safety.size())
-          return;
-        saved.at("smallest safety").get_to(smallest_safety);
-        for (double &value : smallest_safety)
-          value = from_json_number(value);
-        if (saved.at("blocks").size() == blocks.size())
-          for (unsigned int b = 0; b < blocks.size(); ++b)
-            safety_of_blocks[b].load(saved.at("blocks")[b]);
-        saved.at("time at one").get_to(time_at_one);
-        saved.at("energies at start").get_to(energies_at_start);
-        saved.at("last look").get_to(last_look);
-      }
-
-    private:
       /** Titles of the columns of interfaces.csv. */
       std::vector<std::string>
       columns() const
       {
         std::vector<std::string> titles;
-        for (const std::string &name : contact->surface_names())
+        for (const std::string &name : contact().surface_names())
           for (const char *quantity : surface_columns)
             titles.push_back(name + ' ' + quantity);
         for (const NearestContactPoint &point : points)
@@ -219,69 +201,53 @@ namespace Voussoir
       energies() const
       {
         std::vector<double> values;
-        for (const ContactSurface &surface : contact->surfaces())
+        for (const ContactSurface &surface : contact().surfaces())
           for (const double value : {surface.energy.impact,
                                      surface.energy.friction,
                                      surface.energy.bond,
                                      surface.energy.bars,
                                      surface.energy.uplift})
             values.push_back(value);
-        return sum_over_ranks(values, communicator);
+        return sum_over_ranks(values, communicator());
       }
 
-      /** The lines of all looks that wait. */
-      void
-      flush()
+      std::vector<double>
+      line_of(const Look &look) override
       {
-        const auto        all_sums = sum_over_ranks(sums, communicator);
-        const std::size_t width =
-          n_quantities * areas.size() + 3 * points.size();
-        Utilities::MPI::max(largest_now, communicator, largest_now);
-        for (std::size_t i = 0; i < times.size(); ++i)
+        const double       *sums  = look.sums.data();
+        const double        since = std::max(0., look.time - last_look);
+        std::vector<double> line;
+        for (unsigned int s = 0; s < areas.size(); ++s)
           {
-            const auto &[time, has_line] = times[i];
-            const double *sums_now       = &all_sums[width * i];
-            const double  interval       = std::max(0., time - last_look);
-
-            std::vector<double> line;
-            for (unsigned int s = 0; s < areas.size(); ++s)
-              {
-                const auto values =
-                  surface_values(sums_now + n_quantities * s,
-                                 &largest_now[2 * (areas.size() * i + s)],
-                                 areas[s]);
-                line.insert(line.end(), values.begin(), values.end());
-                const double safety = values.back();
-                smallest_safety[s]  = std::min(smallest_safety[s], safety);
-                // what slides is at its limit, up to the waves inside
-                if (safety < 1. + 1e-3)
-                  time_at_one[s] += interval;
-              }
-            for (unsigned int k = 0; k < 3 * points.size(); ++k)
-              line.push_back(1e3 * sums_now[n_quantities * areas.size() + k]);
-            for (unsigned int b = 0; b < blocks.size(); ++b)
-              {
-                line.push_back(safety_from_sums(blocks[b], sums_now, areas));
-                safety_of_blocks[b].add(time, interval, line.back());
-              }
-            last_look = std::max(last_look, time);
-            if (has_line)
-              table.write(time, line);
+            const auto values = surface_values(sums + n_quantities * s,
+                                               &look.largest[2 * s],
+                                               areas[s]);
+            line.insert(line.end(), values.begin(), values.end());
+            const double safety = values.back();
+            smallest_safety[s]  = std::min(smallest_safety[s], safety);
+            // what slides is at its limit, up to the waves inside
+            if (safety < 1. + 1e-3)
+              time_at_one[s] += since;
           }
-        table.flush();
-        sums.clear();
-        largest_now.clear();
-        times.clear();
+        for (unsigned int k = 0; k < 3 * points.size(); ++k)
+          line.push_back(1e3 * sums[n_quantities * areas.size() + k]);
+        for (unsigned int b = 0; b < blocks.size(); ++b)
+          {
+            line.push_back(safety_from_sums(blocks[b], sums, areas));
+            safety_of_blocks[b].add(look.time, since, line.back());
+          }
+        last_look = std::max(last_look, look.time);
+        return line;
       }
 
       void
       describe_surfaces(nlohmann::json &result) const
       {
-        const auto         &names = contact->surface_names();
+        const auto         &names = contact().surface_names();
         std::vector<double> values(4 * names.size());
         for (unsigned int k = 0; k < extremes.size(); ++k)
           {
-            const ContactPoint &point      = contact->points()[k];
+            const ContactPoint &point      = contact().points()[k];
             double             *of_surface = &values[4 * point.surface];
             of_surface[0] = std::max(of_surface[0], extremes[k][0]);
             of_surface[1] = std::max(of_surface[1], extremes[k][1]);
@@ -291,7 +257,7 @@ namespace Voussoir
                 std::max(of_surface[3],
                          std::hypot(point.velocity[1], point.velocity[2]));
           }
-        Utilities::MPI::max(values, communicator, values);
+        Utilities::MPI::max(values, communicator(), values);
         const auto  energies_now = energies();
         const char *kinds[] = {"impact", "friction", "bond", "bars", "uplift"};
         for (unsigned int s = 0; s < names.size(); ++s)
@@ -320,10 +286,10 @@ namespace Voussoir
         if (point.is_mine)
           largest.assign(extremes[point.number].begin(),
                          extremes[point.number].end());
-        largest = sum_over_ranks(largest, communicator);
+        largest = sum_over_ranks(largest, communicator());
         result  = {{"position [m]",
                     {point.position[0], point.position[1], point.position[2]}},
-                   {"surface", contact->surface_names()[point.surface]},
+                   {"surface", contact().surface_names()[point.surface]},
                    {"largest opening [mm]", 1e3 * largest[0]},
                    {"largest slip [mm]", 1e3 * largest[1]}};
       }
@@ -332,9 +298,9 @@ namespace Voussoir
       nlohmann::json
       effort() const
       {
-        const auto effort = contact->effort();
+        const auto effort = contact().effort();
         return {{"largest penetration over cell size",
-                 effort.penetration / contact->cell_size()},
+                 effort.penetration / contact().cell_size()},
                 {"largest residual", effort.residual},
                 {"most sweeps", effort.sweeps},
                 {"mean sweeps",
@@ -344,18 +310,8 @@ namespace Voussoir
       }
 
       std::string points_text, blocks_text;
-      double      interval = 0.01;
 
-      std::unique_ptr<ObservedModel>   model;
-      const Contact                   *contact = nullptr;
-      MPI_Comm                         communicator;
-      Schedule                         schedule;
       std::vector<NearestContactPoint> points;
-      TimeTable                        table;
-
-      // looks that are not written yet
-      std::vector<double>                  sums, largest_now;
-      std::vector<std::pair<double, bool>> times; // with a line
 
       std::vector<InterfaceExtremes> extremes; // of each point, over all steps
 

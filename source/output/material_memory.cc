@@ -120,16 +120,16 @@ namespace Voussoir
 
 
   void
-  for_each_crack(const ObservedModel                             &model,
+  for_each_crack(const ObservedRun                               &run,
                  const std::function<void(const Discretization::Cell &,
                                           const unsigned int,
                                           const double,
                                           const CrackOpening &)> &visit)
   {
-    for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
+    for (unsigned int m = 0; m < run.solid.materials.size(); ++m)
       {
-        const Material     &material = *model.solid.materials[m];
-        const PointHistory *history  = model.material_memory.of(m);
+        const Material     &material = *run.solid.materials[m];
+        const PointHistory *history  = run.material_memory.of(m);
         if (history == nullptr || !tells_of_cracks(material))
           continue;
         const std::size_t number =
@@ -154,20 +154,20 @@ namespace Voussoir
 
 
   std::map<std::string, dealii::Vector<float>>
-  memory_of_cells(const ObservedModel &model)
+  memory_of_cells(const Solid &solid, const MaterialMemory &memory)
   {
-    const auto n = model.solid.grid().triangulation().n_active_cells();
+    const auto n = solid.grid().triangulation().n_active_cells();
     std::map<std::string, dealii::Vector<float>> result;
-    for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
+    for (unsigned int m = 0; m < solid.materials.size(); ++m)
       {
-        const PointHistory *history = model.material_memory.of(m);
-        const auto          names   = names_of(*model.solid.materials[m]);
+        const PointHistory *history = memory.of(m);
+        const auto          names   = names_of(*solid.materials[m]);
         for (const std::string &name : names)
           if (result[name].size() == 0)
             result[name].reinit(n);
         if (history == nullptr)
           continue;
-        for_each_point(*model.solid.materials[m],
+        for_each_point(*solid.materials[m],
                        *history,
                        [&](const Discretization::Cell &cell,
                            const double                band,
@@ -183,10 +183,10 @@ namespace Voussoir
 
 
   WidestCrack
-  widest_crack(const ObservedModel &model)
+  widest_crack(const ObservedRun &run)
   {
     WidestCrack widest;
-    for_each_crack(model,
+    for_each_crack(run,
                    [&](const Discretization::Cell &,
                        const unsigned int,
                        const double        band,
@@ -195,7 +195,7 @@ namespace Voussoir
                        widest = {opening.now, opening.now / band};
                    });
     const auto all =
-      Utilities::MPI::all_gather(model.solid.grid().communicator(),
+      Utilities::MPI::all_gather(run.solid.grid().communicator(),
                                  std::make_pair(widest.share, widest.opening));
     const auto most = *std::max_element(all.begin(), all.end());
     return {most.second, most.first};
@@ -203,19 +203,19 @@ namespace Voussoir
 
 
   nlohmann::json
-  memory_summary(const ObservedModel            &model,
+  memory_summary(const ObservedRun              &run,
                  const std::vector<std::string> &material_names)
   {
     nlohmann::json result;
-    const MPI_Comm communicator = model.solid.grid().communicator();
-    for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
+    const MPI_Comm communicator = run.solid.grid().communicator();
+    for (unsigned int m = 0; m < run.solid.materials.size(); ++m)
       {
-        const PointHistory *history = model.material_memory.of(m);
+        const PointHistory *history = run.material_memory.of(m);
         if (history == nullptr)
           continue;
-        const auto          names = names_of(*model.solid.materials[m]);
+        const auto          names = names_of(*run.solid.materials[m]);
         std::vector<double> largest(names.size()), volumes(3);
-        for_each_point(*model.solid.materials[m],
+        for_each_point(*run.solid.materials[m],
                        *history,
                        [&](const Discretization::Cell &cell,
                            const double                band,

@@ -26,6 +26,86 @@ namespace Voussoir
   }
 
 
+  void
+  Observer::begin(const ObservedRun &run)
+  {
+    observed = std::make_unique<const ObservedRun>(run);
+    kept.clear();
+    kept_vectors.clear();
+    kept_values.clear();
+    prepare();
+  }
+
+
+  void
+  Observer::finish(const State &state, nlohmann::json &summary)
+  {
+    flush();
+    conclude(state, summary);
+  }
+
+
+  void
+  Observer::keep(const std::string                                 &name,
+                 const std::function<nlohmann::json()>             &save,
+                 const std::function<void(const nlohmann::json &)> &load)
+  {
+    kept[name] = {save, load};
+  }
+
+
+  void
+  Observer::keep(const std::string &name, Vector &vector)
+  {
+    vector             = run().solid.discretization.create_vector();
+    kept_vectors[name] = &vector;
+  }
+
+
+  void
+  Observer::keep(
+    const std::function<std::map<std::string, KeyedValues>()> &values)
+  {
+    kept_values.push_back(values);
+  }
+
+
+  nlohmann::json
+  Observer::save()
+  {
+    flush();
+    nlohmann::json saved = nlohmann::json::object();
+    for (const auto &[name, item] : kept)
+      saved[name] = item.save();
+    return saved;
+  }
+
+
+  void
+  Observer::load(const nlohmann::json &saved)
+  {
+    for (const auto &[name, item] : kept)
+      item.load(saved.at(name));
+  }
+
+
+  std::map<std::string, Vector *>
+  Observer::checkpoint_vectors()
+  {
+    return kept_vectors;
+  }
+
+
+  std::map<std::string, KeyedValues>
+  Observer::checkpoint_values()
+  {
+    std::map<std::string, KeyedValues> all;
+    for (const auto &values : kept_values)
+      all.merge(values());
+    return all;
+  }
+
+
   Schedule::Schedule(const double interval, const double time_step)
     : steps(std::max(1LL, std::llround(std::min(interval / time_step, 1e15))))
   {}

@@ -161,7 +161,7 @@ namespace Voussoir
         prm.add_parameter("Face sets", sets, "Faces to look at.");
         add_option(prm,
                    "Stress",
-                   stress,
+                   compared,
                    "What is compared with the strength: the largest "
                    "principal stress, or the larger one of arch and "
                    "cantilever stress.");
@@ -203,9 +203,9 @@ namespace Voussoir
       void
       check(const ObservedModel &model) const override
       {
-        const auto mesh = make_mesh(model);
-        if (stress != ComparedStress::principal)
-          mesh->check_not_level(place);
+        const FaceMesh faces = make_mesh(model);
+        if (compared != ComparedStress::principal)
+          faces.check_not_level(place);
         const auto face_sets = split_list(sets);
         if (strengths.size() != 1 && strengths.size() != face_sets.size())
           throw UserError("\"Tensile strength\" in " + section + " has " +
@@ -233,38 +233,11 @@ namespace Voussoir
       }
 
       void
-      prepare(const ObservedModel &observed, const double, const bool) override
-      {
-        names     = split_list(sets);
-        log       = &observed.log;
-        folder    = observed.folder;
-        time_step = observed.time_step;
-        mesh      = make_mesh(observed);
-        areas     = std::make_unique<AreaAbove>(*mesh, ratios);
-        directions.clear();
-        strength_of_node.clear();
-        for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
-          {
-            if (stress != ComparedStress::principal)
-              directions.push_back(mesh->arch_and_cantilever(node));
-            const unsigned int set = mesh->sets_and_nodes()[node].first;
-            strength_of_node.push_back(
-              strengths[strengths.size() == 1 ? 0 : set]);
-          }
-        largest.assign(2 * mesh->n_nodes(), 0.);
-        times.assign(n_ratios() * mesh->n_nodes(), 0.);
-        next_step = 0;
-        at_once.assign(n_areas(), {{0., 0.}});
-        waiting_areas.clear();
-        waiting_times.clear();
-      }
-
-      void
       observe(const State &state) override
       {
         if (state.step < next_step) // that of the checkpoint, seen before
           return;
-        const double interval = state.step == 0 ? 0. : time_step;
+        const double interval = state.step == 0 ? 0. : run().time_step;
         next_step             = state.step + 1;
         find_ratios(state);
         for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
@@ -286,13 +259,45 @@ namespace Voussoir
         areas->add(ratio_of_node,
                    waiting_areas.data() + waiting_areas.size() - n_areas());
         if (waiting_times.size() >= 1000)
-          find_largest_areas();
+          flush();
+      }
+
+    private:
+      void
+      prepare() override
+      {
+        names  = split_list(sets);
+        mesh   = std::make_unique<FaceMesh>(make_mesh(run()));
+        stress = std::make_unique<FaceStress>(run(), *mesh);
+        areas  = std::make_unique<AreaAbove>(*mesh, ratios);
+        directions.clear();
+        strength_of_node.clear();
+        for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
+          {
+            if (compared != ComparedStress::principal)
+              directions.push_back(mesh->arch_and_cantilever(node));
+            const unsigned int set = mesh->sets_and_nodes()[node].first;
+            strength_of_node.push_back(
+              strengths[strengths.size() == 1 ? 0 : set]);
+          }
+        largest.assign(2 * mesh->n_nodes(), 0.);
+        times.assign(n_ratios() * mesh->n_nodes(), 0.);
+        keep([this] {
+          auto values = mesh->keyed_values(largest, 2);
+          values.merge(mesh->keyed_values(times, n_ratios(), ", times"));
+          return values;
+        });
+        keep("next step", next_step, 0);
+        keep("largest areas",
+             at_once,
+             std::vector<std::array<double, 2>>(n_areas(), {{0., 0.}}));
+        waiting_areas.clear();
+        waiting_times.clear();
       }
 
       void
-      finish(const State &state, nlohmann::json &summary) override
+      conclude(const State &state, nlohmann::json &summary) override
       {
-        find_largest_areas();
         const std::vector<Face>  faces = find_faces();
         std::vector<std::string> reasons;
         nlohmann::json          &result = summary["over-stress"];
@@ -308,36 +313,13 @@ namespace Voussoir
         for (std::size_t i = 0; i < reasons.size(); ++i)
           verdict += (i == 0 ? "" : "; ") + reasons[i];
         result["verdict"] = verdict;
-        log->line("Over-stress of the faces: ", verdict);
+        run().log.line("Over-stress of the faces: ", verdict);
         if (!reasons.empty())
-          log->warn("\"over-stress\": ", verdict);
+          run().log.warn("\"over-stress\": ", verdict);
         write_curves(faces);
         write_fields(state.time);
       }
 
-      nlohmann::json
-      save() override
-      {
-        find_largest_areas();
-        return {{"next step", next_step}, {"largest areas", at_once}};
-      }
-
-      void
-      load(const nlohmann::json &saved) override
-      {
-        saved.at("next step").get_to(next_step);
-        saved.at("largest areas").get_to(at_once);
-      }
-
-      std::map<std::string, KeyedValues>
-      checkpoint_values() override
-      {
-        auto values = mesh->keyed_values(largest, 2);
-        values.merge(mesh->keyed_values(times, n_ratios(), ", times"));
-        return values;
-      }
-
-    private:
       /** What is found of a face set. */
       struct Face
       {
@@ -353,11 +335,14 @@ namespace Voussoir
         std::vector<double> accumulated, ever, at_once, time_at_once;
       };
 
-      std::unique_ptr<FaceMesh>
+      FaceMesh
       make_mesh(const ObservedModel &model) const
       {
-        return std::make_unique<FaceMesh>(
-          model, split_list(sets), place, "face_set", model.names.face_sets);
+        return FaceMesh(model.solid.discretization,
+                        split_list(sets),
+                        place,
+                        "face_set",
+                        model.names.face_sets);
       }
 
       /** The tension of cracked concrete says nothing about its demand. */
@@ -370,7 +355,7 @@ namespace Voussoir
           model.solid.grid().for_each_face(
             name, [&](const auto &cell, const unsigned int) {
               const int material = model.solid.grid().material(cell);
-              if (model.material_memory.of(material) != nullptr)
+              if (model.solid.materials[material]->n_history() > 0)
                 cracking = material;
             });
         cracking =
@@ -401,14 +386,14 @@ namespace Voussoir
       void
       find_ratios(const State &state)
       {
-        const auto &tensors = mesh->stress(state);
+        const auto &tensors = stress->evaluate(state);
         ratio_of_node.resize(tensors.size());
         for (unsigned int first = 0; first < tensors.size();
              first += Lanes::size())
           {
             const unsigned int n =
               std::min<std::size_t>(Lanes::size(), tensors.size() - first);
-            if (stress == ComparedStress::principal)
+            if (compared == ComparedStress::principal)
               {
                 SymmetricTensor3<Lanes> together;
                 for (unsigned int lane = 0; lane < n; ++lane)
@@ -435,7 +420,7 @@ namespace Voussoir
 
       /** Sums the areas of waiting moments over the ranks. */
       void
-      find_largest_areas()
+      flush() override
       {
         const auto sums = sum_over_ranks(waiting_areas, mesh->communicator());
         for (std::size_t i = 0; i < sums.size(); ++i)
@@ -603,8 +588,9 @@ namespace Voussoir
             columns.push_back(face.ever);
             columns.push_back(face.at_once);
           }
-        const std::string file = folder + "/over_stress.csv";
-        log->attempted(file, write_file(file, csv_of_columns(titles, columns)));
+        const std::string file = run().folder + "/over_stress.csv";
+        run().log.attempted(file,
+                            write_file(file, csv_of_columns(titles, columns)));
       }
 
       void
@@ -622,22 +608,20 @@ namespace Voussoir
             for (const double seconds : accumulated_times(node))
               fields_of_nodes.push_back(seconds);
           }
-        mesh->write(fields, fields_of_nodes, "over_stress", time);
+        mesh->write(run(), fields, fields_of_nodes, "over_stress", time);
       }
 
-      std::string         sets   = "upstream face, downstream face";
-      ComparedStress      stress = ComparedStress::principal;
+      std::string         sets     = "upstream face, downstream face";
+      ComparedStress      compared = ComparedStress::principal;
       std::vector<double> strengths{0.};
       std::vector<double>
              ratios{1., 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.};
       double longest_time = 0.4, largest_ratio = 2., largest_share = 20.;
 
-      std::vector<std::string>   names; // of the face sets
-      Log                       *log = nullptr;
-      std::string                folder;
-      double                     time_step = 0.; // [s]
-      std::unique_ptr<FaceMesh>  mesh;
-      std::unique_ptr<AreaAbove> areas;
+      std::vector<std::string>    names; // of the face sets
+      std::unique_ptr<FaceMesh>   mesh;
+      std::unique_ptr<FaceStress> stress;
+      std::unique_ptr<AreaAbove>  areas;
 
       // of each node: arch and cantilever if they are wanted, strength [Pa],
       // ratio now, largest one and when [s], and for each ratio of the list the

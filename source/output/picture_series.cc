@@ -50,17 +50,15 @@ namespace Voussoir
 
 
   void
-  PictureSeries::prepare(const ObservedModel &model,
-                         const double         start_time,
-                         const bool           restarted)
+  PictureSeries::prepare(const ObservedRun &run)
   {
-    folder    = model.folder;
-    time_step = model.time_step;
-    log       = &model.log;
+    folder    = run.folder;
+    time_step = run.time_step;
+    log       = &run.log;
     pictures.clear();
     const std::string list_file = folder + "/" + name + ".txt";
-    const double      before    = start_time - 0.5 * time_step;
-    if (restarted)
+    const double      before    = run.start_time - 0.5 * time_step;
+    if (run.restarted)
       {
         std::ifstream in(list_file);
         double        time;
@@ -69,7 +67,8 @@ namespace Voussoir
           if (time < before)
             pictures.emplace_back(time, file);
       }
-    list = log->grow(list_file, restarted ? size_before(list_file, before) : 0);
+    list =
+      log->grow(list_file, run.restarted ? size_before(list_file, before) : 0);
   }
 
 

@@ -55,16 +55,16 @@ namespace Voussoir
 
 
   void
-  PointRecorder::prepare(const ObservedModel &model,
-                         const double         interval,
-                         const double         window)
+  PointRecorder::prepare(const ObservedRun &run,
+                         const double       interval,
+                         const double       window)
   {
     record          = Record();
-    record.window   = std::max(1LL, std::llround(window / model.time_step));
-    record.model    = std::make_unique<ObservedModel>(model);
-    record.schedule = Schedule(interval, model.time_step);
+    record.window   = std::max(1LL, std::llround(window / run.time_step));
+    record.run      = std::make_unique<const ObservedRun>(run);
+    record.schedule = Schedule(interval, run.time_step);
     std::tie(record.points, record.reference) = parse();
-    record.weights = std::make_unique<PointWeights>(model.solid.discretization,
+    record.weights = std::make_unique<PointWeights>(run.solid.discretization,
                                                     record.points,
                                                     place);
   }
@@ -87,23 +87,14 @@ namespace Voussoir
   std::vector<Tensor<1, 3>>
   PointRecorder::displacement(const Vector &displacement) const
   {
-    const std::size_t         n = record.points.size();
-    std::vector<Tensor<1, 3>> result(n);
-    const auto                shares = record.weights->share(displacement);
-    std::vector<double>       values;
-    for (const Tensor<1, 3> &share : shares)
-      values.insert(values.end(), share.begin_raw(), share.end_raw());
-    values = sum_over_ranks(values, record.model->solid.grid().communicator());
-    for (std::size_t i = 0; i < values.size(); ++i)
-      result[i / 3][i % 3] = values[i];
-    return result;
+    return record.weights->value(displacement);
   }
 
 
   void
   PointRecorder::observe(const State &state)
   {
-    const double time_step = record.model->time_step;
+    const double time_step = record.run->time_step;
     // after a restart the last one comes once more
     if (!record.velocities.empty() && !record.has_last)
       record.velocities.pop_back();
@@ -113,17 +104,17 @@ namespace Voussoir
     if (record.has_last && record.schedule.due(state.step - 1))
       {
         const auto &velocities = record.velocities;
-        for (unsigned int p = 0; p < record.points.size(); ++p)
+        for (unsigned int i = 0; i < velocities.back().size(); ++i)
           for (unsigned int d = 0; d < 3; ++d)
             {
-              const double before = velocities.rbegin()[1][p][d],
-                           after  = velocities.back()[p][d];
-              record.shares.push_back(record.last_displacement[p][d]);
+              const double before = velocities.rbegin()[1][i][d],
+                           after  = velocities.back()[i][d];
+              record.shares.push_back(record.last_displacement[i][d]);
               record.shares.push_back(0.5 * (before + after));
               record.shares.push_back((after - before) / time_step);
               record.shares.push_back(after);
               record.shares.push_back(velocities.size() > record.window ?
-                                        velocities.front()[p][d] :
+                                        velocities.front()[i][d] :
                                         0.);
             }
         record.steps.push_back(state.step - 1);
@@ -140,7 +131,7 @@ namespace Voussoir
     for (const auto &velocity : record.velocities)
       for (const Tensor<1, 3> &v : velocity)
         values.insert(values.end(), v.begin_raw(), v.end_raw());
-    return sum_over_ranks(values, record.model->solid.grid().communicator());
+    return sum_over_ranks(values, record.run->solid.grid().communicator());
   }
 
 
@@ -148,12 +139,12 @@ namespace Voussoir
   PointRecorder::load(const nlohmann::json &saved)
   {
     const std::vector<double> values = saved;
-    const std::size_t         n      = record.points.size();
+    const std::size_t n = record.weights->n_parts * record.points.size();
     if (n == 0 || values.size() % (3 * n) != 0)
       return;
     // the first rank has all of them
     const bool mine = Utilities::MPI::this_mpi_process(
-                        record.model->solid.grid().communicator()) == 0;
+                        record.run->solid.grid().communicator()) == 0;
     record.velocities.assign(values.size() / (3 * n),
                              std::vector<Tensor<1, 3>>(n));
     auto value = values.begin();
@@ -176,13 +167,13 @@ namespace Voussoir
   PointRecorder::take()
   {
     const auto sums =
-      sum_over_ranks(record.shares, record.model->solid.grid().communicator());
+      sum_over_ranks(record.shares, record.run->solid.grid().communicator());
     std::vector<Line> lines;
     auto              value = sums.begin();
     for (const unsigned long long step : record.steps)
       {
-        const RigidBase &ground    = record.model->base;
-        const double     time_step = record.model->time_step,
+        const RigidBase &ground    = record.run->base;
+        const double     time_step = record.run->time_step,
                      time          = double(step) * time_step,
                      window        = double(record.window) * time_step,
                      end           = time + 0.5 * time_step;
@@ -195,13 +186,21 @@ namespace Voussoir
         lines.push_back(
           {step, time, std::vector<PointMotion>(record.points.size())});
         for (PointMotion &motion : lines.back().points)
-          for (unsigned int d = 0; d < 3; ++d)
-            {
-              for (unsigned int k = 0; k < 3; ++k)
-                motion[k][d] = *value++ + base[k][d];
-              const double after = *value++, before_window = *value++;
-              motion[3][d] = (after - before_window) / window + base[3][d];
-            }
+          {
+            std::array<std::array<double, 5>, 3> sum_of_parts{};
+            for (unsigned int part = 0; part < record.weights->n_parts; ++part)
+              for (auto &of_component : sum_of_parts)
+                for (double &sum : of_component)
+                  sum += *value++;
+            for (unsigned int d = 0; d < 3; ++d)
+              {
+                const auto &[u, v, a, after, before_window] = sum_of_parts[d];
+                motion[0][d]                                = u + base[0][d];
+                motion[1][d]                                = v + base[1][d];
+                motion[2][d]                                = a + base[2][d];
+                motion[3][d] = (after - before_window) / window + base[3][d];
+              }
+          }
       }
     record.shares.clear();
     record.steps.clear();

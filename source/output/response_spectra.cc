@@ -67,34 +67,35 @@ namespace Voussoir
       }
 
       void
-      prepare(const ObservedModel &model, const double, const bool) override
-      {
-        folder      = model.folder;
-        log         = &model.log;
-        sample_step = model.time_step *
-                      std::max(1.,
-                               std::floor(model.looking_interval(interval) /
-                                            model.time_step +
-                                          1e-9));
-        recorder.prepare(model, sample_step);
-        directions.clear();
-        for (const std::string &component : split_list(components))
-          directions.push_back(component[0] - 'x');
-        accelerations.assign(recorder.points().size() * directions.size(), {});
-      }
-
-      void
       observe(const State &state) override
       {
         recorder.observe(state);
         if (recorder.n_waiting() >= 1000)
-          collect();
+          flush();
+      }
+
+    private:
+      void
+      prepare() override
+      {
+        sample_step = run().time_step *
+                      std::max(1.,
+                               std::floor(run().looking_interval(interval) /
+                                            run().time_step +
+                                          1e-9));
+        recorder.prepare(run(), sample_step);
+        directions.clear();
+        for (const std::string &component : split_list(components))
+          directions.push_back(component[0] - 'x');
+        keep("accelerations",
+             accelerations,
+             std::vector<std::vector<double>>(recorder.points().size() *
+                                              directions.size()));
       }
 
       void
-      finish(const State &, nlohmann::json &summary) override
+      conclude(const State &, nlohmann::json &summary) override
       {
-        collect();
         const auto periods = logarithmic_grid(shortest, longest, n_periods);
         std::vector<std::string>         titles{"period [s]"};
         std::vector<std::vector<double>> columns{periods};
@@ -118,23 +119,8 @@ namespace Voussoir
         write(titles, columns);
       }
 
-      nlohmann::json
-      save() override
-      {
-        collect();
-        return accelerations;
-      }
-
       void
-      load(const nlohmann::json &saved) override
-      {
-        if (saved.size() == accelerations.size())
-          saved.get_to(accelerations);
-      }
-
-    private:
-      void
-      collect()
+      flush() override
       {
         for (const auto &line : recorder.take())
           for (unsigned int p = 0; p < line.points.size(); ++p)
@@ -175,10 +161,11 @@ namespace Voussoir
       write(const std::vector<std::string>         &titles,
             const std::vector<std::vector<double>> &columns) const
       {
-        if (Utilities::MPI::this_mpi_process(log->communicator()) != 0)
+        if (Utilities::MPI::this_mpi_process(communicator()) != 0)
           return;
-        const std::string file = folder + "/response_spectra.csv";
-        log->attempted(file, write_file(file, csv_of_columns(titles, columns)));
+        const std::string file = run().folder + "/response_spectra.csv";
+        run().log.attempted(file,
+                            write_file(file, csv_of_columns(titles, columns)));
       }
 
       std::string  components    = "x, y, z";
@@ -189,8 +176,6 @@ namespace Voussoir
 
       PointRecorder recorder{section, "Reference"};
 
-      std::string                      folder;
-      Log                             *log = nullptr;
       std::vector<unsigned int>        directions;
       double                           sample_step = 0.; // [s]
       std::vector<std::vector<double>> accelerations;    // by point, direction

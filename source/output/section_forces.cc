@@ -1,7 +1,6 @@
-#include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
-#include <voussoir/files/table.h>
 #include <voussoir/output/section_line.h>
+#include <voussoir/output/table_observer.h>
 
 namespace Voussoir
 {
@@ -30,9 +29,13 @@ namespace Voussoir
      * Forces and moments in sections through the dam, from the stress on a line
      * across it: N = int sigma dxi and M = int sigma xi dxi about the middle.
      */
-    class SectionForces : public Observer
+    class SectionForces : public TableObserver
     {
     public:
+      SectionForces()
+        : TableObserver("section_forces.csv", 0.01)
+      {}
+
       void
       declare_parameters(ParameterHandler &prm) override
       {
@@ -51,13 +54,11 @@ namespace Voussoir
         prm.add_parameter("Downstream",
                           downstream_sets,
                           "Face sets on which the lines end.");
-        prm.add_parameter("Interval",
-                          interval,
-                          "Time between two lines of section_forces.csv [s]; "
-                          "extremes are those of a twentieth of the shortest "
-                          "period that the mesh carries with eight nodes per "
-                          "wavelength, if that is shorter.",
-                          Patterns::Double(1e-6));
+        declare_interval(prm,
+                         "Time between two lines of section_forces.csv [s]; "
+                         "extremes are those of a twentieth of the shortest "
+                         "period that the mesh carries with eight nodes per "
+                         "wavelength, if that is shorter.");
       }
 
       void
@@ -67,49 +68,16 @@ namespace Voussoir
       }
 
       void
-      prepare(const ObservedModel &model,
-              const double         start_time,
-              const bool           restarted) override
-      {
-        communicator = model.solid.grid().communicator();
-        schedule     = Schedule(interval, model.time_step);
-        looks = Schedule(model.looking_interval(interval), model.time_step);
-        lines = make_lines(model);
-        std::vector<StressPoints::Place> places;
-        for (const SectionLine &line : lines)
-          for (const auto &point : line.points)
-            places.push_back(point.place);
-        stress_points = std::make_unique<StressPoints>(model, places);
-        shares.clear();
-        times.clear();
-        largest.assign(n_quantities * lines.size(),
-                       -std::numeric_limits<double>::max());
-        smallest.assign(n_quantities * lines.size(),
-                        std::numeric_limits<double>::max());
-        std::vector<std::string> columns;
-        for (const SectionLine &line : lines)
-          for (const Quantity &quantity : quantities)
-            columns.push_back(line.name + ' ' + quantity.name + " [" +
-                              quantity.unit + ']');
-        table.open(model.log,
-                   model.folder + "/section_forces.csv",
-                   columns,
-                   model.time_step,
-                   start_time,
-                   restarted);
-      }
-
-      void
       observe(const State &state) override
       {
-        const bool has_line = schedule.due(state.step);
-        if (!has_line && !looks.due(state.step))
+        if (!is_due(state.step))
           return;
-        const auto &stress = stress_points->evaluate(state);
-        auto        tensor = stress.begin();
+        const auto      &stress = stress_points->evaluate(state);
+        auto             tensor = stress.begin();
+        std::vector<Sum> shares;
         for (const SectionLine &line : lines)
           {
-            std::array<double, n_quantities> sums{};
+            std::vector<Sum> sums = no_sums(n_quantities);
             for (const auto &point : line.points)
               {
                 const double       factor  = 1e-6 * point.weight;
@@ -127,15 +95,38 @@ namespace Voussoir
               }
             shares.insert(shares.end(), sums.begin(), sums.end());
           }
-        times.emplace_back(state.time, has_line);
-        if (times.size() >= 100)
-          flush();
+        take({state.time, has_line(state.step), shares, {}});
+      }
+
+    private:
+      void
+      prepare() override
+      {
+        lines = make_lines(run());
+        std::vector<StressPoints::Place> places;
+        for (const SectionLine &line : lines)
+          for (const auto &point : line.points)
+            places.push_back(point.place);
+        stress_points = std::make_unique<StressPoints>(run(), places);
+        std::vector<std::string> columns;
+        for (const SectionLine &line : lines)
+          for (const Quantity &quantity : quantities)
+            columns.push_back(line.name + ' ' + quantity.name + " [" +
+                              quantity.unit + ']');
+        keep(extremes, columns.size());
+        open_table(columns);
+      }
+
+      std::vector<double>
+      line_of(const Look &look) override
+      {
+        extremes.take(look.sums);
+        return look.sums;
       }
 
       void
-      finish(const State &, nlohmann::json &summary) override
+      conclude(const State &, nlohmann::json &summary) override
       {
-        flush();
         auto &result = summary["section forces"];
         for (unsigned int i = 0; i < lines.size(); ++i)
           {
@@ -148,29 +139,13 @@ namespace Voussoir
               {
                 const std::string name = std::string(quantities[k].name) +
                                          " [" + quantities[k].unit + ']';
-                section["largest " + name]  = largest[n_quantities * i + k];
-                section["smallest " + name] = smallest[n_quantities * i + k];
+                const unsigned int column   = n_quantities * i + k;
+                section["largest " + name]  = extremes.largest[column];
+                section["smallest " + name] = extremes.smallest[column];
               }
           }
       }
 
-      nlohmann::json
-      save() override
-      {
-        flush();
-        return {{"largest", largest}, {"smallest", smallest}};
-      }
-
-      void
-      load(const nlohmann::json &saved) override
-      {
-        if (saved.at("largest").size() != largest.size())
-          return;
-        saved.at("largest").get_to(largest);
-        saved.at("smallest").get_to(smallest);
-      }
-
-    private:
       std::vector<SectionLine>
       make_lines(const ObservedModel &model) const
       {
@@ -186,46 +161,20 @@ namespace Voussoir
              "\"Downstream\" in section \"Output/section forces\"")}};
         std::vector<SectionLine> result;
         for (const SectionRequest &request : requests)
-          result.emplace_back(model, request, faces, place);
+          result.emplace_back(model.solid.discretization,
+                              request,
+                              faces,
+                              place);
         return result;
-      }
-
-      void
-      flush()
-      {
-        const auto        sums  = sum_over_ranks(shares, communicator);
-        const std::size_t width = n_quantities * lines.size();
-        for (std::size_t i = 0; i < times.size(); ++i)
-          {
-            const std::vector<double> values(sums.begin() + i * width,
-                                             sums.begin() + (i + 1) * width);
-            for (std::size_t k = 0; k < width; ++k)
-              {
-                largest[k]  = std::max(largest[k], values[k]);
-                smallest[k] = std::min(smallest[k], values[k]);
-              }
-            const auto &[time, has_line] = times[i];
-            if (has_line)
-              table.write(time, values);
-          }
-        table.flush();
-        shares.clear();
-        times.clear();
       }
 
       std::string sections_text;
       std::string upstream_sets   = "upstream face";
       std::string downstream_sets = "downstream face";
-      double      interval        = 0.01;
 
-      MPI_Comm                      communicator;
-      Schedule                      schedule, looks;
-      std::vector<SectionLine>      lines;
+      std::vector<SectionLine>      lines; // across the dam
       std::unique_ptr<StressPoints> stress_points;
-      TimeTable                     table;
-      std::vector<double>           largest, smallest, shares;
-
-      std::vector<std::pair<double, bool>> times; // of looks; with a line
+      Extremes                      extremes;
     };
 
     const Registry<Observer>::Add<SectionForces> registered(

@@ -330,7 +330,7 @@ namespace Voussoir
   }
 
 
-  SectionLine::SectionLine(const ObservedModel  &model,
+  SectionLine::SectionLine(const Discretization &discretization,
                            const SectionRequest &request,
                            const std::array<std::vector<FaceCorners>, 2> &faces,
                            const std::string                             &place)
@@ -353,7 +353,7 @@ namespace Voussoir
       normal *= -1.;
     thickness = std::abs(downstream);
     arch      = Tensor<1, 3>({-normal[1], normal[0], 0.});
-    place_points(model.solid.discretization, refuse);
+    place_points(discretization, refuse);
   }
 
 

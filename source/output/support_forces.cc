@@ -1,12 +1,9 @@
-#include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/constraints/contact.h>
 #include <voussoir/fem/named_sets.h>
 #include <voussoir/fem/nodal_values.h>
-#include <voussoir/files/table.h>
-#include <voussoir/output/observer.h>
+#include <voussoir/output/table_observer.h>
 #include <voussoir/time/central_difference.h>
-
 
 namespace Voussoir
 {
@@ -24,9 +21,13 @@ namespace Voussoir
      * and what the static stages brought there; at a prescribed node the
      * impulse of a step over its length.
      */
-    class SupportForces : public Observer
+    class SupportForces : public TableObserver
     {
     public:
+      SupportForces()
+        : TableObserver("support_forces.csv", 0.01)
+      {}
+
       void
       declare_parameters(ParameterHandler &prm) override
       {
@@ -38,10 +39,8 @@ namespace Voussoir
           "that holds it, on the model, x, y, z [MN]; static state, loads and "
           "inertia of its nodes included. An edge of several sets counts for "
           "the first of them.");
-        prm.add_parameter("Interval",
-                          interval,
-                          "Time between two lines of support_forces.csv [s].",
-                          Patterns::Double(1e-6));
+        declare_interval(prm,
+                         "Time between two lines of support_forces.csv [s].");
       }
 
       double
@@ -57,50 +56,6 @@ namespace Voussoir
       }
 
       void
-      prepare(const ObservedModel &model,
-              const double         start_time,
-              const bool           restarted) override
-      {
-        communicator = model.solid.grid().communicator();
-        schedule     = Schedule(interval, model.time_step);
-        looks     = Schedule(model.looking_interval(interval), model.time_step);
-        time_step = model.time_step;
-        scheme    = model.scheme;
-        base      = &model.base;
-        supports.clear();
-        forces.clear();
-        times.clear();
-        has_step                        = false;
-        const auto                nodes = nodes_of_sets(model);
-        const std::vector<double> mass  = driven_mass(model);
-        std::vector<std::string>  columns;
-        for (const auto &[name, list] : nodes)
-          {
-            Support support{name, list, {}, {}};
-            for (const unsigned int node : list)
-              for (unsigned int d = 0; d < 3; ++d)
-                if (is_held(model.solid.discretization, node, d))
-                  {
-                    support.held_mass[d] += mass[node];
-                    if (model.initial.reaction.size() > 0)
-                      support.at_rest[d] +=
-                        model.initial.reaction.local_element(3 * node + d);
-                  }
-            supports.push_back(support);
-            for (unsigned int d = 0; d < 3; ++d)
-              columns.push_back(name + ' ' + "xyz"[d] + " [MN]");
-          }
-        largest.assign(columns.size(), -std::numeric_limits<double>::max());
-        smallest.assign(columns.size(), std::numeric_limits<double>::max());
-        table.open(model.log,
-                   model.folder + "/support_forces.csv",
-                   columns,
-                   model.time_step,
-                   start_time,
-                   restarted);
-      }
-
-      void
       observe(const State &state) override
       {
         // forces belong to the beginning of the step that ends with the state
@@ -108,30 +63,74 @@ namespace Voussoir
         has_step            = true;
         if (is_first)
           return;
-        const bool has_line = schedule.due(state.step - 1);
-        if (!has_line && !looks.due(state.step - 1))
+        const unsigned long long step = state.step - 1;
+        if (!is_due(step))
           return;
-        const double       time         = state.time - time_step;
-        const Tensor<1, 3> acceleration = base->acceleration(time);
+        const double       time         = state.time - run().time_step;
+        const Tensor<1, 3> acceleration = run().base.acceleration(time);
+        std::vector<Sum>   forces       = no_sums(3 * supports.size());
+        auto               force        = forces.begin();
         for (const Support &support : supports)
           {
             Tensor<1, 3> sum = support.at_rest;
             for (unsigned int d = 0; d < 3; ++d)
               sum[d] += support.held_mass[d] * acceleration[d];
             for (const unsigned int node : support.nodes)
-              sum += scheme->support_force(state, node);
+              sum += run().scheme.support_force(state, node);
             for (unsigned int d = 0; d < 3; ++d)
-              forces.push_back(1e-6 * sum[d]);
+              *force++ += 1e-6 * sum[d];
           }
-        times.emplace_back(time, has_line);
-        if (times.size() >= 100)
-          flush();
+        take({time, has_line(step), forces, {}});
+      }
+
+    private:
+      struct Support
+      {
+        std::string               name;
+        std::vector<unsigned int> nodes;     // of this rank
+        Tensor<1, 3>              at_rest;   // of the static stages [N]
+        Tensor<1, 3>              held_mass; // that a rigid base drives [kg]
+      };
+
+      void
+      prepare() override
+      {
+        supports.clear();
+        has_step                        = false;
+        const auto                nodes = nodes_of_sets(run());
+        const std::vector<double> mass  = driven_mass();
+        std::vector<std::string>  columns;
+        for (const auto &[name, list] : nodes)
+          {
+            Support support{name, list, {}, {}};
+            for (const unsigned int node : list)
+              for (unsigned int d = 0; d < 3; ++d)
+                if (is_held(run().solid.discretization, node, d))
+                  {
+                    support.held_mass[d] += mass[node];
+                    if (run().initial.reaction.size() > 0)
+                      support.at_rest[d] +=
+                        run().initial.reaction.local_element(3 * node + d);
+                  }
+            supports.push_back(support);
+            for (unsigned int d = 0; d < 3; ++d)
+              columns.push_back(name + ' ' + "xyz"[d] + " [MN]");
+          }
+        keep(extremes, columns.size());
+        open_table(columns);
+      }
+
+      std::vector<double>
+      line_of(const Look &look) override
+      {
+        extremes.take(look.sums);
+        return look.sums;
       }
 
       void
-      finish(const State &, nlohmann::json &summary) override
+      conclude(const State &, nlohmann::json &summary) override
       {
-        flush();
+        const auto &[largest, smallest] = extremes;
         if (supports.empty() || largest[0] < smallest[0])
           return;
         auto &result = summary["support forces"];
@@ -144,31 +143,6 @@ namespace Voussoir
               support["smallest " + axis + " [MN]"] = smallest[3 * i + d];
             }
       }
-
-      nlohmann::json
-      save() override
-      {
-        flush();
-        return {{"largest", largest}, {"smallest", smallest}};
-      }
-
-      void
-      load(const nlohmann::json &saved) override
-      {
-        if (saved.at("largest").size() != largest.size())
-          return;
-        saved.at("largest").get_to(largest);
-        saved.at("smallest").get_to(smallest);
-      }
-
-    private:
-      struct Support
-      {
-        std::string               name;
-        std::vector<unsigned int> nodes;     // of this rank
-        Tensor<1, 3>              at_rest;   // of the static stages [N]
-        Tensor<1, 3>              held_mass; // that a rigid base drives [kg]
-      };
 
       static bool
       is_held(const Discretization &discretization,
@@ -190,9 +164,9 @@ namespace Voussoir
         for (const auto &[name, constraint] : model.constraints)
           prescribed.insert(constraint->nodes().begin(),
                             constraint->nodes().end());
-        if (model.contact != nullptr)
-          of_interfaces.insert(model.contact->nodes().begin(),
-                               model.contact->nodes().end());
+        if (model.interfaces != nullptr)
+          of_interfaces.insert(model.interfaces->nodes().begin(),
+                               model.interfaces->nodes().end());
         std::vector<std::pair<std::string, std::vector<unsigned int>>> result;
         const auto sets = split_list(face_sets);
         if (sets.empty())
@@ -243,11 +217,12 @@ namespace Voussoir
       /** Of each owned node, as if none were held; what a rigid base does not
        *  move as inertia has none [kg]. */
       std::vector<double>
-      driven_mass(const ObservedModel &model) const
+      driven_mass() const
       {
-        const Discretization &discretization = model.solid.discretization;
+        const Solid          &solid          = run().solid;
+        const Discretization &discretization = solid.discretization;
         std::vector<double>   mass(discretization.n_owned_nodes(), 0.);
-        if (!model.base.moves())
+        if (!run().base_moves)
           return mass;
         NodalVolumes nodal_volumes(discretization);
         std::vector<std::pair<types::global_dof_index, double>> records;
@@ -255,8 +230,7 @@ namespace Voussoir
              discretization.dof_handler.active_cell_iterators())
           if (cell->is_locally_owned())
             {
-              const Material &material =
-                *model.solid.materials[model.solid.grid().material(cell)];
+              const Material &material = solid.material_of(cell);
               if (material.inertia_factor < 1.)
                 continue;
               const auto &volumes = nodal_volumes.of(cell);
@@ -272,41 +246,11 @@ namespace Voussoir
         return mass;
       }
 
-      void
-      flush()
-      {
-        const auto        sums  = sum_over_ranks(forces, communicator);
-        const std::size_t width = largest.size();
-        for (std::size_t i = 0; i < times.size(); ++i)
-          {
-            const std::vector<double> values(sums.begin() + i * width,
-                                             sums.begin() + (i + 1) * width);
-            for (std::size_t k = 0; k < width; ++k)
-              {
-                largest[k]  = std::max(largest[k], values[k]);
-                smallest[k] = std::min(smallest[k], values[k]);
-              }
-            if (times[i].second)
-              table.write(times[i].first, values);
-          }
-        table.flush();
-        forces.clear();
-        times.clear();
-      }
-
       std::string face_sets;
-      double      interval = 0.01;
 
-      MPI_Comm                 communicator = MPI_COMM_NULL;
-      const CentralDifference *scheme       = nullptr;
-      const RigidBase         *base         = nullptr;
-      Schedule                 schedule, looks; // of lines, of extremes
-      double                   time_step = 0.;  // [s]
-      bool                     has_step  = false;
-      std::vector<Support>     supports;
-      TimeTable                table;
-      std::vector<double>      largest, smallest, forces;
-      std::vector<std::pair<double, bool>> times; // whether of a line
+      bool                 has_step = false;
+      std::vector<Support> supports;
+      Extremes             extremes;
     };
 
     const Registry<Observer>::Add<SupportForces>

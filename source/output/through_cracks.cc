@@ -1,9 +1,9 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
-#include <voussoir/files/table.h>
 #include <voussoir/materials/tension_split.h>
 #include <voussoir/output/material_memory.h>
+#include <voussoir/output/table_observer.h>
 
 #include <deal.II/base/geometry_info.h>
 
@@ -152,21 +152,23 @@ namespace Voussoir
 
 
     /** Cracks that go through from one face of the dam to the other. */
-    class ThroughCracks : public Observer
+    class ThroughCracks : public TableObserver
     {
     public:
+      ThroughCracks()
+        : TableObserver("through_cracks.csv", 0.02)
+      {}
+
       void
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("From", from, "Face sets on which a crack begins.");
         prm.add_parameter("To", to, "Face sets on which it ends.");
-        prm.add_parameter("Interval",
-                          interval,
-                          "Time between two lines of through_cracks.csv [s]; "
-                          "cracks are looked at each twentieth of the shortest "
-                          "period that the mesh carries with eight nodes per "
-                          "wavelength, if that is shorter.",
-                          Patterns::Double(1e-6));
+        declare_interval(prm,
+                         "Time between two lines of through_cracks.csv [s]; "
+                         "cracks are looked at each twentieth of the shortest "
+                         "period that the mesh carries with eight nodes per "
+                         "wavelength, if that is shorter.");
       }
 
       double
@@ -192,46 +194,35 @@ namespace Voussoir
       }
 
       void
-      prepare(const ObservedModel &observed,
-              const double         start_time,
-              const bool           restarted) override
-      {
-        model    = std::make_unique<ObservedModel>(observed);
-        schedule = Schedule(interval, observed.time_step);
-        looks =
-          Schedule(observed.looking_interval(interval), observed.time_step);
-        most = {{0., 0.}};
-        shares.clear();
-        for (unsigned int m = 0; m < observed.solid.materials.size(); ++m)
-          shares.push_back(
-            shares_in_eighths(observed.solid.discretization.points(m)));
-        find_touching();
-        table.open(observed.log,
-                   observed.folder + "/through_cracks.csv",
-                   {now_title, ever_title},
-                   observed.time_step,
-                   start_time,
-                   restarted);
-      }
-
-      void
       observe(const State &state) override
       {
-        const bool has_line = schedule.due(state.step);
-        if (!has_line && !looks.due(state.step))
+        if (!is_due(state.step))
           return;
         const Ways ways = find_ways();
-        take(ways, state.time);
-        if (has_line)
+        compare(ways, state.time);
+        if (has_line(state.step))
           table.write(state.time, {ways.now, ways.ever});
       }
 
+    private:
       void
-      finish(const State &state, nlohmann::json &summary) override
+      prepare() override
       {
-        table.flush();
+        keep("most", most, {{0., 0.}});
+        shares.clear();
+        for (unsigned int m = 0; m < run().solid.materials.size(); ++m)
+          shares.push_back(
+            shares_in_eighths(run().solid.discretization.points(m)));
+        find_touching();
+        open_table({"opening from face to face now [mm]",
+                    "largest openings ever from face to face [mm]"});
+      }
+
+      void
+      conclude(const State &state, nlohmann::json &summary) override
+      {
         const Ways ways = find_ways();
-        take(ways, state.time);
+        compare(ways, state.time);
         summary["through cracks"] = {
           {"largest opening from face to face at one moment [mm]", most[0]},
           {"at the time [s]", most[1]},
@@ -239,19 +230,6 @@ namespace Voussoir
           {"largest openings ever from face to face [mm]", ways.ever}};
       }
 
-      nlohmann::json
-      save() override
-      {
-        return most;
-      }
-
-      void
-      load(const nlohmann::json &saved) override
-      {
-        saved.get_to(most);
-      }
-
-    private:
       static void
       check_sets(const ObservedModel &model,
                  const std::string   &place,
@@ -272,7 +250,7 @@ namespace Voussoir
       };
 
       void
-      take(const Ways &ways, const double time)
+      compare(const Ways &ways, const double time)
       {
         if (!(ways.now <= most[0])) // a NaN stays
           most = {{ways.now, time}};
@@ -281,7 +259,7 @@ namespace Voussoir
       Ways
       find_ways() const
       {
-        const Discretization &discretization = model->solid.discretization;
+        const Discretization &discretization = run().solid.discretization;
         using OfEighths                      = std::array<double, 8>;
         struct Cracked
         {
@@ -289,7 +267,7 @@ namespace Voussoir
           OfEighths            now{}, ever{};
         };
         std::vector<Cracked> cells;
-        for_each_crack(*model,
+        for_each_crack(run(),
                        [&](const Discretization::Cell &cell,
                            const unsigned int          q,
                            const double,
@@ -299,7 +277,7 @@ namespace Voussoir
                          if (cells.empty() || cells.back().cell != cell)
                            cells.push_back({cell});
                          const auto &share =
-                           shares[model->solid.grid().material(cell)][q];
+                           shares[run().solid.grid().material(cell)][q];
                          for (unsigned int corner = 0; corner < 8; ++corner)
                            {
                              const double factor = 1e3 * share[corner];
@@ -330,16 +308,15 @@ namespace Voussoir
                   mine[1].push_back(one);
               }
           }
-        const MPI_Comm communicator = discretization.grid.communicator();
-        return {widest_way(join_over_ranks(mine[0], communicator)),
-                widest_way(join_over_ranks(mine[1], communicator))};
+        return {widest_way(join_over_ranks(mine[0], communicator())),
+                widest_way(join_over_ranks(mine[1], communicator()))};
       }
 
       /** Finds the corners of cells that lie on the two sets of faces. */
       void
       find_touching()
       {
-        const Grid &grid = model->solid.grid();
+        const Grid &grid = run().solid.grid();
         touching.assign(grid.triangulation().n_locally_owned_active_cells(),
                         {});
         const std::array<std::string, 2> lists{{from, to}};
@@ -354,16 +331,7 @@ namespace Voussoir
               });
       }
 
-      static inline const std::string
-        now_title  = "opening from face to face now [mm]",
-        ever_title = "largest openings ever from face to face [mm]";
-
       std::string from = "upstream face", to = "downstream face";
-      double      interval = 0.02;
-
-      std::unique_ptr<ObservedModel> model;
-      Schedule                       schedule, looks; // of lines, of extremes
-      TimeTable                      table;
 
       // of each material and point
       std::vector<std::vector<std::array<double, 8>>> shares;

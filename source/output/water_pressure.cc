@@ -22,24 +22,13 @@ namespace Voussoir
       }
 
       void
-      check(const ObservedModel &observed) const override
+      check(const ObservedModel &model) const override
       {
-        if (observed.water == nullptr)
+        if (model.reservoir == nullptr)
           throw UserError("\"Observers\" in section \"Output\" names \"water "
                           "pressure\", but there is no water to look into; set "
                           "\"Model = compressible\" in section \"Reservoir\".");
-        pictures.check(observed);
-      }
-
-      void
-      prepare(const ObservedModel &observed,
-              const double         start_time,
-              const bool           restarted) override
-      {
-        folder = observed.folder;
-        water  = observed.water;
-        log    = &observed.log;
-        pictures.prepare(observed, start_time, restarted);
+        pictures.check(model);
       }
 
       void
@@ -47,9 +36,9 @@ namespace Voussoir
       {
         if (!pictures.due(state))
           return;
-        const AcousticSpace &space    = water->reservoir.space;
+        const AcousticSpace &space    = run().water->reservoir.space;
         Vector               pressure = space.create_ghosted_vector(); // [MPa]
-        pressure.copy_locally_owned_data_from(water->pressure);
+        pressure.copy_locally_owned_data_from(run().water->pressure);
         pressure *= 1e-6;
         pressure.update_ghost_values();
         DataOut<3> data_out;
@@ -57,20 +46,23 @@ namespace Voussoir
         data_out.add_data_vector(pressure, "pressure_MPa");
         data_out.build_patches(space.mapping, space.fe.degree);
         const std::string file = pictures.next_name(state) + ".vtu";
-        if (write_vtu(data_out, folder + "/" + file, state.time, {}, *log))
+        if (write_vtu(
+              data_out, run().folder + "/" + file, state.time, {}, run().log))
           pictures.add(state.time, file);
       }
 
+    private:
       void
-      finish(const State &, nlohmann::json &) override
+      prepare() override
+      {
+        pictures.prepare(run());
+      }
+
+      void
+      conclude(const State &, nlohmann::json &) override
       {}
 
-    private:
       PictureSeries pictures{"water_pressure", "Output/water pressure"};
-
-      std::string        folder;
-      const WaterMotion *water = nullptr;
-      Log               *log   = nullptr;
     };
 
     const Registry<Observer>::Add<WaterPressure>

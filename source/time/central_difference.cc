@@ -2,6 +2,7 @@
 #include <voussoir/time/central_difference.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 namespace Voussoir
@@ -128,6 +129,7 @@ namespace Voussoir
   CentralDifference::state_at_rest() const
   {
     State state;
+    state.accounts = EnergyAccounts(equation.discretization.reproducible);
     state.material_memory = equation.initial.material_memory;
     state.velocity        = equation.discretization.create_vector();
     state.memory.assign(maxwell.decay.size(), state.velocity);
@@ -155,7 +157,7 @@ namespace Voussoir
 
     // one sweep: w_n of damping, f(u_n + s w_n) - F_0, and
     // v+ = v- - dt M^-1 (f - F_0), u_(n+1) = u_n + dt v+
-    equation.internal_force.sweep(
+    const bool is_reproducible = equation.internal_force.sweep(
       force,
       {state.displacement,
        effective,
@@ -169,6 +171,8 @@ namespace Voussoir
       [&](const unsigned int begin, const unsigned int end) {
         update_motion(state, base, begin, end);
       });
+    if (!is_reproducible) // ends the run at the next line of the energy balance
+      state.velocity = std::numeric_limits<double>::quiet_NaN();
 
     // (M + M_a + dt/2 C) v+ = ... + dt (F_n - K_b u_n) where nodes have such
     nodal_update.correct(state, forces);

@@ -5,6 +5,20 @@ namespace Voussoir
 {
   using namespace dealii;
 
+  namespace
+  {
+    // The water that moves with the dam is mass of the modes, and damped as
+    // such.
+    NodalTerms::Matrix
+    damping_at(const NodalTerms  &terms,
+               const unsigned int slot,
+               const double       mass_coefficient)
+    {
+      return terms.dashpots[slot] + mass_coefficient * terms.added_mass[slot];
+    }
+  } // namespace
+
+
   NodalUpdate::NodalUpdate(const NodalTerms &terms,
                            const LumpedMass &mass,
                            const double      mass_coefficient,
@@ -24,14 +38,16 @@ namespace Voussoir
       {
         masses[slot] = node_value(mass.mass, terms.nodes[slot]);
         masses[slot] *= 1. + share * mass_coefficient;
+        const NodalTerms::Matrix damping =
+          damping_at(terms, slot, mass_coefficient);
         // a held component keeps its zero velocity: unit row and column
         Tensor<2, 3> matrix;
         for (unsigned int d = 0; d < 3; ++d)
           for (unsigned int e = 0; e < 3; ++e)
             {
               if (masses[slot][d] > 0. && masses[slot][e] > 0.)
-                matrix[d][e] = terms.added_mass[slot][d][e] +
-                               share * terms.dashpots[slot][d][e];
+                matrix[d][e] =
+                  terms.added_mass[slot][d][e] + share * damping[d][e];
               if (d == e)
                 matrix[d][e] += masses[slot][d] > 0. ? masses[slot][d] : 1.;
             }
@@ -60,7 +76,8 @@ namespace Voussoir
   {
     const Tensor<1, 3> &last = last_velocity[slot];
     return terms.added_mass[slot] * (next - last) / leap_frog.time_step +
-           terms.dashpots[slot] * leap_frog.damped(last, next) +
+           damping_at(terms, slot, mass_coefficient) *
+             leap_frog.damped(last, next) +
            terms.springs[slot] * last_displacement[slot] - applied[slot];
   }
 
@@ -89,13 +106,14 @@ namespace Voussoir
         const unsigned int  node     = terms.nodes[slot];
         const Tensor<1, 3> &last     = last_velocity[slot];
         const auto         &dashpots = terms.dashpots[slot];
+        const auto         &water    = terms.added_mass[slot];
         // what drives the added mass is the ground under a rigid base
-        applied[slot] = forces.of_slot(slot) - terms.added_mass[slot] * base;
+        applied[slot] = forces.of_slot(slot) - water * base;
         Tensor<1, 3> momentum =
-          terms.added_mass[slot] * last +
+          water * last +
           time_step *
             (applied[slot] - terms.springs[slot] * last_displacement[slot]) -
-          lag * (dashpots * last);
+          lag * (damping_at(terms, slot, mass_coefficient) * last);
         for (unsigned int d = 0; d < 3; ++d)
           {
             momentum[d] +=
@@ -108,6 +126,9 @@ namespace Voussoir
         state.accounts.work_of_forces += time_step * (applied[slot] * mean);
         state.accounts.loss_in_dashpots +=
           time_step * (mean * (dashpots * leap_frog.damped(last, next)));
+        state.accounts.loss_by_mass +=
+          time_step * mass_coefficient *
+          (mean * (water * leap_frog.damped(last, next)));
         // the sweep counted these on the motion without terms
         const Tensor<1, 3> swept        = node_value(state.velocity, node);
         const Tensor<1, 3> damped       = leap_frog.damped(last, next),
@@ -146,5 +167,10 @@ namespace Voussoir
       leap_frog.time_step *
       (mean * (dashpots * leap_frog.damped(last, velocity)) -
        was * (dashpots * leap_frog.damped(last, predicted)));
+    const auto &water = terms.added_mass[slot];
+    accounts.loss_by_mass +=
+      leap_frog.time_step * mass_coefficient *
+      (mean * (water * leap_frog.damped(last, velocity)) -
+       was * (water * leap_frog.damped(last, predicted)));
   }
 } // namespace Voussoir

@@ -78,7 +78,8 @@ namespace Voussoir
               }
           }
         work = Utilities::MPI::sum(
-          simulation->run.state.accounts.work_of_projections, communicator);
+          double(simulation->run.state.accounts.work_of_projections),
+          communicator);
 
         // mean velocities of the bars
         std::vector<double> momentum(4);

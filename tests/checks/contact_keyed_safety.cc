@@ -103,9 +103,9 @@ namespace Voussoir
       {
         const std::string folder     = "keyed";
         const auto        parameters = make_case(file);
-        const auto    simulation = make_simulation(*parameters, communicator);
-        ObservedModel model      = simulation->run.observed;
-        model.folder             = folder;
+        const auto  simulation = make_simulation(*parameters, communicator);
+        ObservedRun model      = simulation->run.observed;
+        model.folder           = folder;
         std::filesystem::create_directories(folder);
 
         const auto observer =
@@ -114,7 +114,7 @@ namespace Voussoir
         observer->declare_parameters(prm);
         prm.set("Blocks", "block: plane");
         observer->check(model);
-        observer->prepare(model, 0., false);
+        observer->begin(model);
         // two looks, so that time could pass at a safety below one
         observer->observe(simulation->run.state);
         State later = simulation->run.state;

@@ -38,12 +38,38 @@ namespace Voussoir
 
         CoarseMesh mesh = whole;
         split_interfaces(mesh, joints, "Test");
+        joints.pop_back();
+        refine_dam(whole, joints, verdicts, communicator);
+        joints.push_back("dam-rock interface");
         for (const unsigned int degree : {1, 2})
           check_ranks(
             verdicts, mesh, parameters->grid, degree, joints, communicator);
       }
 
     private:
+      /** The nodes of refined joints hang at their ends on coarse rock, where
+       *  they are not split. */
+      static void
+      refine_dam(const CoarseMesh               &whole,
+                 const std::vector<std::string> &joints,
+                 Verdicts                       &verdicts,
+                 const MPI_Comm                  communicator)
+      {
+        CoarseMesh mesh = whole;
+        split_interfaces(mesh, joints, "Test");
+        GridParameters all_refined, dam_refined;
+        all_refined.global_refinement = 1;
+        dam_refined.local_refinement  = "dam: 1";
+        const auto of_all =
+          all_clusters(mesh, all_refined, 1, joints, communicator);
+        verdicts.above("dam refined: clusters", of_all.size(), 300.);
+        verdicts.below(
+          "dam refined alone: joints, difference to all refined",
+          difference(all_clusters(mesh, dam_refined, 1, joints, communicator),
+                     of_all),
+          1e-12);
+      }
+
       void
       compare(const CoarseMesh               &whole,
               const std::vector<std::string> &interfaces,

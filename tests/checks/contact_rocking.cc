@@ -29,6 +29,10 @@ namespace Voussoir
         prm.add_parameter("Base", base, "Elevation of the joint [m].");
         prm.add_parameter("Angular velocity", rate, "At the start [1/s].");
         prm.add_parameter("Ways", ways, "From impact to impact, to compare.");
+        prm.add_parameter("On edges",
+                          on_edges,
+                          "Whether it touches its base there only, as "
+                          "Housner's block.");
       }
 
       void
@@ -79,6 +83,14 @@ namespace Voussoir
                       1e3 * 0.5 * rate * rate * inertia /
                         (0.5 * gravity * width),
                       0.03);
+        // a way takes as long as the angular velocity at its beginning is large
+        if (on_edges && duration.size() == ways)
+          verdicts.near("angular velocity after an impact over that before",
+                        std::pow(duration.back() / duration.front(),
+                                 1. / (ways - 1.)),
+                        1. - 1.5 * width * width /
+                               (width * width + height * height),
+                        0.01);
         verdicts.below("energy gained by an impact, over that before",
                        positive_part(gained),
                        0.);
@@ -109,7 +121,8 @@ namespace Voussoir
       }
 
       double       width = 1., height = 4., base = 0.5, rate = 0.1;
-      unsigned int ways = 4;
+      unsigned int ways     = 4;
+      bool         on_edges = false;
     };
 
     // Reference: closed form

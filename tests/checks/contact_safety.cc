@@ -62,10 +62,10 @@ namespace Voussoir
       static double
       reported(const ParameterFile &file, const MPI_Comm communicator)
       {
-        const auto    parameters = make_case(file);
-        const auto    simulation = make_simulation(*parameters, communicator);
-        ObservedModel model      = simulation->run.observed;
-        model.folder             = "observed";
+        const auto  parameters = make_case(file);
+        const auto  simulation = make_simulation(*parameters, communicator);
+        ObservedRun model      = simulation->run.observed;
+        model.folder           = "observed";
         if (Utilities::MPI::this_mpi_process(communicator) == 0)
           std::filesystem::create_directories(model.folder);
         MPI_Barrier(communicator);
@@ -74,7 +74,7 @@ namespace Voussoir
           Registry<Observer>::create("interfaces", "the check");
         ParameterHandler prm;
         observer->declare_parameters(prm);
-        observer->prepare(model, 0., false);
+        observer->begin(model);
         observer->observe(simulation->run.state);
         nlohmann::json summary;
         observer->finish(simulation->run.state, summary);

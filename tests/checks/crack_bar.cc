@@ -45,10 +45,11 @@ namespace Voussoir
         });
 
         std::set<long> layers;
-        const auto     damage = memory_of_cells(run.observed);
-        const auto     name   = damage.count("tension damage") > 0 ?
-                                  damage.find("tension damage") :
-                                  damage.find("damage");
+        const auto     damage =
+          memory_of_cells(simulation->model.solid, run.state.material_memory);
+        const auto name = damage.count("tension damage") > 0 ?
+                            damage.find("tension damage") :
+                            damage.find("damage");
         for (const auto &cell :
              simulation->model.grid.triangulation().active_cell_iterators())
           if (name->second[cell->active_cell_index()] > 0.5)
@@ -64,7 +65,7 @@ namespace Voussoir
                        made / turnover,
                        1e-3);
         verdicts.below("largest energy-balance error over the input",
-                       run.energy.summary()["largest energy-balance error"],
+                       run.energy.summary().largest_error,
                        0.01);
       }
 

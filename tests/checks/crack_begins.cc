@@ -68,7 +68,7 @@ namespace Voussoir
         verdicts.below("  largest jump of damping", jump / input, 0.004);
         verdicts.below("  given back by damping", fall / input, 0.004);
         verdicts.below("  largest energy-balance error",
-                       summary["largest energy-balance error"],
+                       summary.largest_error,
                        0.01);
       }
     };

@@ -66,7 +66,7 @@ namespace Voussoir
                           tolerances[l],
                           "J");
             verdicts.below("  largest energy-balance error over the input",
-                           run.energy.summary()["largest energy-balance error"],
+                           run.energy.summary().largest_error,
                            tolerances[l]);
           }
       }

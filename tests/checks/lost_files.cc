@@ -29,11 +29,9 @@ namespace Voussoir
       }
 
       void
-      prepare(const ObservedModel &model, const double, const bool) override
+      prepare() override
       {
-        folder = model.folder;
-        log    = &model.log;
-        done   = false;
+        done = false;
       }
 
       void
@@ -42,14 +40,15 @@ namespace Voussoir
         if (done || state.time < time)
           return;
         done = true;
-        on_first(log->communicator(), [this] { harm(); });
+        on_first(communicator(), [this] { harm(); });
       }
 
     private:
       void
       harm() const
       {
-        const std::string table = folder + "/histories.csv";
+        const std::string &folder = run().folder;
+        const std::string  table  = folder + "/histories.csv";
         if (kind == "folder removed")
           fs::remove_all(folder);
         else if (kind == "folder moved")
@@ -70,9 +69,7 @@ namespace Voussoir
       std::string kind;
       double      time = 0.;
 
-      std::string folder;
-      Log        *log  = nullptr;
-      bool        done = false;
+      bool done = false;
     };
 
     const Registry<Observer>::Add<Harm>

@@ -240,18 +240,16 @@ namespace Voussoir
 
         if (material.n_history() > 0)
           {
-            PointHistory &history = *memory.of(0);
-            KeyedValues   saved   = history.checkpoint_values();
-            std::vector<std::vector<double>> kept;
-            for (const auto &item : saved.items)
-              kept.emplace_back(item.second, item.second + saved.width);
+            PointHistory     &history = *memory.of(0);
+            const KeyedValues saved   = history.checkpoint_values();
+            std::vector<std::vector<double>> kept(saved.items.size());
+            for (unsigned int i = 0; i < kept.size(); ++i)
+              saved.row(i, kept[i]);
             Vector after = force;
             u *= 1.1;
             internal.respond(after, u, memory);
-            saved = history.checkpoint_values();
             for (unsigned int i = 0; i < kept.size(); ++i)
-              std::copy(kept[i].begin(), kept[i].end(), saved.items[i].second);
-            history.load();
+              saved.set(i, kept[i].data());
             Vector again = force;
             internal.respond(again, u, memory);
             again -= after;

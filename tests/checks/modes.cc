@@ -1,4 +1,5 @@
 #include "check.h"
+#include "momentum.h"
 
 namespace Voussoir
 {
@@ -6,7 +7,8 @@ namespace Voussoir
 
   namespace
   {
-    /** Largest entry of Phi^T M Phi - I and of Phi^T K Phi / omega^2 - I. */
+    /** Largest entry of Phi^T M Phi - I and of Phi^T K Phi / omega^2 - I, M
+     * with the added mass. */
     std::pair<double, double>
     orthogonality(const Simulation &simulation)
     {
@@ -16,8 +18,7 @@ namespace Voussoir
       for (const Mode &a : simulation.modes.list)
         {
           simulation.model.solid.internal_force.apply(force, a.shape);
-          momentum = a.shape;
-          momentum.scale(simulation.model.solid.mass.mass);
+          momentum           = momentum_with_water(simulation.model, a.shape);
           const double omega = 2. * numbers::PI * a.frequency;
           for (const Mode &b : simulation.modes.list)
             {

@@ -7,7 +7,8 @@ namespace Voussoir
   namespace
   {
     /** A model that nothing moves: modes alone are computed without steps, and
-     *  steps alone are said to show nothing. */
+     *  steps alone are said to show nothing. What a run returns is what
+     *  summary.json has, and what is read from that. */
     class NothingMoves : public Check
     {
     public:
@@ -16,14 +17,16 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const auto modes = summary_of(file, communicator);
+        const auto summary_of = [&](const ParameterFile &changed) {
+          return this->summary_of(changed, verdicts, communicator);
+        };
+        const auto modes = summary_of(file);
         verdicts.is_true("modes alone: no steps", modes["steps"] == 0);
         verdicts.is_true("modes alone: they are in the summary",
                          modes["modes"]["modes"].size() == 2);
         verdicts.is_true("modes alone: no warning", modes["warnings"].empty());
 
-        const auto rest =
-          summary_of(file.with({"Modes/Number=0"}), communicator);
+        const auto rest = summary_of(file.with({"Modes/Number=0"}));
         verdicts.is_true("without modes: steps", rest["steps"] > 0);
         verdicts.is_true("without modes: one warning, in the verdict",
                          rest["warnings"].size() == 1 &&
@@ -31,8 +34,7 @@ namespace Voussoir
 
         const auto pushed = summary_of(file.with({"Loads/Names=push",
                                                   "Loads/push/Face sets=top",
-                                                  "Loads/push/Pressure=1e5"}),
-                                       communicator);
+                                                  "Loads/push/Pressure=1e5"}));
         verdicts.is_true("modes and a load: steps", pushed["steps"] > 0);
         verdicts.is_true("modes and a load: no warning",
                          pushed["warnings"].empty());
@@ -40,13 +42,23 @@ namespace Voussoir
 
     private:
       static nlohmann::json
-      summary_of(const ParameterFile &file, const MPI_Comm communicator)
+      summary_of(const ParameterFile &file,
+                 Verdicts            &verdicts,
+                 const MPI_Comm       communicator)
       {
         const std::string folder = "nothing_moves_output";
         const auto        parameters =
           make_case(file.with({"Output/Folder=" + folder}));
-        make_simulation_with_files(*parameters, communicator)->run.march();
-        return read_summary(folder);
+        const RunSummary summary =
+          make_simulation_with_files(*parameters, communicator)->run.march();
+        const nlohmann::json written = read_summary(folder);
+        // as texts, as JSON has no infinite numbers
+        verdicts.is_true("the summary that is returned is written",
+                         nlohmann::json(summary).dump() == written.dump());
+        verdicts.is_true("and read again",
+                         nlohmann::json(written.get<RunSummary>()).dump() ==
+                           written.dump());
+        return written;
       }
     };
 

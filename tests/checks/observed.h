@@ -21,14 +21,14 @@ namespace Voussoir
     observer->declare_parameters(prm);
     for (const auto &[entry, value] : entries)
       prm.set(entry, value);
-    ObservedModel model = simulation.run.observed;
-    model.folder        = "observed";
+    ObservedRun model = simulation.run.observed;
+    model.folder      = "observed";
     if (dealii::Utilities::MPI::this_mpi_process(
           simulation.model.grid.communicator()) == 0)
       std::filesystem::create_directories(model.folder);
     MPI_Barrier(simulation.model.grid.communicator());
     observer->check(model);
-    observer->prepare(model, 0., false);
+    observer->begin(model);
     for (const State &state : states)
       observer->observe(state);
     nlohmann::json summary;

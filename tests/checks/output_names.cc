@@ -27,11 +27,11 @@ namespace Voussoir
     }
 
 
-    ObservedModel
+    ObservedRun
     model_with_folder(const Simulation &simulation, const std::string &folder)
     {
-      ObservedModel model = simulation.run.observed;
-      model.folder        = folder;
+      ObservedRun model = simulation.run.observed;
+      model.folder      = folder;
       if (Utilities::MPI::this_mpi_process(
             simulation.model.grid.communicator()) == 0)
         fs::create_directories(folder);
@@ -117,7 +117,7 @@ namespace Voussoir
           {
             const auto observer = make_observer(name, entries);
             observer->check(model);
-            observer->prepare(model, 0., false);
+            observer->begin(model);
             observer->observe(simulation->run.state);
             nlohmann::json nothing;
             observer->finish(simulation->run.state, nothing);
@@ -220,7 +220,7 @@ namespace Voussoir
 
             const auto observer = make_observer(name, entries);
             seen(*observer, again, states); // a whole run before
-            observer->prepare(again, 0., false);
+            observer->begin(again);
             for (unsigned int i = 5; i < 15; ++i) // and one that was stopped
               observer->observe(states[i]);
             const auto summary = seen(*observer, again, states);
@@ -237,10 +237,10 @@ namespace Voussoir
     private:
       static nlohmann::json
       seen(Observer                 &observer,
-           const ObservedModel      &model,
+           const ObservedRun        &model,
            const std::vector<State> &states)
       {
-        observer.prepare(model, 0., false);
+        observer.begin(model);
         for (const State &state : states)
           observer.observe(state);
         nlohmann::json summary;

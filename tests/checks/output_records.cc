@@ -16,11 +16,11 @@ namespace Voussoir
   namespace
   {
     /** The folder that the observers of these checks write to. */
-    ObservedModel
+    ObservedRun
     model_with_folder(const Simulation &simulation)
     {
-      ObservedModel model = simulation.run.observed;
-      model.folder        = "observed";
+      ObservedRun model = simulation.run.observed;
+      model.folder      = "observed";
       if (Utilities::MPI::this_mpi_process(
             simulation.model.grid.communicator()) == 0)
         std::filesystem::create_directories(model.folder);
@@ -48,7 +48,7 @@ namespace Voussoir
         observer->declare_parameters(prm);
         prm.set("Stress interval", 1e-9);
         prm.set("Stress in", "soil");
-        observer->prepare(model, 0., false);
+        observer->begin(model);
 
         const Discretization &discretization =
           simulation->model.solid.discretization;
@@ -148,10 +148,10 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const auto    parameters = make_case(file);
-        const auto    simulation = make_simulation(*parameters, communicator);
-        ObservedModel model      = model_with_folder(*simulation);
-        model.time_step          = 0.005;
+        const auto  parameters = make_case(file);
+        const auto  simulation = make_simulation(*parameters, communicator);
+        ObservedRun model      = model_with_folder(*simulation);
+        model.time_step        = 0.005;
         const auto observer =
           Registry<Observer>::create("response spectra", "the check");
         ParameterHandler prm;
@@ -163,7 +163,7 @@ namespace Voussoir
         prm.set("Longest period", 1.);
         prm.set("Number of periods", 3L);
         observer->check(model);
-        observer->prepare(model, 0., false);
+        observer->begin(model);
 
         // a = sin(w t) m/s2 at the base, three times that at the top
         const double omega = 2. * numbers::PI, dt = model.time_step;

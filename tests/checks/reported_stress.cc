@@ -23,14 +23,14 @@ namespace Voussoir
         observer->declare_parameters(prm);
         for (const auto &[entry, value] : entries)
           prm.set(entry, value);
-        ObservedModel model         = run.observed;
+        ObservedRun model           = run.observed;
         model.folder                = "watched";
         const MPI_Comm communicator = run.log.communicator();
         if (Utilities::MPI::this_mpi_process(communicator) == 0)
           std::filesystem::create_directories(model.folder);
         MPI_Barrier(communicator);
         observer->check(model);
-        observer->prepare(model, 0., false);
+        observer->begin(model);
       }
 
       void

@@ -105,29 +105,31 @@ namespace Voussoir
           memory = memory && same(uninterrupted.run.state.memory[i],
                                   going_on.run.state.memory[i]);
         verdicts.is_true("same damping memory, bit for bit", memory);
-        for (unsigned int i = 0; i < uninterrupted.run.setup->observers.size();
+        for (unsigned int i = 0;
+             i < uninterrupted.run.setup->plan.observers.size();
              ++i)
           for (const auto &[name, vector] :
-               uninterrupted.run.setup->observers[i]
+               uninterrupted.run.setup->plan.observers[i]
                  .second->checkpoint_vectors())
             verdicts.is_true("same " + name + ", bit for bit",
                              same(*vector,
-                                  *going_on.run.setup->observers[i]
+                                  *going_on.run.setup->plan.observers[i]
                                      .second->checkpoint_vectors()
                                      .at(name)));
-        for (unsigned int i = 0; i < uninterrupted.run.setup->observers.size();
+        for (unsigned int i = 0;
+             i < uninterrupted.run.setup->plan.observers.size();
              ++i)
           for (const auto &[name, values] :
-               uninterrupted.run.setup->observers[i]
+               uninterrupted.run.setup->plan.observers[i]
                  .second->checkpoint_values())
             verdicts.is_true(
-              "same " + uninterrupted.run.setup->observers[i].first + " of " +
-                name + ", bit for bit",
-              same(
-                values,
-                going_on.run.setup->observers[i].second->checkpoint_values().at(
-                  name),
-                communicator));
+              "same " + uninterrupted.run.setup->plan.observers[i].first +
+                " of " + name + ", bit for bit",
+              same(values,
+                   going_on.run.setup->plan.observers[i]
+                     .second->checkpoint_values()
+                     .at(name),
+                   communicator));
         if (uninterrupted.run.contact)
           compare_contact(*uninterrupted.run.contact,
                           *going_on.run.contact,

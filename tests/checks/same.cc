@@ -18,12 +18,14 @@ namespace Voussoir
   bool
   same(const KeyedValues &a, const KeyedValues &b, const MPI_Comm communicator)
   {
-    bool here = a.items.size() == b.items.size();
+    bool                here = a.items.size() == b.items.size();
+    std::vector<double> of_a, of_b;
     for (std::size_t i = 0; here && i < a.items.size(); ++i)
-      here = a.items[i].first == b.items[i].first &&
-             std::equal(a.items[i].second,
-                        a.items[i].second + a.width,
-                        b.items[i].second);
+      {
+        const double *row = a.row(i, of_a);
+        here              = a.items[i].first == b.items[i].first &&
+               std::equal(row, row + a.width, b.row(i, of_b));
+      }
     return Utilities::MPI::min(here ? 1 : 0, communicator) == 1;
   }
 

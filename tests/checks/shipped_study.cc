@@ -1,3 +1,4 @@
+#include <voussoir/driver/run_summary.h>
 #include <voussoir/driver/study.h>
 #include <voussoir/driver/summary_numbers.h>
 
@@ -60,7 +61,8 @@ namespace Voussoir
           {
             const auto parts = split_list(result, ':');
             const auto found =
-              Criterion(parts.at(1), "Results").look(summary_of(parts.at(0)));
+              Criterion(parts.at(1), "Results")
+                .look(summary_of(parts.at(0)).get<RunSummary>());
             verdicts.is_true("run " + result +
                                (found.second || !found.first ?
                                   std::string() :

@@ -245,20 +245,21 @@ namespace Voussoir
         for (unsigned long long n = 0; n < run.n_steps(); ++n)
           {
             const double t = run.state.time;
-            for (const auto &observer : run.setup->observers)
+            for (const auto &observer : run.setup->plan.observers)
               observer.second->observe(run.state);
             run.scheme.step(run.state);
             const Tensor<1, 3> now = momentum();
             Tensor<1, 3>       rate =
-              (now - before) / dt + mass * run.earthquake.base.acceleration(t);
+              (now - before) / dt +
+              mass * run.setup->earthquake.base.acceleration(t);
             rate[2] += mass * 9.81 * (stages.empty() ? std::sin(8. * t) : 1.);
             wanted.push_back(rate);
             before = now;
           }
         nlohmann::json summary;
-        for (const auto &observer : run.setup->observers)
+        for (const auto &observer : run.setup->plan.observers)
           observer.second->observe(run.state);
-        for (const auto &observer : run.setup->observers)
+        for (const auto &observer : run.setup->plan.observers)
           observer.second->finish(run.state, summary);
         MPI_Barrier(communicator);
 

@@ -10,15 +10,11 @@ namespace Voussoir
   {
   public:
     void
-    check(const ObservedModel &) const override
+    prepare() override
     {}
 
     void
-    prepare(const ObservedModel &, const double, const bool) override
-    {}
-
-    void
-    finish(const State &, nlohmann::json &) override
+    conclude(const State &, nlohmann::json &) override
     {}
   };
 } // namespace Voussoir

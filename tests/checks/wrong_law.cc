@@ -120,11 +120,11 @@ namespace Voussoir
               const std::string name =
                 "damping " + ratio + ", told " + told + ": ";
               verdicts.near(name + "told",
-                            summary["lost to cracks and plastic flow [J]"],
+                            summary.terms.material,
                             std::stod(told) * crack_energy,
                             0.01,
                             "J");
-              const double unaccounted = summary["unaccounted [J]"];
+              const double unaccounted = summary.unaccounted;
               verdicts.below(name + "unaccounted less what is not told, over "
                                     "the crack's energy",
                              unaccounted / crack_energy -

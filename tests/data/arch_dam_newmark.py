@@ -4,14 +4,15 @@ solvers, Newmark's constant mean acceleration. Shares nothing with Voussoir but
 mesh and ground motion, which it takes from a run's fields and ground_motion.csv.
 
     K   2 x 2 x 2 points      M   at the corners, as Voussoir has it (or row sums, or full)
-    C = a M + b K, of each material its own b; a from the ratio at two frequencies
+    C = a (M + M_w) + b K, of each material its own b; a, b from the ratio at two frequencies
     water: mass 7/8 rho sqrt(H h) n n^T per area (Westergaard), H the depth below
-           the level, of the column of faces, h that of the node; none of it damped
+           the level, of the column of faces, h that of the node
     rigid base: the forces - (M + M_w) a of what is no light rock
     boundary: springs and dashpots per area; K u + C v + sigma n of the free field,
            which is a column of linear elements under Newmark, too
 
-usage: arch_dam_newmark.py RUN [--massless] [--step DT] [--mass KIND] [--write FILE]
+usage: arch_dam_newmark.py RUN [--massless] [--step DT] [--mass KIND] [--all-levels] [--write FILE]
+                           [--picture FILE] [--calculix FILE]
        RUN is one of doc/published/arch_dam_*.prm
 """
 import argparse
@@ -257,7 +258,7 @@ class Newmark:
 class Boundary:
     """Absorbing planes around the rock, with the vertical waves that enter there."""
 
-    def __init__(self, model, step):
+    def __init__(self, model, step, all_levels):
         mesh = model.mesh
         E, nu, rho = ROCK
         G, M = E / 2 / (1 + nu), E * (1 - nu) / (1 + nu) / (1 - 2 * nu)
@@ -273,10 +274,10 @@ class Boundary:
         self.dashpots = model.blocks(nodes, size[shape] * rho * (cp * normal + cs * across))
         self.nodes = mesh.nodes
 
-        # the column: levels of the planes across the valley, x and y (S), z (P)
+        # the column: levels of the planes on the two banks, or of all; x and y (S), z (P)
         a, b = rayleigh()
         x = mesh.nodes[faces]
-        upright = abs(normals[:, 0]) > 0.5
+        upright = abs(normals[:, 2]) < 0.1 if all_levels else abs(normals[:, 0]) > 0.5
         self.levels = np.unique(np.round(x[upright, :, 2], 2))
         h = np.diff(self.levels)
         lumped = rho * np.convolve(h, [0.5, 0.5])
@@ -317,13 +318,13 @@ def integral(values, step):
     return np.concatenate([0 * values[:1], np.cumsum((values[1:] + values[:-1]) * step / 2, axis=0)])
 
 
-def response(model, motion, points, step, every, massless):
+def response(model, motion, points, step, every, massless, all_levels):
     """Absolute displacements of points [m], by time, every so many steps."""
     a, b = rayleigh()
     concrete, rock = model.stiffness
     times = np.arange(0, motion[-1, 0] + step / 2, step)
     ground = np.stack([np.interp(times, motion[:, 0], motion[:, d]) for d in (1, 2, 3)], axis=1)
-    damping = a * model.mass + b * (concrete if massless else concrete + rock)
+    damping = a * (model.mass + model.added) + b * (concrete if massless else concrete + rock)
     stiffness = concrete + rock
     if massless:
         model.hold()
@@ -332,7 +333,7 @@ def response(model, motion, points, step, every, massless):
         force = lambda n: (sum(ground[n, d] * directions[d] for d in range(3)))[model.free]
         ground_displacement = integral(integral(ground, step), step)
     else:
-        boundary = Boundary(model, step)
+        boundary = Boundary(model, step, all_levels)
         damping, stiffness = damping + boundary.dashpots, stiffness + boundary.springs
         # of outcrop motion half comes in
         velocity = integral(ground / 2, step)
@@ -379,6 +380,35 @@ def compare_static(mesh):
               f"{-1e3 * theirs[cell, a, 1]:.3f}", *(f"{mesh.data[n + '_principal_stress_MPa'][connectivity[cell, a]]:.4f}" for n in ("largest", "smallest")))
 
 
+def write_calculix(mesh, name):
+    """The dam under its loads at rest, and empty natural modes, for ccx."""
+    model = Model(mesh, True)
+    model.hold()
+    force = (model.stiffness[0] + model.stiffness[1]) @ model.static_state()
+    with open(name, "w") as file:
+        print("*NODE, NSET=ALL", file=file)
+        for n, x in enumerate(mesh.nodes, 1):
+            print(n, *(f"{c:.9g}" for c in x), sep=", ", file=file)
+        for part, cells, (E, nu, density) in (
+            ("DAM", np.flatnonzero(~mesh.rock), CONCRETE),
+            ("ROCK", np.flatnonzero(mesh.rock), (*ROCK[:2], LIGHT * ROCK[2])),
+        ):
+            print(f"*ELEMENT, TYPE=C3D8, ELSET={part}", file=file)
+            for cell in cells:
+                print(cell + 1, *(mesh.cells[cell] + 1), sep=", ", file=file)
+            print(f"*MATERIAL, NAME={part}\n*ELASTIC\n{E}, {nu}\n*DENSITY\n{density}", file=file)
+            print(f"*SOLID SECTION, ELSET={part}, MATERIAL={part}", file=file)
+        print("*NSET, NSET=HELD", *(n + 1 for n in np.unique(mesh.rim())), sep="\n", file=file)
+        print("*BOUNDARY\nHELD, 1, 3\n*STEP\n*STATIC\n*CLOAD", file=file)
+        for dof in model.free[abs(force[model.free]) > 1e-3]:
+            print(dof // 3 + 1, dof % 3 + 1, f"{force[dof]:.10g}", sep=", ", file=file)
+        print("*NODE PRINT, NSET=ALL\nU\n*END STEP\n*STEP\n*FREQUENCY\n6\n*END STEP", file=file)
+    crest = np.argmin(np.linalg.norm(mesh.nodes - [0, -7, 289], axis=1))
+    model = Model(mesh, True, "full")
+    model.hold()
+    print(f"{name}: node {crest + 1} is the middle of the crest; empty modes with full mass [Hz]", *(f"{f:.6f}" for f in model.modes(6, False)[0]))
+
+
 def draw(names, ours, theirs, file):
     import matplotlib
 
@@ -403,11 +433,15 @@ def main():
     parser.add_argument("--massless", action="store_true", help="with modes and static state")
     parser.add_argument("--mass", choices=("corners", "rows", "full"), default="corners")
     parser.add_argument("--step", type=float, default=0.002, help="[s]")
+    parser.add_argument("--all-levels", action="store_true", help="free field on the levels of all planes")
+    parser.add_argument("--calculix", help="only write an input of CalculiX")
     parser.add_argument("--write", help="table of the histories")
     parser.add_argument("--picture")
     options = parser.parse_args()
 
     mesh = Mesh(options.run)
+    if options.calculix:
+        return write_calculix(mesh, options.calculix)
     model = Model(mesh, options.massless, options.mass)
     print(f"{len(mesh.cells)} cells, {len(mesh.nodes)} nodes, dam {model.concrete_mass.sum() / 3:.5g} kg, "
           f"water along the river {model.added[1::3][:, 1::3].sum():.5g} kg")
@@ -424,7 +458,7 @@ def main():
     points = [np.argmin(np.linalg.norm(mesh.nodes - p, axis=1)) for p in places]
     print("points off nodes by", *(f"{np.linalg.norm(mesh.nodes[n] - p):.4f}" for n, p in zip(points, places)), "m")
     every = round((table[1, 0] - table[0, 0]) / options.step)
-    rows = response(model, motion, points, options.step, every, options.massless)
+    rows = response(model, motion, points, options.step, every, options.massless, options.all_levels)
     if options.write:
         np.savetxt(options.write, rows, delimiter=",", fmt="%.6g", header=",".join(names), comments="")
     if options.picture:

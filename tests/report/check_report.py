@@ -66,6 +66,10 @@ class Page(html.parser.HTMLParser):
                 return value_of(cells[titles.index(column)])
         raise KeyError(f"{row}, {column}")
 
+    def judged(self, criterion):
+        """How the first criterion of this name is judged."""
+        return next(cells[1] for cells in self.rows if cells[0] == criterion)
+
     def of(self, row):
         """The first number of the row of this name."""
         return value_of(next(cells[1] for cells in self.rows if cells[0] == row))
@@ -133,7 +137,17 @@ def check_wall(page):
             page.number("back", "longest time above 1 [s]"), 0., 0.)
     is_true("a linear analysis suffices", ["This run", "linear analysis suffices"] in page.rows)
     is_true("all pictures are in the page",
-            len(page.pictures) > 6 and all(p.startswith("data:image/png") for p in page.pictures))
+            len(page.pictures) > 6 and all(p.startswith(("data:image/png", "data:image/svg+xml"))
+                                     for p in page.pictures))
+    is_true("both verdicts are there", {"Conclusions", "Complete input"} <= set(page.headings)
+            and page.judged("energy-balance error, of what came in") == "met"
+            and page.judged("demand over static tensile strength") == "met")
+    is_true("places to sign", all([role, "", "", ""] in page.rows for role in ("prepared by", "checked by")))
+    compare("extent of the wall along x [m]",
+            value_of(next(cells[1] for cells in page.rows if cells[0].startswith("extent of the model")).split(" to ")[1]),
+            60., 0.)
+    compare("cells through the thickness of the wall",
+            page.of("cells through the thickness at the crown: top / middle / bottom"), 2., 0.)
 
 
 def check_words(text):

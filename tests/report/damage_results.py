@@ -41,7 +41,8 @@ options = parser.parse_args()
 sys.path.insert(0, str(options.report))
 import needed  # noqa: E402, F401
 from voussoir_report import __main__ as command, charts, scenes  # noqa: E402
-from voussoir_report import damage, faces, interfaces, motions, over_stress, page, structure, study  # noqa: E402, F401
+from voussoir_report import (damage, faces, interfaces, motions, over_stress, page, records,  # noqa: E402, F401
+                             structure, study, verdict)
 
 # what reports are made of, and must not be damaged without being refused
 TABLES = ("histories.csv", "energy.csv", "ground_motion.csv", "interfaces.csv", "over_stress.csv")
@@ -293,7 +294,7 @@ def main():
                                          "Study/Vary=Ground motion/Overload factor = 1, 2"))):
             subprocess.run([options.program, case, "--set", f"Output/Folder={whole / folder}", *entries],
                            check=True, stdout=subprocess.DEVNULL)
-        charts.DPI = 20  # drawing is not what is tested
+        charts.DPI = charts.FULL_DPI = 20  # drawing is not what is tested
         scenes.open_display()
         scenes.open_display = lambda: None
         failures, refused = 0, 0

@@ -32,23 +32,30 @@ namespace Voussoir
   class ElasticSolver
   {
   public:
+    /** What the stiffness may have beside that of the cells. */
+    struct Additions
+    {
+      /** Springs of an absorbing boundary that is not held. */
+      const NodalTerms *springs = nullptr;
+
+      /** Contact between parts of the model, which hold together where they
+       *  touch at this displacement until `tangent_contact` says otherwise. */
+      Contact      *contact      = nullptr;
+      const Vector *displacement = nullptr;
+
+      /** Ties that the constraints have. */
+      const TiedNodes *ties = nullptr;
+    };
+
     /**
      * @param constraints hanging nodes and all that is held, see
      *   Discretization::make_constraints(), and nodes that follow others
-     * @param springs     of the absorbing boundary, or null if it is held
-     * @param contact     between parts of the model, which hold together where
-     *   they touch at @p displacement until `tangent_contact` says otherwise,
-     *   or null
-     * @param ties        those that @p constraints have, or null
      */
     ElasticSolver(const Discretization                    &discretization,
                   const InternalForce                     &internal_force,
                   const std::vector<const Material *>     &materials,
                   const dealii::AffineConstraints<double> &constraints,
-                  const NodalTerms                        *springs,
-                  Contact                                 *contact = nullptr,
-                  const Vector    *displacement                    = nullptr,
-                  const TiedNodes *ties                            = nullptr);
+                  const Additions                         &additions);
 
     /** The contact whose tangent is part of the stiffness, or null. */
     StaticContact *

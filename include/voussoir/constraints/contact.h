@@ -153,6 +153,7 @@ namespace Voussoir
     static constexpr unsigned int memory_width = 20;
     using PointMemory = std::array<double, memory_width>;
 
+    bool                     exact_sums; // of the work
     InterfacePoints          interfaces;
     ContactSolver            solver;
     std::vector<PointMemory> point_memory;

@@ -24,7 +24,7 @@ namespace Voussoir
       dealii::Tensor<1, 3> impulse;
 
       /** Work done on the body in this step [J]. */
-      double work = 0.;
+      Sum work;
 
       /** How far the constraint is violated after the correction [m]. */
       double violation = 0.;

@@ -206,6 +206,10 @@ namespace Voussoir
     void
     find_water_of_uplift();
 
+    /** Refuses what reproducible sums do not cover. */
+    void
+    check_reproducible() const;
+
     void
     check();
   };

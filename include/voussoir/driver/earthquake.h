@@ -2,26 +2,21 @@
 #define voussoir_driver_earthquake_h
 
 #include <voussoir/driver/time_step.h>
+#include <voussoir/loads/ground_motion.h>
 #include <voussoir/loads/incoming_wave.h>
 #include <voussoir/loads/rigid_base.h>
 
 namespace Voussoir
 {
-  /** The earthquake of a run, in the one way or the other that it enters the
-   *  model. */
-  struct Earthquake
+  /** The motion of the ground that a case gives or has made. */
+  struct EarthquakeMotion
   {
-    /** Reads or makes the motion of the case and says what it is. */
-    Earthquake(const Model    &model,
-               const Damping  &damping,
-               const TimeStep &time_step,
-               Log            &log);
+    /** Reads or makes it and says what it is. Throws UserError for one that
+     *  cannot enter the model as the case wants. */
+    EarthquakeMotion(const Model &model, Log &log);
 
-    /** The ground under the model, at rest unless it is a rigid base. */
-    RigidBase base;
-
-    /** What enters through the absorbing boundary, or null. */
-    std::unique_ptr<IncomingWave> wave;
+    /** None where the ground does not move; the earthquake takes them. */
+    GroundMotionSignals signals;
 
     /** Accelerations up to the end time in x, y, z [m/s2], every
      *  `sample_interval` [s]; none where the ground does not move. */
@@ -34,6 +29,22 @@ namespace Voussoir
     /** The time to which a motion that never ends was followed down from the
      *  free surface, on which it depends a little [s]; 0 otherwise. */
     double followed_to = 0.;
+  };
+
+  /** The earthquake of a run, in the one way or the other that it enters the
+   *  model. */
+  struct Earthquake
+  {
+    Earthquake(const Model          &model,
+               GroundMotionSignals &&motion,
+               const Damping        &damping,
+               const TimeStep       &time_step);
+
+    /** The ground under the model, at rest unless it is a rigid base. */
+    RigidBase base;
+
+    /** What enters through the absorbing boundary, or null. */
+    std::unique_ptr<IncomingWave> wave;
   };
 } // namespace Voussoir
 

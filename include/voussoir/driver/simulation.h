@@ -25,8 +25,9 @@ namespace Voussoir
     Model        model;
 
   private:
-    std::unique_ptr<RunSetup> checked; // before the modes are known
-    RestState                 found;   // of the static stages
+    RunPlan                   plan;  // until the setup has it
+    std::unique_ptr<RunSetup> early; // null if damping waits for the modes
+    RestState                 found; // of the static stages
 
   public:
     const Modes modes;

@@ -3,6 +3,7 @@
 
 #include <voussoir/base/error.h>
 #include <voussoir/driver/result_folder.h>
+#include <voussoir/driver/run_summary.h>
 #include <voussoir/driver/study_parameters.h>
 
 namespace Voussoir
@@ -49,9 +50,14 @@ namespace Voussoir
     /** A run that is finished or failed. */
     struct Outcome
     {
+      Outcome(const StudyValues &values,
+              const std::string &folder,
+              const RunSummary  &summary);
+
       StudyValues    values;
       std::string    folder;
-      nlohmann::json summary;
+      RunSummary     summary;
+      nlohmann::json numbers; // of the summary, by their paths
     };
 
     /** What the search found: the criterion is met at `meets`, not at
@@ -82,7 +88,7 @@ namespace Voussoir
     outcome_of(const StudyValues &values);
 
     /** @param may_go_on from a checkpoint that the folder has */
-    nlohmann::json
+    RunSummary
     do_run(const Case        &parameters,
            const std::string &folder,
            const bool         may_go_on) const;

@@ -9,6 +9,8 @@
 
 namespace Voussoir
 {
+  struct RunSummary;
+
   /**
    * A number of summary.json by its path, as "histories/crest/largest
    * displacement [m]"; a star in a name stands for any letters, and
@@ -51,7 +53,7 @@ namespace Voussoir
      *  run that was stopped meets what happened before. Throws UserError if a
      *  run that went to its end does not have the number. */
     std::pair<std::optional<double>, bool>
-    look(const nlohmann::json &summary) const;
+    look(const RunSummary &summary) const;
 
     const std::string text;
 
@@ -60,15 +62,6 @@ namespace Voussoir
     bool                         above = true;
     double                       limit = 0.;
   };
-
-  /** Whether the run was stopped, see RunStopped. */
-  bool
-  was_stopped(const nlohmann::json &summary);
-
-  /** Whether the run has no result, by a mistake in its file or because its
-   *  results could not be written. */
-  bool
-  has_failed(const nlohmann::json &summary);
 } // namespace Voussoir
 
 #endif

@@ -3,6 +3,7 @@
 
 #include <voussoir/fem/leap_frog.h>
 #include <voussoir/fem/point_history.h>
+#include <voussoir/fem/rounding.h>
 
 #include <limits>
 
@@ -13,8 +14,10 @@ namespace Voussoir
   {
     const Discretization::MatrixFree &matrix_free;
     unsigned int                      begin, end;
-    bool                              one_point;     // of integration
-    double                            stress_factor; // k of this stage [1]
+    bool                              one_point;          // of integration
+    double                            stress_factor;      // k of this stage [1]
+    bool                              exact_sums = false; // of energies
+    Rounding *rounding = nullptr; // of forces; null: they stay as they are
   };
 
   /** A step of time as points with memory see it. */
@@ -98,10 +101,19 @@ namespace Voussoir
    */
   struct ElasticEnergy
   {
-    double strain    = 0.; // u^T K (u - dt v+) / 2
-    double memory    = 0.; // in the springs of the branches
-    double next_loss = 0.; // of the branches in the step that comes
-    double last_loss = 0.; // by viscosity in the step that was
+    ElasticEnergy() = default;
+
+    explicit ElasticEnergy(const bool exact)
+      : strain(exact)
+      , memory(exact)
+      , next_loss(exact)
+      , last_loss(exact)
+    {}
+
+    Sum strain;    // u^T K (u - dt v+) / 2
+    Sum memory;    // in the springs of the branches
+    Sum next_loss; // of the branches in the step that comes
+    Sum last_loss; // by viscosity in the step that was
 
     ElasticEnergy &
     operator+=(const ElasticEnergy &other)
@@ -118,8 +130,15 @@ namespace Voussoir
   /** Energy of the points that have left the elastic range [J]. */
   struct InelasticEnergy
   {
-    double stored  = 0.; // half a step before the displacement
-    double damping = 0.; // of what damping has taken, not lost
+    InelasticEnergy() = default;
+
+    explicit InelasticEnergy(const bool exact)
+      : stored(exact)
+      , damping(exact)
+    {}
+
+    Sum stored;  // half a step before the displacement
+    Sum damping; // of what damping has taken, not lost
 
     InelasticEnergy &
     operator+=(const InelasticEnergy &other)
@@ -239,6 +258,10 @@ namespace Voussoir
     /** Factor s on the damping memory, relative to the damping model. */
     virtual double
     damping_factor() const = 0;
+
+    /** lambda + 2 G of the elastic law [Pa]. */
+    virtual double
+    wave_modulus() const = 0;
   };
 } // namespace Voussoir
 

@@ -71,12 +71,13 @@ namespace Voussoir
      * @param natural_frequencies at those of the two modes that the parameters
      *   name Rayleigh damping has its ratio, and the first is the reference of
      *   Maxwell damping, if the parameters want that [Hz]
-     * @param undamped_limit stable step without damping of a mesh that is to
-     *   have mesh viscosity [s]; 0: it has none
      */
     explicit Damping(const DampingParameters   &parameters,
-                     const std::vector<double> &natural_frequencies = {},
-                     const double               undamped_limit      = 0.);
+                     const std::vector<double> &natural_frequencies = {});
+
+    /** Gives a mesh of this stable step without damping its viscosity [s]. */
+    void
+    add_mesh_viscosity(const double undamped_limit);
 
     /** Frequency at which the given moduli hold [Hz]; 0: at rest. */
     double

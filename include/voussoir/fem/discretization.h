@@ -14,6 +14,7 @@
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/matrix_free/matrix_free.h>
 
+#include <algorithm>
 #include <cstring>
 #include <map>
 
@@ -40,11 +41,26 @@ namespace Voussoir
   }
 
 
+  /** How what cells and faces contribute to a node is summed. */
+  enum class Sums
+  {
+    as_dealt,
+    reproducible
+  };
+
+  inline OptionNames<Sums>
+  option_names(const Sums)
+  {
+    return {{Sums::as_dealt, "as dealt"}, {Sums::reproducible, "reproducible"}};
+  }
+
+
   /** The entries of the section "Discretization". */
   struct DiscretizationParameters
   {
     unsigned int   degree     = 1;
     QuadratureRule quadrature = QuadratureRule::gauss;
+    Sums           sums       = Sums::as_dealt;
 
     void
     declare(dealii::ParameterHandler &prm);
@@ -102,6 +118,10 @@ namespace Voussoir
 
     const Grid        &grid;
     const unsigned int degree;
+    /** Whether results must not depend on the partition, bit for bit. */
+    const bool reproducible;
+    /** Of all cells, where results are reproducible [m]. */
+    double longest_edge = 0.;
     /** Share of the width of a cell that one crack takes. */
     double                            crack_share;
     const dealii::FESystem<3>         fe;
@@ -114,6 +134,10 @@ namespace Voussoir
     dealii::AffineConstraints<double> constraints;
     dealii::IndexSet                  owned_dofs, relevant_dofs;
     MatrixFree                        matrix_free;
+
+    /** Number of the quadrature whose points are the corners of the cells, in
+     *  the matrix-free data of cells with one point. */
+    static constexpr unsigned int corner_quadrature = 1;
 
     /** Material of each cell batch of the matrix-free data, which holds cells
      *  of one material only. */
@@ -189,7 +213,8 @@ namespace Voussoir
 
     /**
      * Sends records to the ranks that own their nodes; what arrives names the
-     * local node, in an order that does not depend on timing. @p Record must be
+     * local node, in an order that does not depend on timing, nor, if sums are
+     * reproducible, those of each node on the partition. @p Record must be
      * trivially copyable.
      */
     template <typename Record>
@@ -206,11 +231,17 @@ namespace Voussoir
     void
     number_by_nodes();
 
+    /** Gives each cell the geometry of its own corners. The library gives cells
+     *  that are alike but for round-off that of the first one a rank has. */
+    void
+    use_own_geometry();
+
     std::vector<dealii::types::global_dof_index> first_dof_of_rank;
     std::vector<Place>                           places; // of owned cells
 
-    std::function<bool(const unsigned int)> one_point_of_material;
-    const dealii::QMidpoint<3>              centre;
+    const DiscretizationParameters parameters;
+    const std::vector<bool>        has_memory; // of each material
+    const dealii::QMidpoint<3>     centre;
   };
 
 
@@ -229,7 +260,8 @@ namespace Voussoir
     std::map<unsigned int, std::vector<char>> outgoing;
     for (const auto &[node, record] : records)
       {
-        const Item item{node, record};
+        Item item{node, record};
+        __builtin_clear_padding(&item); // records are ordered by their bytes
         auto      &buffer = outgoing[owner(node)];
         const auto bytes  = reinterpret_cast<const char *>(&item);
         buffer.insert(buffer.end(), bytes, bytes + sizeof(Item));
@@ -237,14 +269,22 @@ namespace Voussoir
     // a map ordered by rank
     const auto incoming =
       dealii::Utilities::MPI::some_to_some(grid.communicator(), outgoing);
-    std::vector<std::pair<unsigned int, Record>> arrived;
+    std::vector<const char *> items;
     for (const auto &buffer : incoming)
       for (std::size_t i = 0; i < buffer.second.size(); i += sizeof(Item))
-        {
-          Item item;
-          std::memcpy(&item, buffer.second.data() + i, sizeof(Item));
-          arrived.emplace_back(owned_node(item.node), item.record);
-        }
+        items.push_back(buffer.second.data() + i);
+    // the records of one node by themselves
+    if (reproducible)
+      std::sort(items.begin(), items.end(), [](const char *a, const char *b) {
+        return std::memcmp(a, b, sizeof(Item)) < 0;
+      });
+    std::vector<std::pair<unsigned int, Record>> arrived;
+    for (const char *const bytes : items)
+      {
+        Item item;
+        std::memcpy(&item, bytes, sizeof(Item));
+        arrived.emplace_back(owned_node(item.node), item.record);
+      }
     return arrived;
   }
 } // namespace Voussoir

@@ -63,8 +63,11 @@ namespace Voussoir
      * before it is first read, after its last contribution has arrived (on one
      * rank; across ranks the library orders the exchange accordingly).
      * @p before may still change the vectors of the input.
+     *
+     * @return whether sums are as exact as they must be to be reproducible: not
+     *   if a cell of this rank is strained out of all measure
      */
-    void
+    bool
     sweep(Vector           &force,
           const SweepInput &input,
           MaterialMemory   &memory,
@@ -139,6 +142,11 @@ namespace Voussoir
                         const dealii::AlignedVector<Lanes> &masses) const;
 
   private:
+    /** Force that no cell brings to a node at a relative displacement within
+     *  it of this share of its longest edge [N]. */
+    double
+    limit_of_forces(const double strain) const;
+
     /** Calls work(kernel, cells, history) for the cells of all materials with
      *  a memory. */
     template <typename Work>

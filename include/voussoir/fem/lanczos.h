@@ -16,12 +16,14 @@ namespace Voussoir
    * @param start        with a part in every mode
    * @param inverse_mass diagonal of M^-1, zero where held
    * @param apply        first argument = A times the second
+   * @param reproducible whether the result must be the same on any number of
+   *   ranks, bit for bit, as far as it is up to sums here
    */
   double
-  largest_eigenvalue(
-    const Vector                                        &start,
-    const Vector                                        &inverse_mass,
-    const std::function<void(Vector &, const Vector &)> &apply);
+  largest_eigenvalue(const Vector &start,
+                     const Vector &inverse_mass,
+                     const std::function<void(Vector &, const Vector &)> &apply,
+                     const bool reproducible = false);
 } // namespace Voussoir
 
 #endif

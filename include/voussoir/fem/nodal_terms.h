@@ -1,6 +1,7 @@
 #ifndef voussoir_fem_nodal_terms_h
 #define voussoir_fem_nodal_terms_h
 
+#include <voussoir/base/sum.h>
 #include <voussoir/fem/discretization.h>
 
 #include <deal.II/base/symmetric_tensor.h>
@@ -50,13 +51,15 @@ namespace Voussoir
     slot_at(const unsigned int node) const;
 
     /** Kinetic energy of the added mass, of this rank [J]. */
-    double
-    kinetic_energy(const Vector &velocity) const;
+    Sum
+    kinetic_energy(const Vector &velocity, const bool exact = false) const;
 
     /** Energy in the springs between two steps, u_n K u_(n-1) / 2, of this rank
      *  [J]. */
-    double
-    spring_energy(const Vector &displacement, const Vector &previous) const;
+    Sum
+    spring_energy(const Vector &displacement,
+                  const Vector &previous,
+                  const bool    exact = false) const;
 
     /** Adds the springs' forces and @p dashpot_factor times what the dashpots
      *  make of the displacement [N]. */

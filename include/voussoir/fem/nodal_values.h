@@ -21,6 +21,11 @@ namespace Voussoir
   Vector
   with_ghosts(const Discretization &discretization, const Vector &vector);
 
+  /** Scalar product; @p reproducible: the same on any number of ranks, bit for
+   *  bit. */
+  double
+  product(const Vector &a, const Vector &b, const bool reproducible);
+
   /** Sum over all nodes of all ranks. */
   dealii::Tensor<1, 3>
   resultant(const Vector &vector);

@@ -1,7 +1,7 @@
 #ifndef voussoir_fem_one_point_cell_h
 #define voussoir_fem_one_point_cell_h
 
-#include <voussoir/fem/point_history.h>
+#include <voussoir/fem/discretization.h>
 
 #include <deal.II/matrix_free/fe_evaluation.h>
 
@@ -45,7 +45,7 @@ namespace Voussoir
     using MatrixFree = Discretization::MatrixFree;
 
     explicit OnePointCell(const MatrixFree &matrix_free)
-      : nodes(matrix_free, 0, corner_quadrature)
+      : nodes(matrix_free, 0, Discretization::corner_quadrature)
       , dof_info(matrix_free.get_dof_info())
       , local_size(matrix_free.get_vector_partitioner()->locally_owned_size() +
                    matrix_free.get_vector_partitioner()->n_ghost_indices())
@@ -136,9 +136,6 @@ namespace Voussoir
       integrate(flags);
       distribute_local_to_global(vector);
     }
-
-    /** Number of the quadrature whose points are the corners of the cells. */
-    static constexpr unsigned int corner_quadrature = 1;
 
   private:
     using Vector3 = dealii::Tensor<1, 3, Lanes>;

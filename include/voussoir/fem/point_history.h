@@ -2,6 +2,7 @@
 #define voussoir_fem_point_history_h
 
 #include <voussoir/base/keyed_values.h>
+#include <voussoir/base/sum.h>
 #include <voussoir/fem/crack_bands.h>
 #include <voussoir/fem/discretization.h>
 
@@ -35,6 +36,10 @@ namespace Voussoir
       return stress +
              impact * dealii::symmetrize(dealii::outer_product(normal, normal));
     }
+
+    /** Makes the lanes of elastic points as they are to begin with. */
+    void
+    forget_elastic();
   };
 
 
@@ -44,7 +49,15 @@ namespace Voussoir
    */
   struct PointLosses
   {
-    double material = 0., closing = 0., damping = 0.;
+    PointLosses() = default;
+
+    explicit PointLosses(const bool exact)
+      : material(exact)
+      , closing(exact)
+      , damping(exact)
+    {}
+
+    Sum material, closing, damping;
 
     PointLosses &
     operator+=(const PointLosses &other)
@@ -77,6 +90,14 @@ namespace Voussoir
     empty() const
     {
       return n_numbers == 0;
+    }
+
+    /** Whether what a cell does must not depend on which others share its
+     *  batch, down to round-off. */
+    bool
+    lanes_are_alone() const
+    {
+      return points->lanes_are_alone;
     }
 
     /** Points of a cell. */
@@ -206,13 +227,9 @@ namespace Voussoir
     std::vector<double>
     read(const Place &place, const unsigned int q) const;
 
-    /** What a checkpoint must hold; `load` takes what has been read into these
-     *  numbers. */
+    /** What a checkpoint must hold, a row for each cell. */
     KeyedValues
     checkpoint_values();
-
-    void
-    load();
 
     /** Since the start. */
     PointLosses losses;
@@ -221,6 +238,7 @@ namespace Voussoir
     /** Where the points are. */
     struct Points
     {
+      bool                                                lanes_are_alone;
       unsigned int                                        per_cell = 0;
       std::vector<unsigned int>                           slot_of_batch;
       std::vector<std::pair<Discretization::Cell, Place>> cells;
@@ -240,7 +258,10 @@ namespace Voussoir
     }
 
     void
-    exchange(const bool load);
+    pack(const Place &place, double *row) const;
+
+    void
+    unpack(const Place &place, const double *row);
 
     unsigned int                   n_numbers; // of a point
     std::shared_ptr<const Points>  points;
@@ -251,8 +272,6 @@ namespace Voussoir
     // place among the points that have left the elastic range, from one; or 0
     std::vector<unsigned int>          active;
     dealii::AlignedVector<ActivePoint> active_points;
-
-    std::vector<double> packed;
   };
 
 

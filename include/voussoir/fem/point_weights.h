@@ -18,7 +18,9 @@ namespace Voussoir
 
   /**
    * Interpolation weights at points of the mesh. Every rank holds those of its
-   * own nodes; the sum over the ranks is the value at the point.
+   * own nodes; the sum over the ranks is the value at the point. Where results
+   * are reproducible, each node has a part of its own, so that the parts of a
+   * point, summed last and in turn, are the same on any partition.
    */
   class PointWeights
   {
@@ -30,17 +32,27 @@ namespace Voussoir
 
     struct Weight
     {
-      unsigned int point, node;
+      unsigned int point, part, node;
       double       weight;
     };
     std::vector<Weight> items;
 
-    /** This rank's share of the value of a nodal vector at each point. */
+    /** Parts of each point. */
+    unsigned int n_parts = 1;
+
+    /** This rank's share of the value of a nodal vector at each point, part by
+     *  part. */
     std::vector<dealii::Tensor<1, 3>>
     share(const Vector &vector) const;
 
+    /** The values at the points, on all ranks, which must call this
+     *  together. */
+    std::vector<dealii::Tensor<1, 3>>
+    value(const Vector &vector) const;
+
   private:
     const unsigned int n_points;
+    const MPI_Comm     communicator;
   };
 } // namespace Voussoir
 

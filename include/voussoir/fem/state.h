@@ -1,6 +1,7 @@
 #ifndef voussoir_fem_state_h
 #define voussoir_fem_state_h
 
+#include <voussoir/base/sum.h>
 #include <voussoir/fem/point_history.h>
 
 namespace Voussoir
@@ -12,11 +13,21 @@ namespace Voussoir
    */
   struct EnergyAccounts
   {
-    double work_of_forces      = 0.; // also of the ground on added mass
-    double work_of_base        = 0.; // inertia under a moving rigid base
-    double work_of_projections = 0.; // contact, prescribed motion
-    double loss_in_dashpots    = 0.; // of the absorbing boundary
-    double loss_by_mass        = 0.; // mass-proportional damping
+    EnergyAccounts() = default;
+
+    explicit EnergyAccounts(const bool exact)
+      : work_of_forces(exact)
+      , work_of_base(exact)
+      , work_of_projections(exact)
+      , loss_in_dashpots(exact)
+      , loss_by_mass(exact)
+    {}
+
+    Sum work_of_forces;      // also of the ground on added mass
+    Sum work_of_base;        // inertia under a moving rigid base
+    Sum work_of_projections; // contact, prescribed motion
+    Sum loss_in_dashpots;    // of the absorbing boundary
+    Sum loss_by_mass;        // mass-proportional damping
   };
 
   /** All that changes with time; a checkpoint holds these and nothing else. */

@@ -34,9 +34,22 @@ namespace Voussoir
     std::string  local_refinement;
     Partition    partition = Partition::p4est;
 
+    /** Nodes per length of the S waves of this frequency [Hz], down to which
+     *  cells are refined; none are if it is zero. */
+    double nodes_per_wavelength = 0., highest_frequency = 10.;
+
     void
     declare(dealii::ParameterHandler &prm);
+
+    /** Longest edge that cells of this degree may have where S waves have this
+     *  speed [m/s] [m]. */
+    double
+    longest_edge(const double s_wave_speed, const unsigned int degree) const;
   };
+
+  /** The longest edge of a cell [m]. */
+  double
+  longest_edge(const dealii::Triangulation<3>::cell_iterator &cell);
 
   /** What a cell is made of and where it belongs. */
   struct CellTag
@@ -66,6 +79,7 @@ namespace Voussoir
     {
       std::vector<unsigned int> of_cell; // number, of each coarse cell
       std::vector<double>       costs;   // of a cell of each, to balance ranks
+      std::vector<double> longest_edges; // that cells of each may have [m]
     };
 
     Grid(const CoarseMesh     &mesh,
@@ -166,20 +180,27 @@ namespace Voussoir
     create_p4est(const CoarseMesh                       &coarse,
                  const std::vector<dealii::CellData<3>> &cells,
                  const GridParameters                   &parameters,
-                 const std::vector<double>              &costs);
+                 const Materials                        &materials);
 
     void
     create_metis(const CoarseMesh                       &coarse,
                  const std::vector<dealii::CellData<3>> &cells,
                  const GridParameters                   &parameters,
-                 const std::vector<double>              &costs);
+                 const Materials                        &materials);
 
     void
     find_faces(const CoarseMesh &coarse);
 
     void
     refine(dealii::Triangulation<3> &triangulation,
-           const GridParameters     &parameters) const;
+           const GridParameters     &parameters,
+           const Materials          &materials) const;
+
+    /** Refines the cells whose edges are too long for their material; returns
+     *  whether there were any. */
+    bool
+    refine_for_waves(dealii::Triangulation<3> &triangulation,
+                     const Materials          &materials) const;
 
     MPI_Comm                       mpi_communicator;
     std::unique_ptr<Triangulation> mesh;

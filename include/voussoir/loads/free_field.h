@@ -23,6 +23,9 @@ namespace Voussoir
       double               middle; // height of the face's middle [m]
     };
     std::vector<Contribution> contributions;
+
+    /** Whether the field must not depend on the partition, bit for bit. */
+    bool reproducible = false;
   };
 
   /** A vertical face of the boundary: where it reaches and of what it is. */

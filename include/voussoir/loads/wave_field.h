@@ -52,23 +52,32 @@ namespace Voussoir
     declare(dealii::ParameterHandler &prm);
   };
 
-  /**
-   * The free field of a case, from what the sections "Ground motion" and "Wave
-   * field" say.
-   *
-   * @param quadrature of the cells, which the column follows
-   * @param duration   of the run [s]
-   */
+  /** Refuses motions and models that a wave of this type does not fit. All
+   *  ranks must call this together. */
+  void
+  check_wave(const AbsorbingBoundary   &boundary,
+             const Solid               &solid,
+             const WaveParameters      &wave,
+             const MotionPlace          given_at,
+             const GroundMotionSignals &motion);
+
+  /** What a case says of its wave field. */
+  struct FreeFieldCase
+  {
+    const WaveParameters &wave;
+    MotionPlace           given_at;
+    QuadratureRule        quadrature; // of the cells, which a column follows
+    double                duration;   // of the run [s]
+  };
+
+  /** The free field of a case, which check_wave() has accepted. */
   std::unique_ptr<FreeField>
   make_free_field(const AbsorbingBoundary &boundary,
                   const Solid             &solid,
-                  const QuadratureRule     quadrature,
-                  const Damping           &damping,
-                  const WaveParameters    &wave,
-                  const MotionPlace        given_at,
+                  const FreeFieldCase     &field,
                   GroundMotionSignals    &&motion,
-                  const LeapFrog          &leap_frog,
-                  const double             duration);
+                  const Damping           &damping,
+                  const LeapFrog          &leap_frog);
 } // namespace Voussoir
 
 #endif

@@ -44,6 +44,16 @@ namespace Voussoir
         (void)cell, (void)law, (void)stress_factor;
     }
 
+    /** Adds the forces of the cells to those of their nodes. */
+    template <typename Cell>
+    void
+    add_to_nodes(Cell &cell, const CellRange &cells, Vector &force)
+    {
+      if (cells.rounding != nullptr)
+        (*cells.rounding)(cell.begin_dof_values(), cell.dofs_per_cell);
+      cell.distribute_local_to_global(force);
+    }
+
     /** Lanes beyond the last cell of a material hold copies. */
     inline double
     sum_of_cells(const Discretization::MatrixFree &matrix_free,
@@ -56,6 +66,42 @@ namespace Voussoir
            ++lane)
         sum += values[lane];
       return sum;
+    }
+
+    /** Adds a number of each cell of a batch, or what it is in all. */
+    inline void
+    add_cells(Sum               &sum,
+              const CellRange   &cells,
+              const unsigned int batch,
+              const Lanes       &of_each)
+    {
+      for (unsigned int lane = 0;
+           lane < cells.matrix_free.n_active_entries_per_cell_batch(batch);
+           ++lane)
+        sum += of_each[lane];
+    }
+
+    inline void
+    add_cells(Sum &sum,
+              const CellRange &,
+              const unsigned int,
+              const double of_all)
+    {
+      sum += of_all;
+    }
+
+    /** Calls work(reduce), where reduce(batch, values) is what is summed of a
+     *  number of each cell: each by itself, or their sum. */
+    template <typename Work>
+    void
+    with_reduction(const CellRange &cells, const Work &work)
+    {
+      if (cells.exact_sums)
+        work([](const unsigned int, const Lanes &values) { return values; });
+      else
+        work([&](const unsigned int batch, const Lanes &values) {
+          return sum_of_cells(cells.matrix_free, batch, values);
+        });
     }
 
     /** Reads x + s w of the cell. */
@@ -100,7 +146,7 @@ namespace Voussoir
                 stress_factor * law.stress(cell.get_symmetric_gradient(q)), q);
             stabilise(cell, law, stress_factor);
             cell.integrate(dealii::EvaluationFlags::gradients);
-            cell.distribute_local_to_global(force);
+            add_to_nodes(cell, cells, force);
           }
       });
     }
@@ -142,8 +188,11 @@ namespace Voussoir
                 if (history.has_static_strains())
                   trial +=
                     law.stress(response.elastic_offset(batch, q, history));
-                if (history.is_active(batch, q) ||
-                    any_above(law.load_level(trial, widest), 1.))
+                const bool is_active = history.is_active(batch, q);
+                Lanes      level     = 0.;
+                if (!is_active || history.lanes_are_alone())
+                  level = law.load_level(trial, widest);
+                if (is_active || any_above(level, 1.))
                   {
                     if (!knows_own)
                       {
@@ -153,6 +202,8 @@ namespace Voussoir
                         knows_own = true;
                       }
                     stress = response.advance(
+                      stress,
+                      level,
                       cell.get_symmetric_gradient(q),
                       own.get_symmetric_gradient(q),
                       batch,
@@ -166,7 +217,7 @@ namespace Voussoir
               }
             stabilise(cell, law, stress_factor);
             cell.integrate(dealii::EvaluationFlags::gradients);
-            cell.distribute_local_to_global(force);
+            add_to_nodes(cell, cells, force);
           }
       });
     }
@@ -276,8 +327,8 @@ namespace Voussoir
       const double      branches = damping.branch_stiffness();
       const double      viscosity =
         damping_factor * damping.stiffness_coefficient + damping.mesh_viscosity;
-      ElasticEnergy total;
-      with_cells(cells, [&](auto &&cell) {
+      ElasticEnergy total(cells.exact_sums);
+      const auto    add_up = [&](auto &cell, const auto &reduce) {
         std::decay_t<decltype(cell)> moving(matrix_free); // at v+
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
           {
@@ -302,9 +353,8 @@ namespace Voussoir
                   sums[0] += field.stabilisation_work(field);
                   sums[1] += field.stabilisation_work(moving);
                 }
-              return std::array<double, 2>{
-                {sum_of_cells(matrix_free, batch, sums[0]),
-                 sum_of_cells(matrix_free, batch, sums[1])}};
+              return std::array<decltype(reduce(batch, sums[0])), 2>{
+                {reduce(batch, sums[0]), reduce(batch, sums[1])}};
             };
             const auto products_of = [&](const Vector &vector) {
               cell.read_dof_values(vector);
@@ -330,14 +380,19 @@ namespace Voussoir
 
             moving.read_dof_values(motion.velocity);
             moving.evaluate(dealii::EvaluationFlags::gradients);
+            using Number        = decltype(reduce(batch, Lanes()));
             const auto [uu, uv] = products_of(motion.displacement);
-            total.strain += 0.5 * (uu - dt * uv);
+            add_cells(total.strain, cells, batch, Number(0.5 * (uu - dt * uv)));
             if (viscosity > 0.)
               {
                 const auto [bb, bv] = products_of(motion.velocity_before);
-                total.last_loss += 0.5 * dt * viscosity * (bb + bv);
+                add_cells(total.last_loss,
+                          cells,
+                          batch,
+                          Number(0.5 * dt * viscosity * (bb + bv)));
               }
-            const double vv = maxwell.gain.empty() ? 0. : products(moving)[0];
+            const Number vv =
+              maxwell.gain.empty() ? Number(0.) : products(moving)[0];
             for (unsigned int q = 0; q < filter.size(); ++q)
               history->imbalance(batch, q) = 0.;
             for (unsigned int i = 0; i < maxwell.gain.size(); ++i)
@@ -345,13 +400,19 @@ namespace Voussoir
                   b > 0.)
                 {
                   const auto [ww, wv] = products_of(motion.memory[i]);
-                  const double factor = damping_factor * dt / (2. * b),
-                               across = a * ww + b * wv, // w_i^T K w_i+
+                  const double factor = damping_factor * dt / (2. * b);
+                  const Number across = a * ww + b * wv, // w_i^T K w_i+
                     next              = a * across + b * (a * wv + b * vv);
                   if (history != nullptr)
                     add_branch(i);
-                  total.memory += factor * across;
-                  total.next_loss += factor * (1. - a) * (next + across);
+                  add_cells(total.memory,
+                            cells,
+                            batch,
+                            Number(factor * across));
+                  add_cells(total.next_loss,
+                            cells,
+                            batch,
+                            Number(factor * (1. - a) * (next + across)));
                 }
             if (branches > 0.)
               for (unsigned int q = 0; q < filter.size(); ++q)
@@ -359,6 +420,10 @@ namespace Voussoir
                   0.5 * stress_factor * damping_factor / branches *
                   (law.stress(filter[q]) * filter[q]);
           }
+      };
+      with_cells(cells, [&](auto &&cell) {
+        with_reduction(cells,
+                       [&](const auto &reduce) { add_up(cell, reduce); });
       });
       return total;
     }
@@ -376,7 +441,7 @@ namespace Voussoir
       const DampedResponse<Law> response(law,
                                          cells.stress_factor,
                                          damping_factor * motion.branches);
-      InelasticEnergy           total;
+      InelasticEnergy           total(cells.exact_sums);
       with_cells(cells, [&](auto &&cell) {
         std::decay_t<decltype(cell)> cell_static(cells.matrix_free);
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
@@ -414,8 +479,10 @@ namespace Voussoir
                   stored += energy.stored * cell.JxW(q);
                   of_damping += energy.of_damping * cell.JxW(q);
                 }
-            total.stored += sum_of_cells(cells.matrix_free, batch, stored);
-            total.damping += sum_of_cells(cells.matrix_free, batch, of_damping);
+            with_reduction(cells, [&](const auto &reduce) {
+              add_cells(total.stored, cells, batch, reduce(batch, stored));
+              add_cells(total.damping, cells, batch, reduce(batch, of_damping));
+            });
           }
       });
       return total;

@@ -96,6 +96,8 @@ namespace Voussoir
      * Lets the memory of point @p q of the cells of a batch go one step on, and
      * counts what is lost.
      *
+     * @param elastic    stress if the law is elastic
+     * @param level      of the law, which is elastic where it is not above one
      * @param filtered   B (u + w)
      * @param own_strain B u
      * @param n_cells    of the batch; further lanes hold copies
@@ -103,7 +105,9 @@ namespace Voussoir
      * @return the stress [Pa]
      */
     SymmetricTensor3<Lanes>
-    advance(const SymmetricTensor3<Lanes> &filtered,
+    advance(const SymmetricTensor3<Lanes> &elastic,
+            const Lanes                   &level,
+            const SymmetricTensor3<Lanes> &filtered,
             const SymmetricTensor3<Lanes> &own_strain,
             const unsigned int             batch,
             const unsigned int             q,
@@ -146,10 +150,14 @@ namespace Voussoir
       for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
         if (last.band[lane] == 0.)
           {
-            bool elastic = true;
+            // alone, this cell would not have been asked
+            if (history.lanes_are_alone() && !(level[lane] > 1.))
+              for (unsigned int i = 0; i < Law::n_history; ++i)
+                values[i][lane] = 0.;
+            bool is_elastic = true;
             for (unsigned int i = 0; i < Law::n_history; ++i)
-              elastic = elastic && values[i][lane] == 0.;
-            if (elastic)
+              is_elastic = is_elastic && values[i][lane] == 0.;
+            if (is_elastic)
               now.band[lane] = 0.;
             else
               begins[lane] = 1.;
@@ -191,15 +199,19 @@ namespace Voussoir
         {
           // as an elastic point brings it
           const SymmetricTensor3<Lanes> seen_then = elastic_static + offset;
-          const SymmetricTensor3<Lanes> elastic =
+          const SymmetricTensor3<Lanes> elastic_strain =
             k * (own_strain - now.plastic - elastic_static + filter);
           const Lanes imbalance = history.imbalance(batch, q);
           now.filter_imbalance =
             dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
               begins, Lanes(1.), imbalance, now.filter_imbalance);
           const Lanes brought =
-            filter_energy(filter, law.stress(elastic), imbalance, Lanes(1.)) +
-            0.5 * (1. / k - 1.) * (law.stress(elastic) * elastic) +
+            filter_energy(filter,
+                          law.stress(elastic_strain),
+                          imbalance,
+                          Lanes(1.)) +
+            0.5 * (1. / k - 1.) *
+              (law.stress(elastic_strain) * elastic_strain) +
             law.stress(seen_then) *
               (own_strain - now.seen - elastic_static + seen_then);
           taken_by_damping =
@@ -216,11 +228,24 @@ namespace Voussoir
               history.losses.closing += weight[lane] * closing[lane];
           }
 
+      SymmetricTensor3<Lanes> stress =
+        now.total_stress() - law.stress(of_law_alone);
+      if (history.lanes_are_alone())
+        {
+          for (unsigned int i = 0; i < 6; ++i)
+            stress.access_raw_entry(i) =
+              dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
+                now.band,
+                Lanes(0.),
+                elastic.access_raw_entry(i),
+                stress.access_raw_entry(i));
+          now.forget_elastic();
+        }
       if (was_active)
         history.active_point(batch, q) = now;
       else if (any_above(begins, 0.))
         history.activate(batch, q, now);
-      return now.total_stress() - law.stress(of_law_alone);
+      return stress;
     }
 
     /**
@@ -309,6 +334,8 @@ namespace Voussoir
       point.impact           = 0.;
       point.filter           = SymmetricTensor3<Lanes>();
       point.filter_imbalance = 0.;
+      if (history.lanes_are_alone())
+        point.forget_elastic();
       elastic -= point.plastic;
     }
 

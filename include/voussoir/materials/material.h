@@ -61,6 +61,9 @@ namespace Voussoir
     double
     damping_factor() const override;
 
+    double
+    wave_modulus() const override;
+
     /** Density times the inertia factor: what the mass matrix sees [kg/m3]. */
     double
     inertial_density() const;

@@ -12,6 +12,14 @@
 
 namespace Voussoir
 {
+  /** How far the rock around a dam reaches, and how its cells grow outwards. */
+  struct RockGrading
+  {
+    double extent;       // over the height of the dam
+    double growth;       // size ratio of successive cells
+    double largest_cell; // at which they stop growing [m]
+  };
+
   /**
    * Quadrilaterals on the developed section across the canyon: arc length s
    * along the crest and elevation z [m], inside and outside of the canyon.
@@ -58,9 +66,7 @@ namespace Voussoir
     /**
      * @param n_blocks          between the abutments at the crest
      * @param columns_per_block columns of the grid
-     * @param rock_extent       rock beside and below over the height
-     * @param growth            size ratio of successive columns and rows
-     * @param largest_cell      at which their halves stop growing [m]
+     * @param rock              of whose columns and rows the halves grow
      * @param water_level       wanted for the surface of a reservoir [m]; 0
      *                          for no reservoir
      * @param ledges            wanted in the right and the left bank
@@ -69,9 +75,7 @@ namespace Voussoir
                         const double                height,
                         const unsigned int          n_blocks,
                         const unsigned int          columns_per_block,
-                        const double                rock_extent,
-                        const double                growth,
-                        const double                largest_cell,
+                        const RockGrading          &rock,
                         const double                water_level,
                         const std::array<Ledge, 2> &ledges);
 
@@ -132,19 +136,14 @@ namespace Voussoir
 
   private:
     void
-    place_columns(const unsigned int n_dam_columns,
-                  const double       rock_extent,
-                  const double       growth,
-                  const double       largest_cell);
+    place_columns(const unsigned int n_dam_columns, const RockGrading &rock);
 
     /** Moves the columns of a bank so that one meets the foot of its ledge. */
     void
     place_foot(Ledge &ledge, const int bank);
 
     void
-    place_rows(const double rock_extent,
-               const double growth,
-               const double largest_cell);
+    place_rows(const RockGrading &rock);
 
     void
     step_rows();

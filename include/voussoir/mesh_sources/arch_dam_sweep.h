@@ -18,20 +18,17 @@ namespace Voussoir
   {
   public:
     /**
-     * @param rock_extent  rock on both sides of the dam over its height
-     * @param n_thickness  layers in the dam
-     * @param cell_size    of the layers next to it [m]
-     * @param growth       size ratio of successive layers beyond
-     * @param largest_cell at which they stop growing [m]
+     * @param rock        on both sides of the dam, of whose layers the next to
+     *   it have the cell size
+     * @param n_thickness layers in the dam
+     * @param cell_size   [m]
      */
     ArchDamSweep(const ArchDamCrossSection &section,
                  const ArchDamSections     &sections,
                  const double               height,
-                 const double               rock_extent,
+                 const RockGrading         &rock,
                  const unsigned int         n_thickness,
-                 const double               cell_size,
-                 const double               growth,
-                 const double               largest_cell);
+                 const double               cell_size);
 
     /** All vertices on the line of a vertex of the section [m]. */
     std::vector<dealii::Point<3>>

@@ -50,6 +50,23 @@ namespace Voussoir
     }
   };
 
+  /** What the balance came to so far. */
+  struct EnergySummary
+  {
+    EnergyTerms terms;
+    double      initial = 0., unaccounted = 0.; // [J]
+
+    /** Energy-balance errors: see relative_error(), the largest of them, and
+     *  error_of_losses() of the balance [1]. */
+    double error_of_input = 0., largest_error = 0., error_of_losses = 0.;
+  };
+
+  void
+  to_json(nlohmann::json &json, const EnergySummary &summary);
+
+  void
+  from_json(const nlohmann::json &json, EnergySummary &summary);
+
   /**
    * The energy balance: evaluated at intervals, written to energy.csv, and the
    * alarm when something goes wrong.
@@ -117,7 +134,7 @@ namespace Voussoir
     std::string
     alarm(const double limit) const;
 
-    nlohmann::json
+    EnergySummary
     summary() const;
 
     /** Accumulated numbers for a checkpoint. */

@@ -8,16 +8,7 @@
 
 namespace Voussoir
 {
-  /**
-   * The surface mesh of some face sets, with the stress at its nodes.
-   *
-   * The stress of a node is the mean over the cells with a face of the set
-   * there, each evaluated at the node itself. For trilinear cells the strain
-   * along the face is constant in each cell, so that the mean is the central
-   * difference, of second order; extrapolation from the 2x2x2 Gauss points
-   * would give the same values. Across the face the cell's own strain is kept:
-   * with it the stresses balance the loads.
-   */
+  /** The surface mesh of some face sets. */
   class FaceMesh
   {
   public:
@@ -27,7 +18,7 @@ namespace Voussoir
      * @param kind      what they are in VTU files, "face_set" or "interface"
      * @param all_names of that kind, which give the sets their numbers there
      */
-    FaceMesh(const ObservedModel            &model,
+    FaceMesh(const Discretization           &discretization,
              const std::vector<std::string> &sets,
              const std::string              &place,
              const std::string              &kind,
@@ -66,10 +57,24 @@ namespace Voussoir
     std::vector<Quadrilateral>
     quadrilaterals() const;
 
-    /** Stress of the equation of motion at each node [Pa]; all ranks must call
-     * this together. */
-    const std::vector<dealii::SymmetricTensor<2, 3>> &
-    stress(const State &state);
+    /** The corner of each cell with a face at a node, and the node. */
+    const std::vector<StressPoints::Place> &
+    places() const;
+
+    const std::vector<unsigned int> &
+    nodes_of_places() const;
+
+    /** A vector of @p width numbers for each node, with ghosts. */
+    Vector
+    make_vector(const unsigned int width) const;
+
+    /** Means over the places of each node from the sums over those of this
+     *  rank, @p width of each node; all ranks must call this together.
+     *  @param work of make_vector() */
+    void
+    mean_over_places(Vector              &work,
+                     const unsigned int   width,
+                     std::vector<double> &values) const;
 
     /** Numbers of the nodes for a checkpoint, by the name of the set.
      *
@@ -87,8 +92,9 @@ namespace Voussoir
     sets_and_nodes() const;
 
     /**
-     * Writes values of the nodes as one VTU file, with the numbers of the sets
-     * and their names. All ranks must call this together.
+     * Writes values of the nodes as one VTU file into the folder of a run, with
+     * the numbers of the sets and their names. All ranks must call this
+     * together.
      *
      * @param fields names of the values
      * @param values @p fields.size() numbers for each node
@@ -98,7 +104,8 @@ namespace Voussoir
      * @return its name in the output folder; empty if it cannot be written
      */
     std::string
-    write(const std::vector<std::string> &fields,
+    write(const ObservedRun              &run,
+          const std::vector<std::string> &fields,
           const std::vector<double>      &values,
           const std::string              &name,
           const double                    time,
@@ -119,8 +126,7 @@ namespace Voussoir
     /** What is gathered on the way over the faces. */
     struct Places
     {
-      NodeNumbers                      nodes;
-      std::vector<StressPoints::Place> list;
+      NodeNumbers nodes;
 
       /** Of each node the number of places and the sum of their outward unit
        *  normals. */
@@ -138,10 +144,6 @@ namespace Voussoir
     void
     find_normals(const std::vector<double> &normals_of_nodes);
 
-    /** A vector of @p width numbers for each node, with ghosts. */
-    Vector
-    make_vector(const unsigned int width) const;
-
     /** Sums @p width numbers of each node over the ranks that hold it. */
     void
     sum_over_holders(Vector                    &sums,
@@ -152,30 +154,52 @@ namespace Voussoir
     void
     number_nodes(const NodeNumbers &nodes, const unsigned int n_sets);
 
-    const std::string              folder;
-    Log                           &log;
     const Discretization          &discretization;
     const std::string              kind;
     const std::vector<std::string> all_names;
     std::vector<unsigned int>      number_of_set; // in all_names
 
-    std::vector<dealii::Point<3>>              positions;
-    std::vector<dealii::Tensor<1, 3>>          normals; // outward, mean
-    std::vector<unsigned int>                  n_places_of_node;
-    std::vector<unsigned int>                  node_of_place;
-    std::vector<Key>                           place_keys;
-    std::vector<SetAndNode>                    set_and_node;
-    std::vector<unsigned int>                  set_of_face;
-    std::unique_ptr<StressPoints>              points;
-    std::vector<dealii::SymmetricTensor<2, 3>> mean_stress;
+    std::vector<dealii::Point<3>>     positions;
+    std::vector<dealii::Tensor<1, 3>> normals; // outward, mean
+    std::vector<unsigned int>         n_places_of_node;
+    std::vector<StressPoints::Place>  all_places;
+    std::vector<unsigned int>         node_of_place;
+    std::vector<Key>                  place_keys;
+    std::vector<SetAndNode>           set_and_node;
+    std::vector<unsigned int>         set_of_face;
 
     // numbers of the nodes that do not depend on who looks at them
     std::vector<dealii::types::global_dof_index> numbers;
     dealii::types::global_dof_index n_numbers, first_owned, n_owned;
 
     std::vector<unsigned int> entries; // of the nodes in a vector
-    Vector                    stress_sums;
-    std::vector<double>       components; // of this rank's stresses
+  };
+
+  /**
+   * The stress at the nodes of such a mesh: the mean over the cells with a face
+   * of the set there, each evaluated at the node itself. For trilinear cells
+   * the strain along the face is constant in each cell, so that the mean is the
+   * central difference, of second order; extrapolation from the 2x2x2 Gauss
+   * points would give the same values. Across the face the cell's own strain is
+   * kept: with it the stresses balance the loads.
+   */
+  class FaceStress
+  {
+  public:
+    /** @param mesh must live as long as this */
+    FaceStress(const ObservedRun &run, const FaceMesh &mesh);
+
+    /** Stress of the equation of motion at each node [Pa]; all ranks must call
+     *  this together. */
+    const std::vector<dealii::SymmetricTensor<2, 3>> &
+    evaluate(const State &state);
+
+  private:
+    const FaceMesh                            &mesh;
+    StressPoints                               points;
+    Vector                                     sums;
+    std::vector<double>                        components;
+    std::vector<dealii::SymmetricTensor<2, 3>> means;
   };
 } // namespace Voussoir
 

@@ -34,12 +34,20 @@ namespace Voussoir
    * @return its name in the output folder; empty if it cannot be written
    */
   std::string
-  write_fields(const ObservedModel           &model,
+  write_fields(const ObservedRun             &run,
                const std::vector<NodalField> &fields,
                const State                   *stress_of,
                const std::string             &name,
                const double                   time,
                const std::vector<CellField>  &cell_fields = {});
+
+  /** The same at t = 0 of a model without a run, whose cells remember nothing.
+   */
+  std::string
+  write_fields(const ObservedModel           &model,
+               const std::string             &folder,
+               const std::vector<NodalField> &fields,
+               const std::string             &name);
 } // namespace Voussoir
 
 #endif

@@ -19,10 +19,10 @@ namespace Voussoir
   {
   public:
     /** At all nodes, in vectors of the discretization. */
-    explicit FilteredDisplacement(const ObservedModel &model);
+    explicit FilteredDisplacement(const ObservedRun &run);
 
     /** @param needed entries, of whole nodes; other entries are left at zero */
-    FilteredDisplacement(const ObservedModel    &model,
+    FilteredDisplacement(const ObservedRun      &run,
                          const dealii::IndexSet &needed);
 
     /** All ranks must call this together. */
@@ -46,7 +46,7 @@ namespace Voussoir
     entries_of(const Vector &vector) const;
 
   private:
-    FilteredDisplacement(const ObservedModel &model, Vector &&layout);
+    FilteredDisplacement(const ObservedRun &run, Vector &&layout);
 
     /** Takes in the owned entries of these. */
     void

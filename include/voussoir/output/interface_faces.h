@@ -37,7 +37,7 @@ namespace Voussoir
    * @param time     [s]
    */
   void
-  write_interface_envelopes(const ObservedModel                  &model,
+  write_interface_envelopes(const ObservedRun                    &run,
                             const std::vector<InterfaceExtremes> &extremes,
                             const double                          time);
 } // namespace Voussoir

@@ -40,9 +40,11 @@ namespace Voussoir
   double
   opening_of(const ContactPoint &point);
 
-  /** Adds a point to the `n_quantities` sums of its surface. */
+  /** Adds a point to the `n_quantities` sums of its surface.
+   *  @tparam Number double or Sum */
+  template <typename Number>
   void
-  add_to_sums(const ContactPoint &point, double *sums);
+  add_to_sums(const ContactPoint &point, Number *sums);
 
   /** What interfaces.csv says of a surface at a look. */
   constexpr unsigned int                                n_surface_columns = 9;

@@ -13,7 +13,7 @@ namespace Voussoir
    * zero in cells whose material has no such thing.
    */
   std::map<std::string, dealii::Vector<float>>
-  memory_of_cells(const ObservedModel &model);
+  memory_of_cells(const Solid &solid, const MaterialMemory &memory);
 
   /** Whether a material tells of the opening of its cracks. */
   bool
@@ -29,7 +29,7 @@ namespace Voussoir
   /** Visits the points of this rank's cells that have left the elastic range,
    * of all materials that tell of cracks, with the width of their band [m]. */
   void
-  for_each_crack(const ObservedModel                                    &model,
+  for_each_crack(const ObservedRun                                      &run,
                  const std::function<void(const Discretization::Cell &,
                                           const unsigned int  point,
                                           const double        band,
@@ -45,7 +45,7 @@ namespace Voussoir
   /** Of all materials that tell of cracks; all ranks must call this together.
    */
   WidestCrack
-  widest_crack(const ObservedModel &model);
+  widest_crack(const ObservedRun &run);
 
   /**
    * Of each material with memory: the share of its volume that has left the
@@ -55,8 +55,7 @@ namespace Voussoir
    * @param names of the materials
    */
   nlohmann::json
-  memory_summary(const ObservedModel            &model,
-                 const std::vector<std::string> &names);
+  memory_summary(const ObservedRun &run, const std::vector<std::string> &names);
 } // namespace Voussoir
 
 #endif

@@ -18,22 +18,29 @@ namespace Voussoir
   class CentralDifference;
   class Contact;
   class Projection;
+  class Reservoir;
   class WaterMotion;
 
-  /** What observers may see of a case besides its state. */
+  /** What observers may see of a case before it runs. */
   struct ObservedModel
   {
-    const Solid          &solid;
-    const InternalForce  &internal_force; // with the moduli of the run
-    const Damping        &damping;
-    const MaterialMemory &material_memory;
-    const InitialState   &initial;
-    const WaterMotion    *water;   // or null
-    const Contact        *contact; // or null
-    std::string           folder;
-    double                time_step; // [s]
-    double                end_time;  // [s]
-    double carried_frequency;        // highest that the mesh carries well [Hz]
+    const Solid     &solid;
+    const Contact   *interfaces; // before any load acts; or null
+    const Reservoir *reservoir;  // of compressible water; or null
+
+    /** Constraints of the case, interfaces not among them. */
+    const std::vector<std::pair<std::string, std::unique_ptr<Projection>>>
+      &constraints;
+
+    ResultNames names;
+    double      end_time;          // [s]
+    double      carried_frequency; // highest that the mesh carries well [Hz]
+
+    /** Whether displacements are relative to a rigid base that moves. */
+    bool base_moves;
+
+    /** Takes note of results that cannot be written. */
+    Log &log;
 
     /** Between two looks that miss no more than 1.2 % of an extreme of what
      *  oscillates as fast as the mesh carries [s]: 20 in a period. */
@@ -55,26 +62,33 @@ namespace Voussoir
      *  @p place sets coarser than that [s]. */
     void
     warn_of_coarse_looks(const double interval, const std::string &place) const;
+  };
 
-    /** The ground, to which the state is relative where it moves. */
-    const RigidBase &base;
+  /** What they may see of its run besides the state. */
+  struct ObservedRun : ObservedModel
+  {
+    const InternalForce     &internal_force; // with the moduli of the run
+    const Damping           &damping;
+    const MaterialMemory    &material_memory;
+    const InitialState      &initial;
+    const WaterMotion       *water;   // or null
+    const Contact           *contact; // or null
+    const RigidBase         &base;    // to which the state is relative
+    const CentralDifference &scheme;  // what marches the state
+    std::string              folder;
+    double                   time_step; // [s]
 
-    ResultNames names;
-
-    /** Takes note of results that cannot be written. */
-    Log &log;
-
-    /** Constraints of the case, interfaces not among them. */
-    const std::vector<std::pair<std::string, std::unique_ptr<Projection>>>
-      &constraints;
-
-    /** What marches the state; null before there is a run. */
-    const CentralDifference *scheme = nullptr;
+    /** When it starts [s], and whether it goes on there with the files of a run
+     *  that was interrupted. */
+    double start_time = 0.;
+    bool   restarted  = false;
   };
 
   /**
    * Something that watches the run: a section of the parameter file under
-   * "Output", called after each step and at the end.
+   * "Output", called after each step and at the end. What it remembers from one
+   * step to the next it sets and names by `keep`, from which checkpoints
+   * follow.
    */
   class Observer
   {
@@ -94,23 +108,14 @@ namespace Voussoir
 
     /** Refuses entries that do not fit the model with a UserError. */
     virtual void
-    check(const ObservedModel &model) const = 0;
+    check(const ObservedModel &) const
+    {}
 
-    /**
-     * Begins a run: nothing of an earlier one is left, be it finished or not,
-     * on this model or another. Not called if the run has no output folder.
-     *
-     * @param model      of which what is needed later must be copied; what it
-     *   refers to stays until the end of the run
-     * @param start_time of this run [s]
-     * @param restarted  whether to continue the files of a run that was
-     *   interrupted at the start time; `load` and the values of the checkpoint
-     *   follow
-     */
-    virtual void
-    prepare(const ObservedModel &model,
-            const double         start_time,
-            const bool           restarted) = 0;
+    /** Begins a run: nothing of an earlier one is left, be it finished or not,
+     *  on this model or another. What @p run refers to must stay until the end
+     *  of the run. Not called if the run has no output folder. */
+    void
+    begin(const ObservedRun &run);
 
     /** Called for the initial state and after each step; after a restart
      *  first for the state of the checkpoint, once more. */
@@ -118,34 +123,91 @@ namespace Voussoir
     observe(const State &state) = 0;
 
     /** Writes what is left and adds to the summary. */
-    virtual void
-    finish(const State &state, nlohmann::json &summary) = 0;
+    void
+    finish(const State &state, nlohmann::json &summary);
 
-    /** What else a checkpoint must hold; files are written up to here. Called
-     *  on all ranks, the first one's result counts. */
-    virtual nlohmann::json
-    save()
-    {
-      return {};
-    }
+    /** What a checkpoint must hold: numbers, the first rank's count, own
+     *  vectors and own numbers of cells or points, by name; files are written
+     *  up to here. Called on all ranks. */
+    nlohmann::json
+    save();
 
+    void
+    load(const nlohmann::json &saved);
+
+    std::map<std::string, Vector *>
+    checkpoint_vectors();
+
+    std::map<std::string, KeyedValues>
+    checkpoint_values();
+
+  protected:
+    /** Makes what the run needs, and keeps what is remembered. */
     virtual void
-    load(const nlohmann::json &)
+    prepare() = 0;
+
+    /** Brings what waits in memory into what is kept and into the files; called
+     *  on all ranks, before a checkpoint and at the end. */
+    virtual void
+    flush()
     {}
 
-    /** Own vectors that a checkpoint must hold, by name. */
-    virtual std::map<std::string, Vector *>
-    checkpoint_vectors()
+    virtual void
+    conclude(const State &state, nlohmann::json &summary) = 0;
+
+    /** The run that has begun. */
+    const ObservedRun &
+    run() const
     {
-      return {};
+      return *observed;
     }
 
-    /** Own numbers of cells that a checkpoint must hold, by name. */
-    virtual std::map<std::string, KeyedValues>
-    checkpoint_values()
+    MPI_Comm
+    communicator() const
     {
-      return {};
+      return observed->solid.grid().communicator();
     }
+
+    /** From now on remembers a value, which JSON can hold and is finite. */
+    template <typename T>
+    void
+    keep(const std::string           &name,
+         T                           &value,
+         const std::common_type_t<T> &initial)
+    {
+      value = initial;
+      keep(
+        name,
+        [&value] { return nlohmann::json(value); },
+        [&value](const nlohmann::json &saved) { saved.get_to(value); });
+    }
+
+    /** The same of what has its own way to be saved and loaded. */
+    void
+    keep(const std::string                                 &name,
+         const std::function<nlohmann::json()>             &save,
+         const std::function<void(const nlohmann::json &)> &load);
+
+    /** The same of a nodal vector, which becomes zero. */
+    void
+    keep(const std::string &name, Vector &vector);
+
+    /** The same of numbers of cells or points, by name. */
+    void
+    keep(const std::function<std::map<std::string, KeyedValues>()> &values);
+
+  private:
+    struct Kept
+    {
+      std::function<nlohmann::json()>             save;
+      std::function<void(const nlohmann::json &)> load;
+    };
+
+    std::unique_ptr<const ObservedRun> observed;
+    std::map<std::string, Kept>        kept;
+    std::map<std::string, Vector *>    kept_vectors;
+    std::vector<std::function<std::map<std::string, KeyedValues>()>>
+      kept_values;
   };
 
   /** Steps at which something with this interval [s] is due: every n-th, so

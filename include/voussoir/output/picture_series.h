@@ -23,12 +23,10 @@ namespace Voussoir
     void
     check(const ObservedModel &model) const;
 
-    /** Begins a new list. @p restarted: with the pictures that a run which was
-     *  interrupted drew before @p start_time [s]. */
+    /** Begins a new list, with the pictures that a run which was interrupted
+     *  drew before this one goes on. */
     void
-    prepare(const ObservedModel &model,
-            const double         start_time,
-            const bool           restarted);
+    prepare(const ObservedRun &run);
 
     bool
     due(const State &state) const;

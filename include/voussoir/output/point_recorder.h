@@ -45,9 +45,9 @@ namespace Voussoir
      * @param window   of the mean acceleration [s]
      */
     void
-    prepare(const ObservedModel &model,
-            const double         interval,
-            const double         window = 0.);
+    prepare(const ObservedRun &run,
+            const double       interval,
+            const double       window = 0.);
 
     /** The velocities of the window for a checkpoint; all ranks must call this
      *  together. */
@@ -101,11 +101,11 @@ namespace Voussoir
     /** A record from its beginning. */
     struct Record
     {
-      std::unique_ptr<const ObservedModel> model;
-      std::unique_ptr<const PointWeights>  weights;
-      Schedule                             schedule;
-      std::vector<NamedPoint>              points;
-      int                                  reference = -1; // none
+      std::unique_ptr<const ObservedRun>  run;
+      std::unique_ptr<const PointWeights> weights;
+      Schedule                            schedule;
+      std::vector<NamedPoint>             points;
+      int                                 reference = -1; // none
 
       bool                              has_last = false;
       std::vector<dealii::Tensor<1, 3>> last_displacement;

@@ -35,7 +35,7 @@ namespace Voussoir
     /** Throws UserError where there is no such line.
      *  @param faces the upstream and the downstream faces
      *  @param place names the entry with the request */
-    SectionLine(const ObservedModel                           &model,
+    SectionLine(const Discretization                          &discretization,
                 const SectionRequest                          &request,
                 const std::array<std::vector<FaceCorners>, 2> &faces,
                 const std::string                             &place);

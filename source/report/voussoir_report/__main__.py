@@ -20,7 +20,9 @@ def arguments():
                                                                       "or of a study")
     parser.add_argument("-o", "--output", metavar="FILE", help="the report (report.html in the folder of "
                                                                "the first run)")
-    parser.add_argument("--pictures", metavar="FOLDER", help="writes the pictures there too, as PNG")
+    parser.add_argument("--pictures", metavar="FOLDER", help="writes the pictures there too, as SVG and PNG")
+    parser.add_argument("--case-folder", metavar="FOLDER", action="append", default=[],
+                        help="where the parameter file stood, to find the records that it names")
     return parser.parse_args()
 
 
@@ -55,7 +57,7 @@ def main():
     options = arguments()
     try:
         # takes a second, and --help shall not
-        from . import (case, damage, faces, interfaces, motions, over_stress, page, scenes,
+        from . import (case, damage, faces, interfaces, motions, over_stress, page, records, scenes,
                        structure, study)
         from .files import ReportError
         from .run import read_runs
@@ -69,16 +71,18 @@ def main():
         file = pathlib.Path(options.output or folder / "report.html")
         page.check(file)
         scenes.open_display()
-        makers = (case.headline_section, case.case_section, structure.mesh_section,
-                  structure.modes_section, motions.input_section, motions.motion_section,
+        records.CASE_FOLDERS += options.case_folder
+        makers = (case.conclusions_section, case.headline_section, structure.scene_section, case.case_section,
+                  structure.mesh_section, structure.modes_section, motions.input_section, motions.motion_section,
                   faces.face_stress_section, over_stress.over_stress_section,
                   interfaces.joints_section, structure.opened_section, interfaces.planes_section,
-                  damage.damage_section, motions.energy_section, case.statistics_section)
+                  damage.damage_section, motions.energy_section, case.statistics_section,
+                  case.input_entries_section)
         # drawing takes nearly all of the time: one process for each core
         fork = multiprocessing.get_context("fork")
         with concurrent.futures.ProcessPoolExecutor(mp_context=fork) as pool:
             pending = [pool.submit(section_of, make, runs) for make in makers]
-            pending.insert(1, pool.submit(section_of, study.study_section, runs, list(studies.values())))
+            pending.insert(2, pool.submit(section_of, study.study_section, runs, list(studies.values())))
             ended, _ = concurrent.futures.wait(pending, return_when=concurrent.futures.FIRST_EXCEPTION)
             for made in ended:
                 if problem := made.exception():

@@ -1,10 +1,12 @@
 """The case in words, the headline figures, and what the run took."""
 
+import re
+
 import numpy as np
 
-from . import grid as grids
+from . import grid as grids, verdict
 from .motion import GRAVITY, peak
-from .page import Section, Table, comparison, number
+from .page import Block, Section, Table, Verdicts, comparison, number
 
 DIRECTIONS = {"x": "across the valley", "y": "along the river", "z": "vertical"}
 SIGNS = ("The axes: +x points to the left bank, +y upstream, +z up. Tension is positive, "
@@ -40,6 +42,7 @@ def materials_table(run):
              "Density": ("density [kg/m³]", 1.), "Static factor": ("static over dynamic E [-]", 1.),
              "Tensile strength": ("tensile strength [MPa]", 1e-6),
              "Compressive strength": ("compressive strength [MPa]", 1e-6),
+             "Tension law": ("tension law", 1.),
              "Fracture energy": ("fracture energy [N/m]", 1.),
              "Cohesion": ("cohesion [MPa]", 1e-6), "Friction angle": ("friction angle [°]", 1.)}
     materials = dict(run.objects("Materials"))
@@ -56,18 +59,48 @@ def materials_table(run):
 
     rows = [[name, *(cell(entry, values[entry]) if entry in values else "–" for entry in used)]
             for name, values in materials.items()]
-    return Table(["material", *(shown[entry][0] for entry in used)], rows)
+    over_stress = run.number("Output/over-stress/Tensile strength")
+    if "over-stress" in run.summary and over_stress:
+        used.append("over-stress")
+        for row in rows:
+            row.append("–")
+        rows.append(["faces (over-stress)", *("–" for _ in used[:-1]), number(1e-6 * over_stress)])
+    heads = [shown[entry][0] if entry in shown else "compared with tension [MPa]" for entry in used]
+    return Table(["material", *heads], rows, "Materials and strengths.")
 
 
-def loads_in_words(run):
-    loads = []
-    for name, entries in run.objects("Loads"):
-        level = entries.get("Level")
-        loads.append(name + (f" to {level} m" if level not in (None, "0") else ""))
-    if not loads:
-        return "No loads before the earthquake."
-    stages = run.entry("Static state/Stages").replace(";", ", then")
-    return f"Loads: {listed(loads)}" + (f"; static state in the order {stages}." if stages else ".")
+def load_in_words(run, name):
+    """A load with its class and level."""
+    entries = dict(run.objects("Loads")).get(name, {})
+    facts = [entries.get("Class", "")] if entries.get("Class", name) != name else []
+    if entries.get("Level") not in (None, "", "0"):
+        facts.append(f"to {entries['Level']} m")
+    return name + (f" ({', '.join(facts)})" if facts else "")
+
+
+def loads_table(run):
+    """Load cases in their order: the static stages with their sums, and the earthquake."""
+    stages = run.list("Static state/Stages", ";")
+    found = run.summary.get("static state", {}).get("stages", [])
+    rows = []
+
+    def force(values):
+        return "; ".join(number(1e-6 * value if abs(value) >= 500. else 0.) for value in values) if values else "–"
+
+    for n, stage in enumerate(stages):
+        result = found[n] if n < len(found) else {}
+        names = [name.strip() for name in stage.split(",")]
+        rows.append([f"static {n + 1}", listed(load_in_words(run, name) for name in names),
+                     force(result.get("sum of loads so far [N]")), force(result.get("sum of reactions [N]")),
+                     number(100. * result["largest displacement [m]"]) if "largest displacement [m]" in result else "–"])
+    if run.entry("Ground motion/Type", "none") != "none":
+        rows.append([f"{'static ' + str(len(stages)) + ' + ' if stages else ''}earthquake",
+                     earthquake_in_words(run), "–", "–", "–"])
+    heads = ["load case", "loads", "sum of loads so far x; y; z [MN]", "sum of reactions x; y; z [MN]",
+             "largest displacement in the stage [cm]"]
+    if not stages:
+        heads, rows = heads[:2], [row[:2] for row in rows]
+    return Table(heads, rows, "Load cases.") if rows else None
 
 
 def water_in_words(run):
@@ -98,8 +131,6 @@ def interfaces_in_words(run):
 
 def earthquake_in_words(run):
     kind = run.entry("Ground motion/Type", "none")
-    if kind == "none":
-        return "No earthquake."
     factor = run.number("Ground motion/Overload factor", 1.)
     peaks = []
     for d, where in DIRECTIONS.items():
@@ -111,10 +142,21 @@ def earthquake_in_words(run):
             peaks.append(f"{factor:g} times that recorded {where}")
     files = dict.fromkeys(run.entry(f"Ground motion/Record/File {d}") for d in DIRECTIONS)
     source = f" ({', '.join(filter(None, files))})" if kind == "record" else ""
-    return (f"Earthquake: {kind}{source}, given at the {run.entry('Ground motion/Given at')}"
+    return (f"{kind}{source}, given at the {run.entry('Ground motion/Given at')}"
             + (f", peaks of {listed(peaks)}" if peaks else "")
-            + f"; it enters through the {run.entry('Wave field/Enters through')}. Damping: "
-            f"{run.entry('Damping/Model')}, {100. * run.number('Damping/Ratio'):g} % of critical.")
+            + f"; it enters through the {run.entry('Wave field/Enters through')}")
+
+
+def damping_in_words(run):
+    model = run.entry("Damping/Model")
+    if not model or model == "none":
+        return "No damping."
+    moduli = run.summary.get("damping", {})
+    words = f"Damping: {model}, {100. * run.number('Damping/Ratio'):g} % of critical"
+    if "moduli hold at [Hz]" in moduli and "moduli at rest over given" in moduli:
+        words += (f"; moduli hold at {number(moduli['moduli hold at [Hz]'])} Hz and are "
+                  f"{number(moduli['moduli at rest over given'])} times those at rest")
+    return words + "."
 
 
 def boundary_in_words(run):
@@ -137,9 +179,8 @@ def differences(runs):
 
 def case_section(runs):
     first = runs[0]
-    parts = [dam_in_words(first), materials_table(first), interfaces_in_words(first),
-             loads_in_words(first), water_in_words(first), boundary_in_words(first),
-             earthquake_in_words(first), SIGNS]
+    parts = [dam_in_words(first), SIGNS, materials_table(first), interfaces_in_words(first),
+             loads_table(first), water_in_words(first), boundary_in_words(first), damping_in_words(first)]
     if len(runs) > 1:
         parts.insert(0, f"In words, the first of the runs, {first.label}:")
         parts.append(differences(runs))
@@ -164,7 +205,7 @@ def largest_of(run, part, key, smallest=False):
     if not found:
         return None
     value, name = min(found) if smallest else max(found)
-    return f"{number(value)} ({name})" if value > 1e-9 else "0"
+    return f"{number(value)} ({name})" if value > 1e-6 else "0"
 
 
 def ground_peaks(run):
@@ -211,6 +252,14 @@ def energy_balance_error(run):
     return None if share is None else number(100. * share) if share > 1e-8 else "below 10⁻⁶"
 
 
+def demand_over_strength(run):
+    faces = {name: face for name, face in run.summary.get("over-stress", {}).items() if name != "verdict"}
+    if not faces:
+        return None
+    name = max(faces, key=lambda name: faces[name]["largest ratio"])
+    return f"{number(faces[name]['largest ratio'])} ({name})"
+
+
 def headline_section(runs):
     table = comparison(runs, [
         ("first natural frequency [Hz]", first_frequency),
@@ -228,9 +277,14 @@ def headline_section(runs):
          lambda run: largest_of(run, "surfaces", "largest opening [mm]")),
         ("largest slip [mm]", lambda run: largest_of(run, "surfaces", "largest slip [mm]")),
         ("largest slip at the end [mm]", lambda run: largest_of(run, "surfaces", "residual slip [mm]")),
-        ("smallest safety of a block against sliding [-]",
+        ("largest slip rate at the end [mm/s]",
+         lambda run: largest_of(run, "surfaces", "slip rate at the end [mm/s]")),
+        ("dam open from face to face at one moment [mm]",
+         of_summary("through cracks/largest opening from face to face at one moment [mm]")),
+        ("largest demand over strength on the faces [-]", demand_over_strength),
+        ("smallest ratio of a block's resistance over its contact forces [-]",
          lambda run: largest_of(run, "blocks", "smallest safety", smallest=True)),
-        ("longest time of a block at safety one or below [s]",
+        ("longest time of a block at one or below [s]",
          lambda run: largest_of(run, "blocks", "time at safety one or below [s]")),
         ("share of the concrete that left the elastic range [%]",
          of_materials("share of the volume that left the elastic range", 100.)),
@@ -240,9 +294,30 @@ def headline_section(runs):
     return Section("Headline figures", [table]) if table else None
 
 
+def conclusions_section(runs):
+    """Both verdicts of each run."""
+    return Section("Conclusions", [
+        *(Verdicts(run.label if len(runs) > 1 else "", verdict.verdicts_of(run),
+                   [note for note in run.notes if not verdict.LOWERED.search(note)]) for run in runs),
+        "Numerical checks say whether the equations were solved as they stand; engineering results say what came "
+        "out for the dam, compared with the limits that the case has. What is to be judged has no limit there. "
+        "Neither says that the model is right."])
+
+
+def input_entries_section(runs):
+    """What makes a run again: the entries that are not the defaults, and the whole file."""
+    parts = ["Entries that differ from the defaults of this version and are of the parts that the case uses; with "
+             "them the run can be made again. All other entries have their defaults."]
+    for run in runs:
+        parts.append(Block(f"{run.prefix}{len(run.own_entries)} entries", "\n".join(run.own_entries)))
+        parts.append(Block(f"{run.prefix}all of parameters.prm", run.read("parameters.prm").strip(), folded=True))
+    return Section("Complete input", parts)
+
+
 def statistics_section(runs):
     table = comparison(runs, [
         ("program", lambda run: run.summary.get("version")),
+        ("built with", lambda run: next(iter(re.findall(r"^Voussoir .* with (.+)$", run.log, re.MULTILINE)), None)),
         ("cells", of_summary("cells")), ("unknowns", of_summary("unknowns")),
         ("degree of the elements", of_summary("degree")),
         ("time step [ms]", of_summary("time step [s]", 1e3)),
@@ -255,4 +330,4 @@ def statistics_section(runs):
         ("speed [million unknowns · steps / s]", of_summary("MDOF-steps/s")),
         ("memory of the largest rank [MB]", of_summary("peak memory of a rank [MB]")),
     ])
-    return Section("What the run took", [table])
+    return Section("Versions and what the run took", [table])

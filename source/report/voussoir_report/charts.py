@@ -1,15 +1,18 @@
 """Charts and maps: matplotlib, without a display."""
 
 import base64
+import dataclasses
 import io
+import re
 
 import matplotlib
 import numpy as np
 from matplotlib import ticker
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import Normalize, TwoSlopeNorm
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from PIL import Image
 
 from .page import number
@@ -18,34 +21,41 @@ matplotlib.rcParams.update({"font.size": 9.5, "axes.grid": True, "grid.alpha": 0
                             "axes.axisbelow": True, "lines.linewidth": 1.,
                             "legend.fontsize": 8.5, "axes.titlesize": 9.5,
                             "xtick.labelsize": 9., "ytick.labelsize": 9., "axes.spines.top": False,
-                            "axes.spines.right": False})
+                            "axes.spines.right": False, "svg.fonttype": "none",
+                            "svg.hashsalt": "voussoir", "path.simplify_threshold": 0.2})
 
 WIDTH = 5.0  # [in], so that the letters can be read on a phone
-DPI = 150
+DPI = 220  # two beside each other are printed smaller, and then have 300
+FULL_DPI = 300
 
 
 class Picture:
-    """A picture in a page: PNG and what it shows."""
+    """A picture in a page, of the kind "png" or "svg", and what it shows."""
 
-    def __init__(self, png, caption, name=""):
-        self.png, self.caption, self.name = png, caption, name
+    def __init__(self, data, caption, name="", kind="png"):
+        self.data, self.caption, self.name, self.kind = data, caption, name, kind
 
     @property
     def source(self):
-        return "data:image/png;base64," + base64.b64encode(self.png).decode()
+        kind = {"png": "png", "svg": "svg+xml"}[self.kind]
+        return f"data:image/{kind};base64," + base64.b64encode(self.data).decode()
 
 
-def picture(figure, caption, name="", shaded=False):
-    """Draws a figure; one that is not shaded with few colours, which makes the page
-    smaller."""
-    figure.set_dpi(DPI)
+def picture(figure, caption, name="", vector=True, dpi=None, shaded=False):
+    """Draws a figure, as curves and letters or else as dots, with few colours, which
+    makes the page smaller; those of a shaded one are chosen with more care."""
+    memory = io.BytesIO()
+    if vector:
+        figure.savefig(memory, format="svg", metadata={"Date": None, "Creator": None})
+        # the shorthand is beyond what makes a PDF
+        text = re.sub(r"\bfont: ([\d.]+px) ([^;\"]+)", r"font-size: \1; font-family: \2", memory.getvalue().decode())
+        return Picture(text.encode(), caption, name, "svg")
+    figure.set_dpi(dpi or DPI)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     image = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-    memory = io.BytesIO()
-    if not shaded:
-        image = image.quantize(256, dither=Image.Dither.NONE)
-    image.save(memory, "png")
+    image = image.quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=int(shaded), dither=Image.Dither.NONE)
+    image.save(memory, "png", dpi=(figure.dpi, figure.dpi), optimize=True)
     return Picture(memory.getvalue(), caption, name)
 
 
@@ -110,12 +120,15 @@ def cycle_colours(axes, n):
         axes.set_prop_cycle(color=matplotlib.colormaps["turbo"](np.linspace(0.05, 0.95, n)))
 
 
+NOISE = 1e-6  # below it a stress [MPa], an opening [mm] or a time [s] is zero
+
+
 class Scale:
     """Colours of a quantity, the same in all pictures that are compared.
 
-    Of tension and compression each has its colour, red and blue, and its own range.
-    The range leaves out the outermost @p cut of the values, as at the ends of
-    joints and abutments, where they depend on the mesh.
+    Tension is red and pressure blue, and both grow as deep at the same amount. The
+    range leaves out the outermost @p cut of the values, as at the ends of joints and
+    abutments, where they depend on the mesh.
     """
 
     def __init__(self, values, label, cut=0.005, colours=None, low=None, high=None):
@@ -124,36 +137,69 @@ class Scale:
             values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
             low = np.quantile(values, cut) if low is None else low
             high = np.quantile(values, 1. - cut) if high is None else high
-            if colours is None and -0.05 * low > high > 0.:
-                high = 0.  # as good as no tension
-        if high - low < 1e-12 * max(abs(low), abs(high), 1e-30):
-            high = low + max(abs(low), 1.) * 1e-3
-        self.label = label
-        # colours beyond the ends of the bar are values that it leaves out
-        self.extend = "both" if cut > 0. else "neither"
-        self.both = colours is None and low < 0. < high
-        if self.both:
-            self.levels = np.unique(np.concatenate([-nice_levels(-low)[::-1], nice_levels(high)]))
-            self.norm = TwoSlopeNorm(0., self.levels[0], self.levels[-1])
-        else:
-            self.levels = ticker.MaxNLocator(8, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
-            self.norm = Normalize(self.levels[0], self.levels[-1])
+        low, high = (0. if abs(end) < NOISE else end for end in (low, high))
         if colours is None:
-            colours = "RdBu_r" if self.both else "Reds" if low >= 0. else "Blues_r"
-        self.colours = matplotlib.colormaps[colours]
+            low, high = min(low, 0.), max(high, 0.)
+        if high - low <= NOISE:
+            high, label = low + 1., f"{label}: {number(low)} everywhere"
+        elif high - low < 1e-3 * abs(high):
+            high = low + 1e-3 * abs(high)
+        self.label = label
+        # what the range leaves out has the colours of its ends
+        self.is_cut = cut > 0.
+        self.levels = ticker.MaxNLocator(8, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+        largest = np.abs(self.levels).max()
+        self.norm = Normalize(-largest if colours is None else self.levels[0],
+                              largest if colours is None else self.levels[-1])
+        self.colours = matplotlib.colormaps[colours or "RdBu_r"]
 
     def bar(self, figure):
         """A colour bar at the bottom, 0.65 inches high with its label."""
-        mappable = matplotlib.cm.ScalarMappable(self.norm, self.colours)
-        step = 2 if len(self.levels) > 9 else 1
-        bar = figure.colorbar(mappable, cax=place(figure, 1.1, 0.5, WIDTH - 1.9, 0.1), label=self.label,
-                              extend=self.extend, ticks=self.levels[::step], orientation="horizontal")
-        bar.ax.tick_params(labelsize=8)
+        axes = place(figure, 1.1, 0.5, WIDTH - 1.9, 0.1)
+        first, last = self.levels[0], self.levels[-1]
+        axes.imshow(np.linspace(first, last, 256)[None, :], norm=self.norm, cmap=self.colours, aspect="auto",
+                    extent=(first, last, 0., 1.))
+        axes.set_yticks([])
+        axes.grid(False)
+        ticks = self.levels[::2 if len(self.levels) > 9 else 1]
+        texts = [f"{tick:g}".replace("-", "−") for tick in ticks]
+        if self.is_cut and last == ticks[-1]:
+            texts[-1] = f"≥ {texts[-1]}"
+        if self.is_cut and first != 0.:
+            texts[0] = f"≤ {texts[0]}"
+        axes.set_xticks(ticks, texts)
+        axes.tick_params(labelsize=8)
+        axes.set_xlabel(self.label)
+
+    def picture(self, name):
+        """The bar alone."""
+        figure = Figure(figsize=(WIDTH, 0.65))
+        self.bar(figure)
+        return picture(figure, self.label, name)
 
 
-def nice_levels(most):
-    """Round numbers from 0 to beyond this."""
-    return ticker.MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]).tick_values(0., most)
+def distinct(n):
+    """RGB (n, 3) of colours that can be told apart."""
+    return np.array([matplotlib.colormaps["tab10" if n <= 10 else "tab20"](i % 20)[:3] for i in range(n)])
+
+
+def framed(image, across, caption, name, scale=None, legend=None, dpi=None):
+    """A picture of a scene that is @p across [m] wide, with a length to compare with, a
+    colour bar and the names of colours."""
+    height = WIDTH * image.shape[0] / image.shape[1]
+    rows = -(-len(legend or ()) // 3)
+    below = 0.7 if scale else 0.2 * rows
+    figure = Figure(figsize=(WIDTH, height + below))
+    axes = place(figure, 0., below, WIDTH, height)
+    axes.imshow(image, extent=(0., across, 0., across * image.shape[0] / image.shape[1]))
+    axes.set_axis_off()
+    scale_bar(axes, 0.97 * across, 0.03 * across, 0.12 * across)
+    if scale:
+        scale.bar(figure)
+    if legend:
+        figure.legend([Rectangle((0, 0), 1, 1, color=colour) for colour in legend.values()], list(legend),
+                      ncols=3, frameon=False, loc="lower center", borderaxespad=0.)
+    return picture(figure, caption, name, vector=False, dpi=dpi, shaded=True)
 
 
 def triangles(n_quadrilaterals):
@@ -167,43 +213,64 @@ def mark_largest(axes, places, values, unit, largest):
     at = np.argmax(values) if largest else np.argmin(values)
     x, y = places[at]
     axes.plot(x, y, "o", color="black", markersize=3.5, markerfacecolor="none")
-    is_left, is_low = x < 0.5 * sum(axes.get_xlim()), y < 0.5 * sum(axes.get_ylim())
+    # the abscissa may run to the left
+    across, upwards = axes.transAxes.inverted().transform(axes.transData.transform((x, y)))
+    is_left, is_low = across < 0.5, upwards < 0.5
     axes.annotate(f"{number(values[at])} {unit}", (x, y), fontsize=8.5,
                   xytext=(6 if is_left else -6, 6 if is_low else -11),
                   textcoords="offset points", ha="left" if is_left else "right",
                   bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.75})
 
 
+@dataclasses.dataclass
+class Panel:
+    """A face of a dam, unrolled: places (n, 4, 2) along the crest and upwards, values
+    (n, 4) or (n,) at corners or in quadrilaterals, and what the abscissa shows: places
+    along the crest [m] with their x, and whether they run to the left."""
+
+    title: str
+    places: np.ndarray
+    values: np.ndarray
+    ticks: tuple = ((), ())
+    runs_left: bool = False
+
+
 def face_map(panels, scale, caption, name, unit="", largest=None):
-    """Faces of a dam, each (title, places (n, 4, 2), values (n, 4) or (n,)).
+    """Faces of a dam.
 
     @p largest: whether to mark the largest or the smallest value; None for neither.
     """
     width = WIDTH - 0.8
-    spans = [np.ptp(places.reshape(-1, 2), axis=0) for _, places, _ in panels]
+    spans = [np.ptp(panel.places.reshape(-1, 2), axis=0) for panel in panels]
     heights = [min(width * span[1] / span[0], 4.) for span in spans]
-    figure = Figure(figsize=(WIDTH, sum(heights) + 0.55 * len(panels) + 0.75))
+    figure = Figure(figsize=(WIDTH, sum(heights) + 0.74 * len(panels) + 0.7))
     top = figure.get_size_inches()[1]
-    for (title, places, values), height in zip(panels, heights):
-        top -= height + 0.55
-        axes = place(figure, 0.68, top + 0.25, width, height)
-        if values.ndim == 1:
-            axes.add_collection(PolyCollection(places, array=values, norm=scale.norm,
-                                               cmap=scale.colours, edgecolors="face",
-                                               linewidths=0.3))
-            values = np.repeat(values[:, None], 4, axis=1)
-            axes.autoscale()
-        else:
-            axes.tricontourf(*places.reshape(-1, 2).T, triangles(len(places)), values.ravel(),
-                             levels=fine(scale.levels), norm=scale.norm, cmap=scale.colours,
-                             extend="both")
-        axes.set_aspect("equal")
-        axes.set_title(title, loc="left")
-        axes.set_ylabel("elevation [m]")
-        if largest is not None:
-            mark_largest(axes, places.reshape(-1, 2), values.ravel(), unit, largest)
+    for panel, height in zip(panels, heights):
+        top -= height + 0.74
+        axes = place(figure, 0.68, top + 0.49, width, height)
+        draw_panel(axes, panel, scale, unit, largest)
     scale.bar(figure)
-    return picture(figure, caption, name)
+    return picture(figure, caption, name, vector=False)
+
+
+def draw_panel(axes, panel, scale, unit="", largest=None):
+    places, values = panel.places, panel.values
+    if values.ndim == 1:
+        axes.add_collection(PolyCollection(places, array=values, norm=scale.norm, cmap=scale.colours,
+                                           edgecolors="face", linewidths=0.3))
+        values = np.repeat(values[:, None], 4, axis=1)
+        axes.autoscale()
+    else:
+        axes.tricontourf(*places.reshape(-1, 2).T, triangles(len(places)), values.ravel(),
+                         levels=fine(scale.levels), norm=scale.norm, cmap=scale.colours, extend="both")
+    axes.set_aspect("equal")
+    if panel.runs_left:
+        axes.invert_xaxis()
+    axes.set_title(panel.title, loc="left")
+    axes.set_xticks(panel.ticks[0], [f"{x:g}".replace("-", "−") for x in panel.ticks[1]])
+    axes.set(xlabel="x [m], unrolled along the crest", ylabel="elevation z [m]")
+    if largest is not None:
+        mark_largest(axes, places.reshape(-1, 2), values.ravel(), unit, largest)
 
 
 def sections_map(panels, scale, caption, name):
@@ -238,13 +305,22 @@ def sections_map(panels, scale, caption, name):
             axes.text(at + 0.5 * (high - low), highest + 0.03 * (top - bottom), panels[panel][0],
                       ha="center", fontsize=8)
             at += high - low + gap
-        axes.set(xlim=(-gap, longest - gap), ylim=(bottom - gap, top + 3. * gap), ylabel="elevation [m]")
+        axes.set(xlim=(-gap, longest - gap), ylim=(bottom - gap, top + 3. * gap), ylabel="elevation z [m]")
         axes.set_aspect("equal", anchor="W")
         axes.set_xticks([])
         axes.spines["bottom"].set_visible(False)
         axes.grid(False)
+        scale_bar(axes, axes.get_xlim()[1], bottom - 0.5 * gap, 0.25 * (top - bottom))
     scale.bar(figure)
-    return picture(figure, caption, name)
+    return picture(figure, caption, name, vector=False)
+
+
+def scale_bar(axes, right, at, about):
+    """A length [m] that says how long it is, as the abscissa has no numbers."""
+    length = float(f"{about:.0e}")
+    axes.plot([right - length, right], [at, at], color="black", linewidth=1.5, clip_on=False)
+    axes.annotate(f"{length:g} m", (right - 0.5 * length, at), xytext=(0, 2), textcoords="offset points",
+                  ha="center", fontsize=8)
 
 
 def fine(levels):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from . import charts
-from .faces import SIDES, developed
+from .faces import SIDES, panel_of
 from .grid import centre_keys, dam_in, dam_of
 from .interfaces import joint_corners, joints_of
 from .page import Pictures, Section
@@ -34,10 +34,9 @@ def scale_of(runs, field):
 def on_faces(run, field, scale):
     dam = dam_of(run)
     panels = []
-    for side, (title, _) in SIDES.items():
+    for side in SIDES:
         faces = dam.side(side)
-        panels.append((title, developed(dam, dam.grid.points[faces], side),
-                       dam.grid.values[field][faces].mean(axis=1)))
+        panels.append(panel_of(dam, side, dam.grid.points[faces], dam.grid.values[field][faces].mean(axis=1)))
     return charts.face_map(panels, scale, f"{run.prefix}On the faces", f"{field}_faces_{run.label}")
 
 

@@ -1,6 +1,9 @@
 """Stresses on the faces of the dam."""
 
+import dataclasses
+
 import numpy as np
+from matplotlib import ticker
 
 from . import charts
 from .grid import dam_of, grid_of
@@ -12,26 +15,30 @@ STRESSES = {"arch_stress": "arch stress", "cantilever_stress": "cantilever stres
 AT_REST = {"arch_stress": "arch stress", "cantilever_stress": "cantilever stress",
            "largest_principal_stress": "largest principal stress",
            "smallest_principal_stress": "smallest principal stress"}
-SIDES = {"upstream": ("upstream face, seen from upstream (left bank on the left)", -1.),
-         "downstream": ("downstream face, seen from downstream (left bank on the right)", 1.)}
+# +x is the left bank, which is on the left for those who look downstream
+SIDES = {"upstream": ("upstream face, seen from upstream (left bank on the left)", True),
+         "downstream": ("downstream face, seen from downstream (left bank on the right)", False)}
 
 
-def developed(dam, corners, side):
-    """Places (n, 4, 2) of corners (n, 4, 3) on a face unrolled along the crest."""
-    sign = SIDES[side][1]
-    return np.stack([sign * dam.developed(corners[..., 0]), corners[..., 2]], axis=-1)
+def panel_of(dam, side, corners, values):
+    """Values on corners (n, 4, 3) of a face, unrolled along the crest."""
+    title, runs_left = SIDES[side]
+    places = np.stack([dam.developed(corners[..., 0]), corners[..., 2]], axis=-1)
+    xs = corners[..., 0]
+    ticks = ticker.MaxNLocator(7, steps=[1, 2, 5, 10]).tick_values(xs.min(), xs.max())
+    ticks = ticks[(ticks >= xs.min()) & (ticks <= xs.max())]
+    return charts.Panel(title, places, values, (dam.developed(ticks), ticks), runs_left)
 
 
 def face_panels(run, field, file=FILE):
     """Panels of a field on both faces."""
     grid, dam = grid_of(run, file), dam_of(run)
     panels = []
-    for side, (title, _) in SIDES.items():
+    for side in SIDES:
         if f"{side} face" in grid.names("face_set"):
             quads = grid.cells[grid.of("face_set", f"{side} face")]
             if len(quads):  # all face sets have names, those not looked at no quadrilaterals
-                panels.append((title, developed(dam, grid.points[quads], side),
-                               grid.values[field][quads]))
+                panels.append(panel_of(dam, side, grid.points[quads], grid.values[field][quads]))
     return panels
 
 
@@ -39,7 +46,7 @@ def stress_maps(runs, field, title, largest):
     """A picture of a field for each run, in the same colours, with its largest or
     smallest values."""
     every = [face_panels(run, field) for run in runs]
-    scale = charts.Scale([values for panels in every for _, _, values in panels], f"{title} [MPa]")
+    scale = charts.Scale([panel.values for panels in every for panel in panels], f"{title} [MPa]")
     return [charts.face_map(panels, scale, run.prefix + title[0].upper() + title[1:],
                             f"{field.removesuffix('_MPa')}_{run.label}", "MPa", largest)
             for run, panels in zip(runs, every)]
@@ -52,9 +59,9 @@ def face_stress_section(runs):
         return None
     columns = max(2, min(len(runs), 3))
     parts = ["Arch stress is along the horizontal of the face, cantilever stress along its steepest "
-             "line. Tension is positive and red, pressure negative and blue, each with its own range; "
+             "line. Tension is positive and red, pressure negative and blue, as deep at the same amount; "
              "the colours leave out the outermost half per cent, the figures do not. Faces are unrolled "
-             "along the crest; distances are from its middle.",
+             "along the crest and have the x of the model below them, as in the table.",
              extremes_table(runs)]
     at_rest = different([run for run in runs if run.list("Static state/Stages", ";")
                          and "arch_stress_at_start_MPa" in grid_of(run, FILE).values],
@@ -87,9 +94,9 @@ def different(runs, field):
 
 def time_maps(runs):
     every = [face_panels(run, "time_of_largest_principal_stress_s") for run in runs]
-    scale = charts.Scale([values for panels in every for _, _, values in panels], "time [s]",
+    scale = charts.Scale([panel.values for panels in every for panel in panels], "time [s]",
                          colours="viridis")
-    return [charts.face_map([(title, places, values.mean(axis=1)) for title, places, values in panels],
+    return [charts.face_map([dataclasses.replace(panel, values=panel.values.mean(axis=1)) for panel in panels],
                             scale, f"{run.prefix}Time of the largest principal stress",
                             f"time_{run.label}")
             for run, panels in zip(runs, every)]

@@ -35,6 +35,11 @@ def centre_keys(corners):
     return np.floor(100. * corners.mean(axis=1) + 0.137).astype(np.int64) @ SCATTER
 
 
+def point_keys(points):
+    """A number for each place (n, 3), as centre_keys."""
+    return np.floor(100. * points + 0.137).astype(np.int64) @ SCATTER
+
+
 class Fields(dict):
     """Values at corners by the name of the field."""
 
@@ -136,23 +141,26 @@ class Grid:
         return np.einsum("cfd,cfd->c", middle, area_vectors(corners)) / 3.
 
 
-    def cut(self, x):
-        """Polygons (y, z) where the plane of a place x cuts cells, and numbers of these."""
+    def cut(self, at, axis=0):
+        """Polygons where the plane normal to an axis cuts cells, as places on the other
+        two, and numbers of these cells."""
         numbered = vtkUnstructuredGrid()
         numbered.CopyStructure(self.vtk)
         numbers = numpy_to_vtk(np.arange(len(self.cells)), deep=True)
         numbers.SetName("number")
         numbered.GetCellData().AddArray(numbers)
         plane = vtkPlane()
-        plane.SetOrigin(x, 0., 0.)
-        plane.SetNormal(1., 0., 0.)
+        plane.SetOrigin(*(at * np.eye(3)[axis]))
+        plane.SetNormal(*np.eye(3)[axis])
         cutter = vtkCutter()
         cutter.SetInputData(numbered)
         cutter.SetCutFunction(plane)
         cutter.GenerateTrianglesOff()
         cutter.Update()
         cut = cutter.GetOutput()
-        points = vtk_to_numpy(cut.GetPoints().GetData())[:, 1:]
+        if cut.GetNumberOfCells() == 0:
+            return [], np.zeros(0, int)
+        points = np.delete(vtk_to_numpy(cut.GetPoints().GetData()), axis, axis=1)
         corners = vtk_to_numpy(cut.GetPolys().GetConnectivityArray())
         ends = vtk_to_numpy(cut.GetPolys().GetOffsetsArray())[1:-1]
         return (np.split(points[corners], ends),
@@ -235,9 +243,19 @@ class Dam:
         """Polygons (y, z) of the section in the middle, and numbers of their cells."""
         xs = self.points[:, 0]
         # beside the middle, where cells may end
-        polygons, cells = self.grid.cut(0.5 * (xs.min() + xs.max()) + 1e-3 * np.ptp(xs))
+        return self.section(0.5 * (xs.min() + xs.max()) + 1e-3 * np.ptp(xs))
+
+    def section(self, at, axis=0):
+        """Polygons of the dam in the plane normal to an axis, and numbers of their cells."""
+        polygons, cells = self.grid.cut(at, axis)
         mine = np.isin(cells, self.cells)
         return [polygon for polygon, own in zip(polygons, mine) if own], cells[mine]
+
+    def cells_through(self, share):
+        """Cells through the thickness of the section in the middle, at a share of the
+        height."""
+        at = self.bottom + share * self.height + 1e-4 * self.height
+        return sum(p[:, 1].min() < at < p[:, 1].max() for p in self.crown[0])
 
     @functools.cached_property
     def slenderness(self):

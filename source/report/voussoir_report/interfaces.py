@@ -4,9 +4,11 @@ import functools
 
 import numpy as np
 
-from . import charts
-from .grid import centre_keys, dam_of, grid_of
+from . import charts, scenes
+from .faces import SIDES
+from .grid import centre_keys, dam_of, grid_of, point_keys
 from .page import Pictures, Section, Table, number
+from .scenes import FROM_DOWNSTREAM
 
 FILE = "interface_envelopes.vtu"
 
@@ -54,22 +56,50 @@ def opening_sections(runs):
     return pictures
 
 
-def opening_profile(run, most):
-    """Largest opening of each joint over the elevation, up to @p most [mm]."""
-    figure, axes = charts.new_figure(3.4)
-    charts.cycle_colours(axes, len(joints_of(run)))
-    for name in joints_of(run):
-        points = surfaces_of(run)[name].ravel()
-        levels, row = np.unique(np.round(grid_of(run, FILE).points[points, 2], 1),
-                                return_inverse=True)
+def edges_of(run, name):
+    """Elevation [m] and largest opening [mm] of a joint along the faces of the dam,
+    from the bottom up, by face."""
+    dam, grid = dam_of(run), grid_of(run, FILE)
+    numbers = np.unique(surfaces_of(run)[name])
+    keys = point_keys(grid.points[numbers])
+    found = {}
+    for side in SIDES:
+        on_face = numbers[np.isin(keys, point_keys(dam.grid.points[dam.side(side)].reshape(-1, 3)))]
+        levels, row = np.unique(np.round(grid.points[on_face, 2], 1), return_inverse=True)
         largest = np.zeros(len(levels))
-        np.maximum.at(largest, row.reshape(-1), grid_of(run, FILE).values["largest_opening_mm"][points])
-        axes.plot(largest, levels, label=name, marker=".", markersize=3)
-    axes.set(xlabel="largest opening over the thickness [mm]", ylabel="elevation [m]")
-    axes.set_xlim(0., max(1.05 * most, 1e-3))
-    axes.set_title(run.title_in_chart, loc="left")
-    axes.legend(ncols=2, frameon=False)
-    return charts.picture(figure, "Profiles of the largest opening", f"profile_{run.label}")
+        np.maximum.at(largest, row.reshape(-1), grid.values["largest_opening_mm"][on_face])
+        found[side] = levels, largest
+    return found
+
+
+def opening_profiles(run, most):
+    """Largest opening over the elevation on both faces, a chart for each joint, with
+    openings up to @p most [mm]."""
+    names = joints_of(run)
+    columns = min(len(names), 5)
+    rows = -(-len(names) // columns)
+    width, height = (charts.WIDTH - 0.7) / columns, 1.75
+    figure = charts.Figure(figsize=(charts.WIDTH, rows * height + 0.55))
+    heights = [level for name in names for levels, _ in edges_of(run, name).values() for level in levels]
+    for n, name in enumerate(names):
+        row, column = divmod(n, columns)
+        axes = charts.place(figure, 0.62 + column * width, 0.42 + (rows - 1 - row) * height, width - 0.14,
+                            height - 0.5)
+        for (side, style), (levels, largest) in zip((("upstream", "-"), ("downstream", "--")),
+                                                    edges_of(run, name).values()):
+            axes.plot(largest, levels, style, marker=".", markersize=3, label=f"{side} face")
+        axes.set(xlim=(0., 1.05 * most), ylim=(min(heights), max(heights)))
+        axes.set_title(name, loc="left", fontsize=8.5)
+        axes.tick_params(labelsize=7.5)
+        axes.locator_params(axis="x", nbins=3)
+        if column:
+            axes.tick_params(labelleft=False)
+        else:
+            axes.set_ylabel("z [m]", fontsize=8.5)
+    figure.legend(*axes.get_legend_handles_labels(), ncols=2, frameon=False, loc="upper center")
+    figure.supxlabel("largest opening [mm]", fontsize=9)
+    return charts.picture(figure, f"{run.prefix}Largest opening of each joint over the elevation, on both faces",
+                          f"profile_{run.label}")
 
 
 def history(run, names, quantity, title, most):
@@ -97,10 +127,11 @@ def surfaces_table(runs, names_of):
                          number(values["area [m2]"]), number(values["largest opening [mm]"]),
                          number(run.table("interfaces.csv")[f"{name} largest slip [mm]"][0]),
                          number(values["largest slip [mm]"]), number(values["residual slip [mm]"]),
+                         number(values.get("slip rate at the end [mm/s]")),
                          number(values["smallest sliding safety"]),
                          number(values["time at safety one or below [s]"])])
     return Table(["surface", "area [m²]", "largest opening [mm]", "slip at the start [mm]",
-                  "largest slip [mm]", "slip at the end [mm]", "smallest sliding safety [-]",
+                  "largest slip [mm]", "slip at the end [mm]", "slip rate at the end [mm/s]", "smallest sliding safety [-]",
                   "time at safety one or below [s]"], rows)
 
 
@@ -115,11 +146,13 @@ def joints_section(runs):
         return None
     columns = max(2, min(len(runs), 3))
     most = most_of(runs, joints_of, "largest opening")
+    if most < charts.NOISE:
+        return Section("Joints", ["No joint opened.", surfaces_table(runs, joints_of)])
     text = ("Openings are the largest over the run at each place; an opening of zero is a joint that "
             "stayed closed. Where keys hold the joint there is no sliding safety.")
     return Section("Joints", [
         text, surfaces_table(runs, joints_of),
-        Pictures(opening_sections(runs) + [opening_profile(run, most) for run in runs]
+        Pictures(opening_sections(runs) + [opening_profiles(run, most) for run in runs]
                  + [history(run, joints_of(run), "largest opening", "Largest opening of each joint", most)
                     for run in runs], columns)])
 
@@ -139,7 +172,7 @@ def safety_picture(run, columns, caption, name):
     finite = np.concatenate([values[np.isfinite(values)] for _, _, values in curves])
     axes.set_ylim(min(0.8, 0.9 * max(finite.min(initial=1.), 0.05)),
                   min(1.5 * finite.max(initial=2.), 20.))
-    charts.lines(axes, curves, run.title_in_chart, "time [s]", "sliding safety [-]", log=True)
+    charts.lines(axes, curves, run.title_in_chart, "time [s]", "resistance over contact forces [-]", log=True)
     ticks = [tick for tick in (0.1, 0.2, 0.5, 1., 2., 5., 10., 20., 50.)
              if axes.get_ylim()[0] <= tick <= axes.get_ylim()[1]]
     axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
@@ -155,8 +188,31 @@ def blocks_table(runs):
                          number(values.get("safety at the start")), number(values.get("smallest safety")),
                          number(values.get("time of the smallest safety [s]")),
                          number(values.get("time at safety one or below [s]"))])
-    return Table(["block", "safety at the start [-]", "smallest safety [-]", "at the time [s]",
+    return Table(["block: resistance over contact forces", "at the start [-]", "smallest [-]", "at the time [s]",
                   "time at one or below [s]"], rows) if rows else None
+
+
+def planes_picture(runs):
+    """The planes in space with the dam, each in its colour, of runs with different ones."""
+    pictures, seen = [], []
+    for run in runs:
+        names = tuple(planes_of(run))
+        corners = [joint_corners(run, name) for name in names]
+        place = (names, *(tuple(np.round(c.mean(axis=(0, 1)), 1)) for c in corners))
+        if place in seen or dam_of(run) is None:
+            continue
+        seen.append(place)
+        colours = charts.distinct(len(names))
+        dam = dam_of(run)
+        drawn = [scenes.quadrilaterals(dam.grid.points[dam.exposed], scenes.CONCRETE)]
+        drawn += [scenes.quadrilaterals(c, colour) for c, colour in zip(corners, colours)]
+        around = np.concatenate([dam.points, *(c.reshape(-1, 3) for c in corners)])
+        for direction, where, short in ((FROM_DOWNSTREAM, "from downstream and above", "downstream"),
+                                        ((0.02, -0.05, 1.), "from above", "above")):
+            pictures.append(charts.framed(
+                *scenes.draw(drawn, around, direction), f"{run.prefix}Slip planes and the dam, seen {where}",
+                f"planes_{short}_{run.label}", legend=dict(zip(names, colours))))
+    return Pictures(pictures, 2)
 
 
 def planes_section(runs):
@@ -168,20 +224,23 @@ def planes_section(runs):
         table = run.table("interfaces.csv")
         blocks = [(match[1], values) for match, values in table.matching(r"(.*) block safety \[-\]")]
         if blocks:
-            pictures.append(safety_picture(run, blocks, "Safety of blocks against sliding; red: one",
+            pictures.append(safety_picture(run, blocks, "Blocks: resistance over contact forces; red: one",
                                            "block_safety"))
         planes = [(name, table[f"{name} sliding safety [-]"]) for name in planes_of(run)]
         planes = [(name, values) for name, values in planes if np.isfinite(values).any()]
         if planes:
-            pictures.append(safety_picture(run, planes, "Sliding safety of each plane; red: one",
+            pictures.append(safety_picture(run, planes, "Planes: resistance over contact forces; red: one",
                                            "plane_safety"))
         for quantity in ("largest slip", "largest opening"):
-            pictures.append(history(run, planes_of(run), quantity, f"{quantity.capitalize()} of each plane",
-                                    most_of(runs, planes_of, quantity)))
-    text = ("The safety of a block is that of limit equilibrium under the contact forces on all its "
-            "planes; that of a plane is what friction and cohesion could bear over its shear force, "
-            "point by point. A gap in a curve means that nothing drives the block, or that its way is "
-            "barred. A safety below one for a short time moves a block a little; what counts then is "
-            "the slip that stays.")
-    parts = [text, blocks_table(runs), surfaces_table(runs, planes_of), Pictures(pictures, 2)]
+            most = most_of(runs, planes_of, quantity)
+            if most > charts.NOISE:
+                pictures.append(history(run, planes_of(run), quantity, f"{quantity.capitalize()} of each plane",
+                                        most))
+    text = ("Of a block: what its planes can bear along its way over what drives it, both from the contact "
+            "forces on all its planes; of a plane: what friction and cohesion can bear over its shear force, "
+            "point by point. Friction caps contact forces, so that the ratio of a block that slides stays at "
+            "one and does not fall below: judge it by its slip and slip rate. A gap in a curve means that "
+            "nothing drives the block, or that its way is barred.")
+    parts = [text, planes_picture(runs), blocks_table(runs), surfaces_table(runs, planes_of),
+             Pictures(pictures, 2)]
     return Section("Slip planes and blocks", [part for part in parts if part])

@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 
-from . import charts
+from . import charts, records
 from .case import DIRECTIONS
 from .files import refuse
 from .motion import (GRAVITY, PERIODS, ROUND_PERIODS, arias_intensity, integral, peak, response_spectrum,
@@ -31,6 +31,13 @@ class GroundMotion:
         records = np.array(list(self.acceleration.values()))
         return dict(zip(self.acceleration, response_spectrum(records, self.interval,
                                                              damping=DAMPING)))
+
+
+    def frequency_of_power(self, share):
+        """Below which this share of the power of all components lies [Hz]."""
+        sums = np.cumsum(sum(np.abs(np.fft.rfft(a))**2 for a in self.acceleration.values()))
+        return (np.fft.rfftfreq(len(self.time), self.interval)[np.searchsorted(sums, share * sums[-1])]
+                if sums[-1] > 0. else None)
 
 
 @functools.lru_cache(maxsize=None)
@@ -112,8 +119,9 @@ def input_section(runs):
     text = (f"The motion as it was given to the program, at the {' or '.join(sorted(given))}, scaled, "
             "up to the end of the run. Arias intensity is π/2g ∫a²dt; the significant duration is "
             "the time between 5 and 95 % of it.")
-    return Section("Input motion", [text, motion_measures(runs), spectrum_table(runs),
-                                    Pictures(pictures)])
+    parts = [records.sources_table(runs), text, motion_measures(runs),
+             records.correlation_table(runs, ground_motion), spectrum_table(runs), Pictures(pictures)]
+    return Section("Input motion", [part for part in parts if part])
 
 
 def column(run, point, quantity, direction):

@@ -38,7 +38,7 @@ def over_stress_section(runs):
              and face_panels(run, "time_above_1_s", FILE)]
     if drawn:
         every = [face_panels(run, "time_above_1_s", FILE) for run in drawn]
-        scale = charts.Scale([values for panels in every for _, _, values in panels],
+        scale = charts.Scale([panel.values for panels in every for panel in panels],
                              "time above the strength [s]", colours="viridis")
         parts.append(Pictures([
             charts.face_map(panels, scale, f"{run.prefix}Accumulated time above the strength",

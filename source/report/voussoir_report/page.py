@@ -1,7 +1,9 @@
 """The parts of a page, and how they become HTML or PDF."""
 
+import base64
 import dataclasses
 import datetime
+import gzip
 import importlib.util
 import os
 import pathlib
@@ -14,6 +16,10 @@ from .files import ReportError
 
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+class Digest(str):
+    """A hash, which is longer than a table is wide."""
 
 
 @dataclasses.dataclass
@@ -35,6 +41,44 @@ class Pictures:
 
 
 @dataclasses.dataclass
+class Scene:
+    """A scene that turns in the browser, as JSON, and the picture that stands for it
+    on paper and where it cannot be drawn."""
+
+    data: str
+    picture: object
+    factor: float = 0.  # to which its motion is drawn at most
+    time: str = ""
+    bar: object = None  # picture of its colours
+
+    @property
+    def caption(self):
+        return self.picture.caption
+
+    @property
+    def pictures(self):
+        return [self.picture]
+
+
+@dataclasses.dataclass
+class Verdicts:
+    """The verdicts of a run."""
+
+    label: str
+    verdicts: list
+    notes: list
+
+
+@dataclasses.dataclass
+class Block:
+    """Preformatted text, as of an input file; @p folded behind its title on a screen."""
+
+    title: str
+    text: str
+    folded: bool = False
+
+
+@dataclasses.dataclass
 class Section:
     """A part of the page: paragraphs, tables and pictures in turn."""
 
@@ -47,7 +91,7 @@ class Section:
 
     @property
     def pictures(self):
-        return [picture for part in self.parts if isinstance(part, Pictures)
+        return [picture for part in self.parts if isinstance(part, (Pictures, Scene))
                 for picture in part.pictures]
 
 
@@ -85,10 +129,36 @@ def to_html(runs, sections):
     loader = jinja2.FileSystemLoader(pathlib.Path(__file__).parent)
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True)
-    environment.tests["table"] = lambda part: isinstance(part, Table)
-    environment.tests["pictures"] = lambda part: isinstance(part, Pictures)
+    for name, kind in (("table", Table), ("pictures", Pictures), ("verdicts", Verdicts), ("block", Block),
+                       ("scene", Scene), ("digest", Digest)):
+        environment.tests[name] = lambda part, kind=kind: isinstance(part, kind)
     return environment.get_template("page.html").render(
-        runs=runs, sections=sections, date=datetime.date.today().isoformat())
+        runs=runs, sections=sections, date=datetime.date.today().isoformat(),
+        sources=[(run.folder, name, digest) for run in runs for name, digest in run.digests],
+        program=scene_program(sections))
+
+
+def scene_program(sections):
+    """What turns the scenes of a page, packed; None without any or without vtk.js."""
+    file = vtk_js()
+    if file is None or not any(isinstance(part, Scene) for section in sections for part in section.parts):
+        return None
+    script = pathlib.Path(__file__).with_name("scene.js").read_text(encoding="utf-8")
+    licence = file.with_name("LICENSE")
+    return {"licence": licence.read_text(encoding="utf-8") if licence.is_file() else "BSD 3-Clause, Kitware Inc.",
+            "library": base64.b64encode(gzip.compress(file.read_bytes(), 9, mtime=0)).decode(),
+            "script": script}
+
+
+def vtk_js():
+    """The browser's VTK, or None where it is not installed."""
+    own = os.environ.get("VOUSSOIR_VTK_JS")
+    tree = pathlib.Path(__file__).resolve().parents[3]
+    places = [pathlib.Path(own)] if own else [
+        tree / "build" / "vtk.js" / "package" / "vtk.js",
+        *(pathlib.Path(prefix) / "vtk.js" / "vtk.js" for prefix in (
+            "/usr/share/nodejs", "/usr/local/lib/node_modules", "/usr/lib/node_modules"))]
+    return next((file for file in places if file.is_file()), None)
 
 
 def check(file):
@@ -121,7 +191,7 @@ def write_pictures(sections, folder):
         for section in sections:
             for picture in section.pictures:
                 name = re.sub(r"[^\w.-]+", "_", picture.name)
-                (folder / f"{name}.png").write_bytes(picture.png)
+                (folder / f"{name}.{picture.kind}").write_bytes(picture.data)
     except OSError as error:
         raise ReportError(f'The pictures cannot be written to "{folder}": {error.strerror}; '
                           "choose another folder.") from None

@@ -1,13 +1,13 @@
 """A result folder, as the program has left it."""
 
+import functools
+import hashlib
 import pathlib
 import re
 
 import numpy as np
 
 from .files import NUMBER, NUMBER_OR_NONE, TEXT, Group, ReportError, Table, is_number, read_bytes, read_json, refuse
-
-LOOSE = 5.  # opening at which no softening law of concrete has any strength left [mm]
 
 # what sections take from summary.json; numbers that are none are null there
 SUMMARY = Group(
@@ -16,7 +16,13 @@ SUMMARY = Group(
      **dict.fromkeys(("cells", "unknowns", "degree", "time step [s]", "largest stable step [s]", "steps",
                       "ranks", "SIMD bits", "loop time [s]", "contact share of the loop",
                       "MDOF-steps/s", "peak memory of a rank [MB]"), NUMBER),
-     "static state": Group(optional={"seconds": NUMBER}),
+     "static state": Group(optional={"seconds": NUMBER, "stages": [Group(
+         optional={"sum of loads so far [N]": [NUMBER], "sum of reactions [N]": [NUMBER],
+                   "largest displacement [m]": NUMBER})]}),
+     "damping": Group(optional={"moduli hold at [Hz]": NUMBER, "moduli at rest over given": NUMBER}),
+     "through cracks": Group(optional=dict.fromkeys(
+         ("largest opening from face to face at one moment [mm]", "at the time [s]",
+          "opening from face to face at the end [mm]"), NUMBER)),
      "materials": Group(others=Group(optional=dict.fromkeys(
          ("largest crack opening [mm]", "share of the volume that left the elastic range"), NUMBER))),
      "histories": Group(others=Group(
@@ -28,21 +34,25 @@ SUMMARY = Group(
      "interfaces": Group(
          {"surfaces": Group(others=Group(dict.fromkeys(
              ("area [m2]", "largest opening [mm]", "largest slip [mm]", "residual slip [mm]",
-              "smallest sliding safety", "time at safety one or below [s]"), NUMBER_OR_NONE)))},
-         {"blocks": Group(others=Group(
+              "smallest sliding safety", "time at safety one or below [s]"), NUMBER_OR_NONE),
+             {"slip rate at the end [mm/s]": NUMBER_OR_NONE}))},
+         {"effort": Group(optional={"unsolved clusters": NUMBER}),
+          "blocks": Group(others=Group(
              {"time at safety one or below [s]": NUMBER},
              dict.fromkeys(("safety at the start", "smallest safety", "time of the smallest safety [s]"),
                            NUMBER_OR_NONE)))}),
      "modes": Group(optional={"modes": [Group(
          {"frequency [Hz]": NUMBER, "period [s]": NUMBER, "effective mass [-]": [NUMBER],
           "cumulative effective mass [-]": [NUMBER]})]}),
-     "energy balance": Group(optional={"largest energy-balance error": NUMBER_OR_NONE}),
+     "energy balance": Group(optional=dict.fromkeys(
+         ("largest energy-balance error", "energy-balance error, share of the losses"), NUMBER_OR_NONE)),
      "target spectrum": Group({"periods [s]": [NUMBER], "damping ratio": NUMBER},
                               dict.fromkeys(("x [m/s2]", "y [m/s2]", "z [m/s2]"), [NUMBER])),
      "over-stress": Group({"verdict": TEXT}, others=Group(
          {"largest ratio": NUMBER, "at the time [s]": NUMBER,
           "above 1": Group(dict.fromkeys(("share at any time [%]", "largest share at once [%]",
-                                          "accumulated time [s]"), NUMBER))}))})
+                                          "accumulated time [s]"), NUMBER))},
+         {"at [m]": [NUMBER]}))})
 
 # files that belong to a part of the summary
 FILES = {"histories": ("histories.csv",), "energy balance": ("energy.csv",), "envelopes": ("envelopes.vtu",),
@@ -115,14 +125,6 @@ class Run:
         return verdict[0].upper() + verdict[1:]
 
     @property
-    def colour(self):
-        """How the verdict is shown: good, doubt or bad."""
-        if self.verdict.startswith("Stopped"):
-            return "bad"
-        doubtful = self.warnings or [*self.remarks] or self.verdict != "No objection"
-        return "doubt" if doubtful else "good"
-
-    @property
     def warnings(self):
         """Warnings, and results that are missing."""
         unwritten = self.summary.get("files not written", {})
@@ -136,28 +138,41 @@ class Run:
                   for file in missing)]
 
     @property
-    def remarks(self):
-        """What the program computes as it is asked to, but an engineer must look at."""
-        opening = max((material.get("largest crack opening [mm]", 0.)
-                       for material in self.summary.get("materials", {}).values()), default=0.)
-        if opening > LOOSE:
-            yield (f"Cracks open by up to {opening:.0f} mm in a cell. There nothing holds them together any "
-                   "more, and parts of the dam may be loose; see the damage before using other figures.")
-        for name, block in self.summary.get("interfaces", {}).get("blocks", {}).items():
-            if block["time at safety one or below [s]"] > 0.:
-                yield (f"The safety of {name} against sliding is at one or below for "
-                       f"{block['time at safety one or below [s]']:.3g} s; see the slip that is left.")
-
-    @property
     def notes(self):
         """What the log notes, less than a warning."""
         return re.findall(r"^\s*note: (.*)$", self.log, re.MULTILINE)
 
     @property
     def own_entries(self):
-        """What is not the default, as --set takes it."""
-        return "\n".join(f"{path} = {self.parameters[path]}" for path in self.changed
-                         if path != "Output/Folder")
+        """What is not the default and in use, as --set takes it."""
+        return [f"{path} = {self.parameters[path]}" for path in self.changed
+                if path != "Output/Folder" and self.is_used(path)]
+
+    def is_used(self, path):
+        """Whether an entry belongs to a mesh, motion, reservoir, observer or object that
+        the case uses."""
+        parts = path.split("/")
+        section, name = parts[0], parts[1] if len(parts) > 2 else None
+        chosen = {"Mesh": "Mesh/Type", "Reservoir": "Reservoir/Model"}
+        if name is None:
+            return True
+        if section in chosen:
+            return name == self.entry(chosen[section])
+        if section == "Output":
+            return name in self.list("Output/Observers")
+        if section == "Ground motion":
+            motion = self.entry("Ground motion/Type", "none")
+            return motion != "none" and (name not in ("Record", "Ricker", "Sine", "Pulse", "Spectrum")
+                                         or name.lower() == motion.lower())
+        if section in ("Materials", "Loads", "Interfaces", "Constraints"):
+            return name in self.list(f"{section}/Names")
+        return True
+
+    @functools.cached_property
+    def digests(self):
+        """Names and SHA-256 of the files that say what was run and what came out."""
+        return [(name, hashlib.sha256(read_bytes(self.folder / name)).hexdigest())
+                for name in ("parameters.prm", "summary.json")]
 
     def has(self, name):
         return (self.folder / name).is_file()

@@ -1,6 +1,8 @@
 """Pictures in space: VTK, on a display of its own that nobody sees."""
 
 import atexit
+import base64
+import json
 import os
 import shutil
 import subprocess
@@ -15,7 +17,8 @@ import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (draws)
 
 from .files import ReportError
 
-STONE = (0.80, 0.77, 0.72)
+STONE, CONCRETE = (0.80, 0.77, 0.72), (0.86, 0.86, 0.84)
+FROM_DOWNSTREAM = (0.35, -1., 0.55)
 
 
 def open_display():
@@ -72,8 +75,9 @@ def quadrilaterals(corners, colours, edges=True):
     return actor
 
 
-def draw(actors, around, direction, size=(1400, 900), zoom=1.):
-    """RGB (height, width, 3) of a scene, the points @p around (n, 3) in the middle.
+def draw(actors, around, direction, size=(1500, 960), zoom=1.):
+    """RGB (height, width, 3) of a scene, the points @p around (n, 3) in the middle, and
+    how wide it is [m].
 
     @p direction from there to the eye, which is far away (no perspective).
     """
@@ -95,7 +99,8 @@ def draw(actors, around, direction, size=(1400, 900), zoom=1.):
     camera.SetFocalPoint(*middle)
     camera.SetPosition(*(middle + reach * direction))
     camera.SetViewUp(*up)
-    camera.SetParallelScale(max(np.ptp(upwards), np.ptp(across) * size[1] / size[0]) * 0.52 / zoom)
+    half_height = max(np.ptp(upwards), np.ptp(across) * size[1] / size[0]) * 0.52 / zoom
+    camera.SetParallelScale(half_height)
     renderer.ResetCameraClippingRange()
 
     window = vtkRenderWindow()
@@ -110,7 +115,25 @@ def draw(actors, around, direction, size=(1400, 900), zoom=1.):
     image.Update()
     pixels = image.GetOutput()
     rows = vtk_to_numpy(pixels.GetPointData().GetScalars()).reshape(size[1], size[0], -1)
-    return rows[::-1, :, :3]
+    return rows[::-1, :, :3], 2. * half_height * size[0] / size[1]
+
+
+def packed(values, kind):
+    return base64.b64encode(np.ascontiguousarray(values, kind).tobytes()).decode()
+
+
+def as_json(corners, colours, rock, motion, factor):
+    """A scene for the browser: quadrilaterals of the dam (n, 4, 3) with colours (n, 4, 3)
+    and a motion (n, 4, 3) [m] that is drawn up to @p factor times, and those of the rock;
+    in 16 bits, which is to centimetres."""
+    middle = 0.5 * (corners.min(axis=(0, 1)) + corners.max(axis=(0, 1)))
+    unit = np.abs(np.concatenate([corners, rock]) - middle).max() / 32767.
+    motion_unit = max(np.abs(motion).max(), 1e-9) / 32767.
+    return json.dumps({
+        "middle": middle.tolist(), "unit": unit, "dam": packed(np.rint((corners - middle) / unit), "<i2"),
+        "colours": packed(np.rint(255. * colours), "u1"), "rock": packed(np.rint((rock - middle) / unit), "<i2"),
+        "stone": STONE, "eye": FROM_DOWNSTREAM, "motionUnit": motion_unit,
+        "motion": packed(np.rint(motion / motion_unit), "<i2") if factor else ""})
 
 
 def without_outer_planes(corners):

@@ -1,26 +1,18 @@
 """The dam in space: its mesh, its natural modes, and how it moved with its joints."""
 
+import functools
+import re
+
 import numpy as np
 
-from . import charts, scenes
+from . import charts, motions, scenes
 from .grid import dam_in, dam_of, grid_of
-from .page import Pictures, Section, Table, comparison, number
+from .page import Pictures, Scene, Section, Table, comparison, number
+from .scenes import FROM_DOWNSTREAM
 
-FROM_DOWNSTREAM = (0.35, -1., 0.55)
 SCALED_JACOBIAN = "scaled Jacobian [-]"
-
-
-def framed(image, caption, name, scale=None):
-    """A picture of a scene, with a colour bar."""
-    height = charts.WIDTH * image.shape[0] / image.shape[1]
-    bar = 0.7 if scale else 0.
-    figure = charts.Figure(figsize=(charts.WIDTH, height + bar))
-    axes = charts.place(figure, 0., bar, charts.WIDTH, height)
-    axes.imshow(image)
-    axes.set_axis_off()
-    if scale:
-        scale.bar(figure)
-    return charts.picture(figure, caption, name, shaded=True)
+CARRIED = re.compile(r"^Material (.+?): mass ([\d.e+-]+) kg, P wave ([\d.e+-]+) m/s, S wave ([\d.e+-]+) m/s; "
+                     r"its largest cells carry waves up to ([\d.e+-]+) Hz with 8 nodes per wavelength", re.MULTILINE)
 
 
 def rock_faces(dam):
@@ -49,7 +41,34 @@ def mesh_picture(run):
     direction, where = (((-1., -0.5, 0.3), "the right bank") if dam.is_slice
                         else (FROM_DOWNSTREAM, "downstream and above"))
     image = scenes.draw(actors, dam.points, direction, zoom=0.85)
-    return framed(image, f"{run.prefix}The mesh, seen from {where}", f"mesh_{run.label}", scale)
+    return charts.framed(*image, f"{run.prefix}The mesh, seen from {where}", f"mesh_{run.label}", scale)
+
+
+def section_picture(run):
+    """Outlines of the cells in the section of the crown and in level ones."""
+    dam = dam_of(run)
+    levels = [dam.bottom + share * dam.height for share in (0.75, 0.5, 0.25)]
+    level = [dam.section(at, axis=2)[0] for at in levels]
+    if dam.is_slice or not dam.crown[0]:
+        return None
+    figure = charts.Figure(figsize=(charts.WIDTH, 3.3))
+    axes = charts.place(figure, 0.6, 0.5, 1.5, 2.5)
+    for polygon in dam.crown[0]:
+        axes.fill(*polygon.T, facecolor="none", edgecolor="0.3", linewidth=0.5)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.invert_xaxis()
+    axes.set(xlabel="y [m]", ylabel="elevation z [m]")
+    axes.set_title("crown, upstream on the left", loc="left")
+    axes = charts.place(figure, 2.75, 0.5, 2.15, 2.5)
+    for n, polygons in enumerate(level):
+        for polygon in polygons:
+            axes.fill(*polygon.T, facecolor="none", edgecolor=f"C{n}", linewidth=0.5)
+        axes.plot([], [], color=f"C{n}", label=f"z = {number(levels[n])} m")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set(xlabel="x [m]", ylabel="y [m]")
+    axes.set_title("level, upstream above", loc="left")
+    axes.legend(frameon=False, loc="best", fontsize=7.5)
+    return charts.picture(figure, f"{run.prefix}Sections through the dam with their cells", f"sections_{run.label}")
 
 
 def mesh_section(runs):
@@ -68,7 +87,13 @@ def mesh_section(runs):
         lengths = dam.grid.edges(cells)
         return f"{number(lengths.min())} to {number(lengths.max())}"
 
-    rows = []
+    def through(dam, _):
+        return " / ".join(number(dam.cells_through(share)) for share in (0.95, 0.5, 0.02))
+
+    rows = [("cells through the thickness at the crown: top / middle / bottom", of(True, through)),
+            ("degree of the elements", lambda run: run.summary.get("degree") and number(run.summary["degree"])),
+            ("extent of the model x; y; z [m]", extents),
+            ("model beyond the dam, in heights of the dam: left / right, upstream / downstream, down", beyond)]
     for of_dam, where in ((True, "dam"), (False, "rock and water")):
         rows += [(f"{where}: cells, as drawn", of(of_dam, lambda dam, cells: number(len(cells)))),
                  (f"{where}: edges [m]", of(of_dam, edges)),
@@ -79,9 +104,47 @@ def mesh_section(runs):
     text = ("The scaled Jacobian is 1 for a brick, 0 where a corner is flat; below 0.2 stresses beside "
             "such a corner are doubtful.")
     # runs on the same mesh need one picture
-    pictures = {len(dam_of(run).grid.cells): mesh_picture(run) for run in reversed(runs)}
-    return Section("Mesh", [text, comparison(runs, rows),
-                            Pictures(list(reversed(pictures.values())), min(len(pictures), 2))])
+    pictures = {len(dam_of(run).grid.cells): (mesh_picture(run), section_picture(run)) for run in reversed(runs)}
+    pictures = [picture for pair in reversed(pictures.values()) for picture in pair if picture]
+    parts = [text, comparison(runs, rows), waves_table(runs), Pictures(pictures, 2)]
+    return Section("Mesh", [part for part in parts if part])
+
+
+def extents(run):
+    points = dam_of(run).grid.points
+    return "; ".join(f"{number(low)} to {number(high)}" for low, high in zip(points.min(axis=0), points.max(axis=0)))
+
+
+def beyond(run):
+    """How far the model goes beyond the dam, in heights of the dam."""
+    dam = dam_of(run)
+    if not len(dam.others):
+        return None
+    above = (dam.grid.points.max(axis=0) - dam.points.max(axis=0)) / dam.height
+    below = (dam.points.min(axis=0) - dam.grid.points.min(axis=0)) / dam.height
+    return (f"{number(above[0], 2)} / {number(below[0], 2)}, {number(above[1], 2)} / {number(below[1], 2)}, "
+            f"{number(below[2], 2)}")
+
+
+def waves_table(runs):
+    """Nodes per shear wave in the largest cells of each material, at frequencies that matter."""
+    rows = []
+    for run in runs:
+        found = {match[1]: match for match in CARRIED.finditer(run.log)}
+        modes = run.summary.get("modes", {}).get("modes", [])
+        motion = motions.ground_motion(run)
+        frequencies = [modes[0]["frequency [Hz]"] if modes else None,
+                       *(motion.frequency_of_power(share) if motion else None for share in (0.5, 0.9))]
+        for name, match in found.items():
+            carried = float(match[5])
+            rows.append([f"{run.prefix}{name}", number(float(match[3])), number(float(match[4])), number(carried, 2),
+                         *("–" if not f else f"{number(8. * carried / f, 2)} at {number(f)} Hz"
+                           for f in frequencies)])
+    return Table(["material", "P wave [m/s]", "S wave [m/s]", "8 nodes per wave up to [Hz]",
+                  "nodes per wave in the first mode", "below which half of the input's power lies",
+                  "below which nine tenths lie"], rows,
+                 "Nodes per shear wave in the largest cells, at frequencies that matter; fewer than about five do not "
+                 "carry a wave.") if rows else None
 
 
 def modes_section(runs):
@@ -93,14 +156,39 @@ def modes_section(runs):
         rows = []
         for n, mode in enumerate(run.summary["modes"]["modes"], 1):
             rows.append([str(n), number(mode["frequency [Hz]"], 4), number(mode["period [s]"]),
-                         *(number(100. * share) for share in mode["effective mass [-]"]),
-                         *(number(100. * share) for share in mode["cumulative effective mass [-]"])])
-        parts.append(Table(["mode", "frequency [Hz]", "period [s]", "effective mass x [%]", "y [%]",
-                            "z [%]", "up to here x [%]", "y [%]", "z [%]"], rows,
+                         damping_at(run, mode["frequency [Hz]"]),
+                         *(of_mass(share) for share in mode["effective mass [-]"]),
+                         *(of_mass(share) for share in mode["cumulative effective mass [-]"])])
+        parts.append(Table(["mode", "frequency [Hz]", "period [s]", "damping achieved [%]", "effective mass x [%]",
+                            "y [%]", "z [%]", "up to here x [%]", "y [%]", "z [%]"], rows,
                            run.label if len(runs) > 1 else ""))
         if run.has("modes.vtu"):
-            parts.append(Pictures(mode_pictures(run), 3))
+            pictures = mode_pictures(run)
+            parts.append(Pictures(pictures, 2 if len(pictures) in (2, 4) else 3))
+    parts.insert(0, "Damping achieved is that of the damping model at the frequency of the mode, interpolated "
+                    "between those that the log names; what leaves through the boundary comes on top of it.")
     return Section("Natural modes", parts)
+
+
+def of_mass(share):
+    """An effective mass [%]; there is no sense in a ten-thousandth of it."""
+    return number(100. * share) if share > 1e-4 else "0"
+
+
+@functools.lru_cache(maxsize=None)
+def damping_curve(run):
+    """Frequencies [Hz] and ratios [%] that the log says are achieved, the last time."""
+    lines = re.findall(r"^Damping: .*achieved\n\s*(.*)$", run.log, re.MULTILINE)
+    return [(float(f), float(ratio)) for f, ratio in re.findall(r"([\d.]+) Hz ([\d.]+) %", lines[-1])] if lines else []
+
+
+def damping_at(run, frequency):
+    """Text of the damping achieved at a frequency."""
+    curve = damping_curve(run)
+    if not curve or not curve[0][0] <= frequency <= curve[-1][0]:
+        return "–"
+    frequencies, ratios = zip(*curve)
+    return number(float(np.interp(np.log(frequency), np.log(frequencies), ratios)), 2)
 
 
 def mode_pictures(run, most=6):
@@ -115,40 +203,129 @@ def mode_pictures(run, most=6):
         colours = scale.colours(amount / amount.max())[..., :3]
         corners = grid.points[outer] + 0.1 * dam.height / amount.max() * shape
         image = scenes.draw([scenes.quadrilaterals(corners, colours)], dam.points, FROM_DOWNSTREAM,
-                            size=(1000, 560), zoom=0.92)
-        pictures.append(framed(image, name[0].upper() + name[1:], f"{run.label}_{name.split(' (')[0]}"))
+                            size=(1500, 840), zoom=0.92)
+        pictures.append(charts.framed(*image, name[0].upper() + name[1:],
+                                      f"{run.label}_{name.split(' (')[0]}"))
     return pictures
 
 
 def opened_section(runs):
-    """The dam with its motion since the start magnified, when its joints were widest open."""
-    pictures = [picture for picture in (opened_picture(run) for run in runs) if picture]
-    if not pictures:
+    """The dam with its motion magnified: when its joints were widest open or, without
+    joints, when it moved most."""
+    parts = [part for part in (deformed(run) for run in runs) if part]
+    pictures = [part for part in parts if not isinstance(part, str)]
+    if not parts:
         return None
-    return Section("The dam with its joints open", [Pictures(pictures, min(len(pictures), 2))])
+    return Section("The dam deformed", [*(part for part in parts if isinstance(part, str)),
+                                        *([Pictures(pictures, min(len(pictures), 2))] if pictures else [])])
 
 
-def opened_picture(run):
-    pictures, table = run.pictures("fields"), run.table("interfaces.csv")
-    if len(pictures) < 2 or pictures[0][0] > 0. or table is None:
+def openings_over_time(run):
+    """Times and the largest opening of any joint or plane [mm], or None."""
+    table = run.table("interfaces.csv")
+    columns = [values for _, values in table.matching(r".* largest opening \[mm\]")] if table else []
+    return (table.time, np.max(columns, axis=0)) if columns else None
+
+
+@functools.lru_cache(maxsize=None)
+def shown_time(run):
+    """Time and file of the picture that shows most, and if there are joints how far they
+    are open there, and when and how far at most; None without pictures of displacements."""
+    files = run.pictures("fields")
+    files = [(time, file) for time, file in (files[1:] if files and files[0][0] <= 0. else files)
+             if "displacement" in grid_of(run, file).values]
+    if not files:
         return None
-    openings = np.max([values for _, values in table.matching(r".* largest opening \[mm\]")], axis=0)
+    openings = openings_over_time(run)
+    if openings and openings[1].max() > charts.NOISE:
+        time, file = max(files, key=lambda item: np.interp(item[0], *openings))
+        return time, file, np.interp(time, *openings), openings[0][openings[1].argmax()], openings[1].max()
 
-    def widest(time):
-        return np.interp(time, table.time, openings)
+    def largest(item):
+        return np.linalg.norm(motion_of(run, item[1])[dam_in(run, item[1]).grid.cells[dam_of(run).cells]], axis=-1).max()
 
-    now, file = max(pictures[1:], key=lambda item: widest(item[0]))
-    dam, start = dam_in(run, file), grid_of(run, pictures[0][1])
-    grid = dam.grid
-    if "displacement" not in grid.values or widest(now) < 0.2 * widest(table.time).max():
+    return *max(files, key=largest), None, None, None
+
+
+def start_of(run):
+    """The picture of the start of the earthquake, or None."""
+    time, file = run.pictures("fields")[0]
+    return file if time <= 0. and "displacement" in grid_of(run, file).values else None
+
+
+def motion_of(run, file):
+    """Displacement [m] at all corners, from the start of the earthquake where there is a
+    picture of it."""
+    values, start = grid_of(run, file).values["displacement"].astype(float), start_of(run)
+    return values - grid_of(run, start).values["displacement"] if start else values
+
+
+def magnified(dam, largest):
+    """A round factor that makes of the largest motion [m] an eighth of the height."""
+    return float(f"{0.12 * dam.height / largest:.0e}")
+
+
+def deformed(run):
+    """A picture, or a sentence that says why there is none."""
+    shown = shown_time(run)
+    if shown is None:
         return None
-    motion = grid.values["displacement"] - start.values["displacement"]
+    time, file, opening, widest_time, widest = shown
+    if opening is not None and opening < 0.2 * widest:
+        return (f"{run.prefix}No picture is near the time of the widest opening, {number(widest_time)} s: ask for "
+                'it with "Times" in section "Output/fields".')
+    dam = dam_in(run, file)
+    motion = motion_of(run, file)
     # with the sides of the joints, which lie inside
     faces = dam.grid.faces(dam.cells)
-    largest = np.linalg.norm(motion[faces], axis=2).max()
-    factor = float(f"{0.12 * dam.height / largest:.0e}")
-    moved = grid.points[faces] + factor * motion[faces]
-    actors = [scenes.quadrilaterals(moved, (0.82, 0.81, 0.77))]
+    amount = np.linalg.norm(motion[faces], axis=2)
+    if amount.max() < 1e-9:
+        return None
+    factor = magnified(dam, amount.max())
+    moved = dam.grid.points[faces] + factor * motion[faces]
+    scale = charts.Scale([100. * amount], "motion [cm]", 0., "viridis", low=0.)
+    actors = [scenes.quadrilaterals(moved, scale.colours(scale.norm(100. * amount))[..., :3])]
     image = scenes.draw(actors, moved.reshape(-1, 3), FROM_DOWNSTREAM)
-    return framed(image, f"{run.prefix}Motion from the start to {number(now)} s, {factor:g} times, "
-                         "seen from downstream and above", f"opened_{run.label}")
+    since = "the start of the earthquake" if start_of(run) else "the unloaded model"
+    when = (f"; joints and planes are open by up to {number(opening)} mm at that time, by {number(widest)} mm when "
+            f"widest, at {number(widest_time)} s" if opening is not None else "")
+    return charts.framed(*image, f"{run.prefix}The dam at {number(time)} s, its motion from {since} drawn {factor:g} "
+                                 f"times{when}", f"opened_{run.label}", scale, dpi=charts.FULL_DPI)
+
+
+MOST_FACES = 40000  # of a scene that turns, so that the page stays small
+STRESS = "largest_principal_stress_MPa"
+
+
+def scene_section(runs):
+    """The dam of the first run in a scene that turns, coloured by its largest tension,
+    with its motion."""
+    run = next((run for run in runs if dam_of(run)), None)
+    if run is None:
+        return None
+    dam, shown = dam_of(run), shown_time(run)
+    # with the sides of the joints, unless there are too many
+    faces = dam.grid.faces(dam.cells) if shown and 6 * len(dam.cells) < MOST_FACES else dam.exposed
+    if len(faces) > MOST_FACES:
+        return None
+    if STRESS in dam.grid.values:
+        values = dam.grid.values[STRESS][faces]
+        scale = charts.Scale([values], "largest principal stress of the run [MPa]")
+        colours = scale.colours(scale.norm(values))[..., :3]
+        what = ", coloured by the largest principal stress of the run at each place"
+    else:
+        scale, what = None, ""
+        colours = np.broadcast_to(scenes.CONCRETE, (*faces.shape, 3))
+    rock = rock_faces(dam) if len(dam.others) else np.zeros((0, 4, 3))
+    rock = rock if len(rock) + len(faces) <= MOST_FACES else rock[:0]
+    motion = motion_of(run, shown[1])[faces] if shown else np.zeros((*faces.shape, 3))
+    largest = np.linalg.norm(motion, axis=-1).max()
+    factor = magnified(dam, largest) if largest > 1e-9 else 0.
+    data = scenes.as_json(dam.grid.points[faces], colours, rock, motion, factor)
+    actors = [scenes.quadrilaterals(dam.grid.points[faces], colours)]
+    if len(rock):
+        actors.append(scenes.quadrilaterals(rock, scenes.STONE))
+    picture = charts.framed(*scenes.draw(actors, dam.points, FROM_DOWNSTREAM, zoom=0.9),
+                            f"{run.prefix}The dam from downstream and above{what}", f"scene_{run.label}", scale, dpi=charts.FULL_DPI)
+    return Section("The dam in space", [Scene(data, picture, factor, number(shown[0]) if shown else "",
+                                             scale and scale.picture(f"scene_bar_{run.label}"))])

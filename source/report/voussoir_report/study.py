@@ -144,7 +144,7 @@ def study_section(_, studies):
     """Tables and curves of all studies; None without any."""
     parts = []
     for study in studies:
-        head = [*map(short, study.entries), *map(titled, study.quantities), "verdict"]
+        head = [*map(short, study.entries), *map(titled, study.quantities), "numerical verdict"]
         rows = [[*(run["values"].get(entry, "–") for entry in study.entries),
                  *(number(run["quantities"][q]) if q in run.get("quantities", {}) else "–"
                    for q in study.quantities), run["verdict"].split(". ")[0]] for run in study.runs]

@@ -1,10 +1,8 @@
-// Checkpoints of a run and the way back from them.
-
 #include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/case_identity.h>
-#include <voussoir/driver/run.h>
+#include <voussoir/driver/run_checkpoints.h>
 #include <voussoir/fem/nodal_values.h>
 
 namespace Voussoir
@@ -30,24 +28,54 @@ namespace Voussoir
   } // namespace
 
 
-  // Energies summed up so far, each rank its own part.
-  std::vector<double *>
-  Run::sums_of_rank()
+  RunCheckpoints::RunCheckpoints(RunSetup           &setup,
+                                 const ResultFolder &folder,
+                                 Contact            *contact,
+                                 Log                &log)
+    : setup(setup)
+    , model(setup.model)
+    , folder(folder)
+    , contact(contact)
+    , log(log)
+    , files(folder.checkpoints(), log.communicator())
+    , by_time(model.parameters.output.checkpoint_time > 0.)
+    , schedule(model.parameters.output.checkpoint_time, setup.time_step.length)
+  {}
+
+
+  bool
+  RunCheckpoints::are_due(const unsigned long long step) const
   {
-    EnergyAccounts       &a = state.accounts;
-    std::vector<double *> sums{&a.work_of_forces,
-                               &a.loss_in_dashpots,
-                               &a.work_of_base,
-                               &a.work_of_projections,
-                               &a.loss_by_mass};
+    return by_time && schedule.due(step);
+  }
+
+
+  // Energies summed up so far, each rank its own part.
+  std::vector<Sum *>
+  RunCheckpoints::sums_of_rank(State &state) const
+  {
+    EnergyAccounts    &a = state.accounts;
+    std::vector<Sum *> sums{&a.work_of_forces,
+                            &a.loss_in_dashpots,
+                            &a.work_of_base,
+                            &a.work_of_projections,
+                            &a.loss_by_mass};
     for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
       if (PointHistory *history = state.material_memory.of(m))
         sums.insert(sums.end(),
                     {&history->losses.material,
                      &history->losses.closing,
                      &history->losses.damping});
-    if (water)
-      sums.push_back(&water->loss);
+    return sums;
+  }
+
+
+  std::vector<double *>
+  RunCheckpoints::plain_sums_of_rank() const
+  {
+    std::vector<double *> sums;
+    if (setup.water)
+      sums.push_back(&setup.water->loss);
     if (contact)
       for (double *energy : contact->energies())
         sums.push_back(energy);
@@ -56,7 +84,7 @@ namespace Voussoir
 
 
   StateContent
-  Run::checkpoint_content()
+  RunCheckpoints::content_of(State &state) const
   {
     const NodalKeys nodes(model.solid.discretization);
     StateContent    content;
@@ -66,7 +94,7 @@ namespace Voussoir
     for (unsigned int i = 0; i < state.memory.size(); ++i)
       values["damping memory " + std::to_string(i)] =
         nodes.values(state.memory[i]);
-    for (const auto &[name, observer] : setup->observers)
+    for (const auto &[name, observer] : setup.plan.observers)
       {
         for (const auto &[own_name, vector] : observer->checkpoint_vectors())
           values[name + "/" + own_name] = nodes.values(*vector);
@@ -79,13 +107,12 @@ namespace Voussoir
           history->checkpoint_values();
     if (contact)
       values["contact"] = contact->checkpoint_values();
-    if (water)
+    if (setup.water)
       {
         const auto keys = model.reservoir->space.node_keys();
-        for (const auto &[name, vector] :
-             std::map<std::string, Vector *>{{"pressure", &water->pressure},
-                                             {"pressure impulse",
-                                              &water->impulse}})
+        for (const auto &[name, vector] : std::map<std::string, Vector *>{
+               {"pressure", &setup.water->pressure},
+               {"pressure impulse", &setup.water->impulse}})
           {
             KeyedValues &group = values["reservoir/" + name];
             group.width        = 1;
@@ -102,7 +129,7 @@ namespace Voussoir
 
 
   nlohmann::json
-  Run::sizes_of_files() const
+  RunCheckpoints::sizes_of_files() const
   {
     nlohmann::json sizes = nlohmann::json::object();
     for (const auto &[name, size] : log.sizes_of_growing_files())
@@ -112,21 +139,22 @@ namespace Voussoir
 
 
   bool
-  Run::write_checkpoint()
+  RunCheckpoints::write(State &state, const EnergyBalance &energy) const
   {
-    TimerOutput::Scope scope(timer, "checkpoint");
-    since_checkpoint.restart();
     if (!std::isfinite(largest_amount(state.velocity)))
       return false; // the next line of the energy balance ends such a run
-    StateContent content = checkpoint_content();
-    for (const auto &[name, observer] : setup->observers)
+    StateContent content = content_of(state);
+    for (const auto &[name, observer] : setup.plan.observers)
       content.documents["observers"][name] = observer->save();
-    if (earthquake.wave)
-      content.documents["free field"] = earthquake.wave->save();
-    if (water && water->end)
-      content.documents["radiating end"] = water->end->save();
+    if (setup.earthquake.wave)
+      content.documents["free field"] = setup.earthquake.wave->save();
+    if (setup.water && setup.water->end)
+      content.documents["radiating end"] = setup.water->end->save();
     std::vector<double> sums;
-    for (const double *sum : sums_of_rank())
+    for (const Sum *sum : sums_of_rank(state))
+      for (const double number : sum->save())
+        sums.push_back(number);
+    for (const double *sum : plain_sums_of_rank())
       sums.push_back(*sum);
     content.documents["sums of ranks"] =
       Utilities::MPI::all_gather(log.communicator(), sums);
@@ -135,20 +163,19 @@ namespace Voussoir
         // a run that goes on from here does not write their lines again
         if (!log.write_growing_files())
           throw UserError("some of the results cannot be written.");
-        checkpoint.write(state.step,
-                         {{"version", version()},
-                          {"identity", identity_of(model.parameters)},
-                          {"mesh", mesh_identity(model)},
-                          {"time", state.time},
-                          {"step", state.step},
-                          {"time step", time_step.length},
-                          {"earthquake followed to", earthquake.followed_to},
-                          {"energy", energy.save()},
-                          {"contact",
-                           contact ? contact->save() : nlohmann::json()},
-                          {"sizes of files", sizes_of_files()},
-                          {"warnings", log.warnings()}},
-                         content);
+        files.write(state.step,
+                    {{"version", version()},
+                     {"identity", identity_of(model.parameters)},
+                     {"mesh", mesh_identity(model)},
+                     {"time", state.time},
+                     {"step", state.step},
+                     {"time step", setup.time_step.length},
+                     {"earthquake followed to", setup.plan.motion.followed_to},
+                     {"energy", energy.save()},
+                     {"contact", contact ? contact->save() : nlohmann::json()},
+                     {"sizes of files", sizes_of_files()},
+                     {"warnings", log.warnings()}},
+                    content);
       }
     catch (const UserError &error)
       {
@@ -161,7 +188,7 @@ namespace Voussoir
 
 
   void
-  Run::read_checkpoint()
+  RunCheckpoints::read(State &state, EnergyBalance &energy) const
   {
     const nlohmann::json &header = folder.checkpoint();
     if (header.at("mesh") != mesh_identity(model))
@@ -169,7 +196,7 @@ namespace Voussoir
                       "\" belongs to another mesh; restart with the mesh, "
                       "degree and refinement of the run that wrote it.");
     if (const double followed_to = header.at("earthquake followed to");
-        followed_to != earthquake.followed_to)
+        followed_to != setup.plan.motion.followed_to)
       {
         std::ostringstream text;
         text << "The checkpoint \"" << folder.checkpoint_file()
@@ -188,23 +215,20 @@ namespace Voussoir
     for (const nlohmann::json &warning : header.at("warnings"))
       log.warn(warning.get<std::string>());
 
-    StateContent content = checkpoint_content();
+    StateContent content = content_of(state);
     read_state(folder.checkpoint_file(), content, log.communicator());
     state.time = header.at("time");
     state.step = header.at("step");
     energy.load(header.at("energy"));
-    for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
-      if (PointHistory *history = state.material_memory.of(m))
-        history->load();
     if (contact)
       contact->load(header.at("contact"));
     const nlohmann::json &seen = content.documents["observers"];
-    for (const auto &[name, observer] : setup->observers)
+    for (const auto &[name, observer] : setup.plan.observers)
       observer->load(seen.at(name));
-    if (earthquake.wave)
-      earthquake.wave->load(content.documents["free field"]);
-    if (water && water->end)
-      water->end->load(content.documents["radiating end"]);
+    if (setup.earthquake.wave)
+      setup.earthquake.wave->load(content.documents["free field"]);
+    if (setup.water && setup.water->end)
+      setup.water->end->load(content.documents["radiating end"]);
 
     // on as many ranks each takes its own, so that nothing rounds differently;
     // else the first one takes all
@@ -214,13 +238,30 @@ namespace Voussoir
       Utilities::MPI::this_mpi_process(log.communicator());
     const bool same_ranks =
       of_ranks.size() == Utilities::MPI::n_mpi_processes(log.communicator());
-    const auto sums = sums_of_rank();
-    for (unsigned int i = 0; i < sums.size(); ++i)
-      {
-        *sums[i] = 0.;
+    unsigned int i = 0;
+    const auto   for_each_of_mine =
+      [&](const std::function<void(const std::vector<double> &)> &take) {
         for (unsigned int r = 0; r < of_ranks.size(); ++r)
           if (same_ranks ? r == rank : rank == 0)
-            *sums[i] += of_ranks[r].at(i);
+            take(of_ranks[r]);
+      };
+    for (Sum *const sum : sums_of_rank(state))
+      {
+        sum->clear();
+        for_each_of_mine([&](const std::vector<double> &numbers) {
+          std::vector<double> saved;
+          for (unsigned int k = 0; k < sum->n_saved(); ++k)
+            saved.push_back(numbers.at(i + k));
+          sum->add_saved(saved);
+        });
+        i += sum->n_saved();
+      }
+    for (double *const sum : plain_sums_of_rank())
+      {
+        *sum = 0.;
+        for_each_of_mine(
+          [&](const std::vector<double> &numbers) { *sum += numbers.at(i); });
+        ++i;
       }
     log.line("Going on from the checkpoint \"",
              folder.checkpoint_file(),

@@ -1,0 +1,96 @@
+#ifndef voussoir_base_json_entries_h
+#define voussoir_base_json_entries_h
+
+#include <nlohmann/json.hpp>
+
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace Voussoir
+{
+  // Structs whose members have names in JSON, said once for both ways:
+  // for_each_entry(part, entry) calls entry(name, member) for all of them. What
+  // is not known, an empty optional, map or JSON, is left out.
+
+  template <typename T>
+  void
+  write_entry(nlohmann::json &json, const char *name, const T &value)
+  {
+    json[name] = value;
+  }
+
+  template <typename T>
+  void
+  write_entry(nlohmann::json         &json,
+              const char             *name,
+              const std::optional<T> &value)
+  {
+    if (value)
+      json[name] = *value;
+  }
+
+  template <typename T>
+  void
+  write_entry(nlohmann::json                 &json,
+              const char                     *name,
+              const std::map<std::string, T> &parts)
+  {
+    if (!parts.empty())
+      json[name] = parts;
+  }
+
+  inline void
+  write_entry(nlohmann::json       &json,
+              const char           *name,
+              const nlohmann::json &part)
+  {
+    if (!part.is_null())
+      json[name] = part;
+  }
+
+  template <typename T>
+  void
+  read_entry(const nlohmann::json &json, T &value)
+  {
+    json.get_to(value);
+  }
+
+  /** JSON has neither NaN nor infinity. */
+  inline void
+  read_entry(const nlohmann::json &json, double &value)
+  {
+    value = json.is_null() ? std::numeric_limits<double>::quiet_NaN() :
+                             json.get<double>();
+  }
+
+  template <typename T>
+  void
+  read_entry(const nlohmann::json &json, std::optional<T> &value)
+  {
+    read_entry(json, value.emplace());
+  }
+
+  template <typename T>
+  void
+  write_entries(nlohmann::json &json, T part)
+  {
+    for_each_entry(part, [&json](const char *name, const auto &member) {
+      write_entry(json, name, member);
+    });
+  }
+
+  /** Members that are not there stay as they are. */
+  template <typename T>
+  void
+  read_entries(const nlohmann::json &json, T &part)
+  {
+    for_each_entry(part, [&json](const char *name, auto &member) {
+      if (json.contains(name))
+        read_entry(json.at(name), member);
+    });
+  }
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,61 @@
+#ifndef voussoir_driver_run_checkpoints_h
+#define voussoir_driver_run_checkpoints_h
+
+#include <voussoir/driver/run_setup.h>
+#include <voussoir/output/checkpoint.h>
+#include <voussoir/output/energy.h>
+
+namespace Voussoir
+{
+  /** The checkpoints of a run, and the way back from them. */
+  class RunCheckpoints
+  {
+  public:
+    /** @param setup,folder,contact,log must live as long as this
+     *  @param contact null without interfaces */
+    RunCheckpoints(RunSetup           &setup,
+                   const ResultFolder &folder,
+                   Contact            *contact,
+                   Log                &log);
+
+    /** Whether the case wants one after a step, by its simulated time. */
+    bool
+    are_due(const unsigned long long step) const;
+
+    /** @return whether it was possible */
+    bool
+    write(State &state, const EnergyBalance &energy) const;
+
+    /** Takes the one that the folder names. */
+    void
+    read(State &state, EnergyBalance &energy) const;
+
+  private:
+    /** Energies summed up so far, each rank its own part. */
+    std::vector<Sum *>
+    sums_of_rank(State &state) const;
+
+    /** The same of what no reproducible sum holds. */
+    std::vector<double *>
+    plain_sums_of_rank() const;
+
+    /** The live numbers that a checkpoint holds; documents are empty. */
+    StateContent
+    content_of(State &state) const;
+
+    /** Of the files that grow, by name in the output folder [bytes]. */
+    nlohmann::json
+    sizes_of_files() const;
+
+    RunSetup           &setup;
+    const Model        &model;
+    const ResultFolder &folder;
+    Contact *const      contact;
+    Log                &log;
+    const Checkpoint    files;
+    const bool          by_time;
+    const Schedule      schedule;
+  };
+} // namespace Voussoir
+
+#endif

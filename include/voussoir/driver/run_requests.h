@@ -1,0 +1,51 @@
+#ifndef voussoir_driver_run_requests_h
+#define voussoir_driver_run_requests_h
+
+#include <voussoir/driver/result_folder.h>
+
+#include <deal.II/base/timer.h>
+
+namespace Voussoir
+{
+  /** What the clock and those outside ask of a run: signals, and a file "stop"
+   *  in its folder. */
+  class RunRequests
+  {
+  public:
+    /** @param folder,log must live as long as this */
+    RunRequests(const OutputParameters &parameters,
+                const ResultFolder     &folder,
+                Log                    &log);
+
+    /** The loop begins, after this step. */
+    void
+    start(const unsigned long long step);
+
+    /** Whether it is time to look after a step. */
+    bool
+    are_due(const unsigned long long step) const;
+
+    /** A report of progress, a checkpoint, an end after that. */
+    struct Requests
+    {
+      bool report, save, stop;
+    };
+
+    /** Looks; the same on all ranks, which must call this together. */
+    Requests
+    look(const unsigned long long step);
+
+    /** A checkpoint was tried. */
+    void
+    checkpoint_tried();
+
+  private:
+    const double        checkpoint_interval; // [s]; 0: none
+    const ResultFolder &folder;
+    Log                &log;
+    dealii::Timer       since_checkpoint, since_look, since_stop_file;
+    unsigned long long  last_look = 0, next_look = 0; // steps
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,156 @@
+#ifndef voussoir_driver_run_summary_h
+#define voussoir_driver_run_summary_h
+
+#include <voussoir/base/error.h>
+#include <voussoir/driver/run_setup.h>
+#include <voussoir/output/energy.h>
+
+#include <map>
+
+namespace Voussoir
+{
+  /** Of the worst cells of a material. */
+  struct CellQuality
+  {
+    double scaled_jacobian, aspect_ratio, smallest_angle; // [degrees]
+  };
+
+  /** What a run is computed on. */
+  struct ModelSummary
+  {
+    std::string                        version, title;
+    unsigned int                       simd_bits, n_ranks;
+    unsigned long long                 n_cells, n_unknowns;
+    unsigned int                       degree;
+    std::map<std::string, CellQuality> mesh_quality; // by material
+    double                             peak_memory;  // of a rank [MB]
+    nlohmann::json                     names;        // see ResultNames
+  };
+
+  struct DampingSummary
+  {
+    std::string           model;
+    std::optional<double> reference_frequency; // of the moduli [Hz]
+    std::optional<double> modulus_at_rest;     // over the given one
+  };
+
+  struct StepSummary
+  {
+    double         length, limit; // [s]
+    DampingSummary damping;
+  };
+
+  /** How a recorded component fits its target spectrum. */
+  struct FitSummary
+  {
+    double mean_misfit, largest_misfit; // [%]
+    double period;                      // of the largest one [s]
+    double factor;
+    double arias_before, arias_after; // intensity [m/s]
+  };
+
+  /** The spectrum that an artificial or matched motion follows. */
+  struct TargetSpectrum
+  {
+    double              damping_ratio;
+    std::vector<double> periods; // [s]
+
+    /** In x, y, z [m/s2], those in which the ground moves. */
+    std::array<std::optional<std::vector<double>>, 3> components;
+  };
+
+  struct WaterSummary
+  {
+    unsigned long long n_unknowns;
+    double             stored, lost; // energy [J]
+  };
+
+  /** What the time steps came to. */
+  struct MarchSummary
+  {
+    unsigned long long                n_steps;
+    double                            end_time, loop_time; // [s]
+    double                            throughput;          // [MDOF-steps/s]
+    std::optional<double>             contact_share;       // of the loop
+    std::optional<TargetSpectrum>     target_spectrum;
+    std::map<std::string, FitSummary> fits; // by component
+    nlohmann::json                    static_state, modes;
+    std::optional<WaterSummary>       reservoir;
+    nlohmann::json materials; // what their laws tell, by name
+    EnergySummary  energy;
+  };
+
+  enum class RunEnd
+  {
+    complete,
+    stopped, // see RunStopped
+    failed   // by a mistake in its file, or its results are not written
+  };
+
+  /** What is known of a run at its end. */
+  struct RunSummary
+  {
+    RunEnd      end = RunEnd::complete;
+    std::string reason; // of another end
+
+    std::optional<ModelSummary> model; // none if it was not made
+    std::optional<StepSummary>  step;  // none before its damping was known
+    std::optional<MarchSummary> march; // none before its first step
+
+    /** What observers found, under the names they gave it. */
+    nlohmann::json observers = nlohmann::json::object();
+
+    std::vector<std::string>           warnings;
+    std::map<std::string, std::string> missing_files; // with the reason
+
+    /** "no objection", "with warnings, see there", "stopped: ..." or "failed:
+     *  ...". */
+    std::string
+    verdict() const;
+  };
+
+  /** The contents of summary.json, which are written and read here alone. A
+   *  study reads what earlier runs have left. */
+  void
+  to_json(nlohmann::json &json, const RunSummary &summary);
+
+  void
+  from_json(const nlohmann::json &json, RunSummary &summary);
+
+  /** Whether this may be a summary: it has a verdict. */
+  bool
+  is_summary(const nlohmann::json &json);
+
+  /** Adds warnings and missing files of the log, and writes summary.json into a
+   *  folder. Called on all ranks. */
+  void
+  write_summary(const std::string &folder, RunSummary &summary, Log &log);
+
+  /** A run that was stopped, with what is known of it. */
+  class StoppedRun : public RunStopped
+  {
+  public:
+    StoppedRun(const std::string &what, const RunSummary &summary);
+
+    const RunSummary summary;
+  };
+
+  /** Called on all ranks. */
+  ModelSummary
+  summary_of(const Model &model);
+
+  StepSummary
+  summary_of(const RunSetup &setup);
+
+  class Run;
+
+  /** Of a run so far, but for its observers; called on all ranks. */
+  RunSummary
+  summary_of(const Run &run);
+
+  /** What the log says of a run at its end. */
+  std::string
+  conclusion(const Run &run, const RunSummary &summary);
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,55 @@
+#ifndef voussoir_driver_run_times_h
+#define voussoir_driver_run_times_h
+
+#include <deal.II/base/timer.h>
+#include <deal.II/base/types.h>
+
+#include <string>
+
+namespace Voussoir
+{
+  /** What a run takes of the clock. */
+  class RunTimes
+  {
+  public:
+    explicit RunTimes(const dealii::types::global_dof_index n_unknowns);
+
+    /** The loop begins, after this step. */
+    void
+    start(const unsigned long long step);
+
+    /** It has ended. */
+    void
+    stop();
+
+    /** Since it began, or until it ended [s]. */
+    double
+    seconds() const;
+
+    /** Steps of the loop until this one. */
+    unsigned long long
+    n_steps(const unsigned long long step) const;
+
+    /** [MDOF-steps/s] */
+    double
+    throughput(const unsigned long long step) const;
+
+    /** "time left ...", at a step before the last one. */
+    std::string
+    time_left(const unsigned long long step,
+              const unsigned long long last_step) const;
+
+    /** Seconds and calls of the sections of the loop. */
+    std::string
+    table() const;
+
+    dealii::TimerOutput sections;
+
+  private:
+    const double       n_unknowns;
+    dealii::Timer      clock;
+    unsigned long long first_step = 0;
+  };
+} // namespace Voussoir
+
+#endif

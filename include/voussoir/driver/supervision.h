@@ -1,0 +1,63 @@
+#ifndef voussoir_driver_supervision_h
+#define voussoir_driver_supervision_h
+
+#include <voussoir/output/energy.h>
+
+namespace Voussoir
+{
+  /** Watches whether a run goes well: warns of what its results must not be
+   *  read without, each once, and says why it must stop. */
+  class Supervision
+  {
+  public:
+    /**
+     * @param run,energy   must live as long as this
+     * @param energy_limit of the energy-balance error, see EnergyBalance::alarm
+     */
+    Supervision(const ObservedRun   &run,
+                const EnergyBalance &energy,
+                const double         energy_limit);
+
+    /** Looks at the energy balance of a state. If the run must stop this is the
+     *  reason, else it is empty, and the state is the last good one. */
+    std::string
+    check_energy(const State &state);
+
+    /** Keeps what a picture of the last good state needs. */
+    void
+    keep(const State &state);
+
+    /** Looks at cracks and slips from time to time, and at the end. */
+    void
+    check_motion(const State &state, const bool at_end);
+
+    /** Warns of contact that was not solved. */
+    void
+    check_contact() const;
+
+    /** Draws the last good state into the folder of the run.
+     *  @return name of the file there; empty if it cannot be written */
+    std::string
+    draw_last_good() const;
+
+  private:
+    /** Warns of cracks so wide that what they cut off moves on its own. */
+    void
+    check_cracks(const double time);
+
+    /** Warns of slips so far that nodes no longer face those they act on. */
+    void
+    check_slips(const double time);
+
+    const ObservedRun   &run;
+    const EnergyBalance &energy;
+    const double         energy_limit;
+    const bool           has_memory;
+    const Schedule       looks;     // at cracks and slips
+    State                last_good; // without the memory of materials
+    bool                 warned_of_energy = false, warned_of_cracks = false,
+         warned_of_slips = false;
+  };
+} // namespace Voussoir
+
+#endif

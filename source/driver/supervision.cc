@@ -1,0 +1,162 @@
+#include <voussoir/constraints/contact.h>
+#include <voussoir/driver/supervision.h>
+#include <voussoir/output/field_writer.h>
+#include <voussoir/output/material_memory.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <tuple>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // Between two looks at cracks and slips [s], and how wide one may be over
+    // its cell: at a fiftieth, what it cuts off is a block of its own.
+    constexpr double look_interval = 0.1, widest_share = 0.02;
+  } // namespace
+
+
+  Supervision::Supervision(const ObservedRun   &run,
+                           const EnergyBalance &energy,
+                           const double         energy_limit)
+    : run(run)
+    , energy(energy)
+    , energy_limit(energy_limit)
+    , has_memory(run.solid.internal_force.has_memory())
+    , looks(look_interval, run.time_step)
+  {}
+
+
+  std::string
+  Supervision::check_energy(const State &state)
+  {
+    const std::string alarm = energy.alarm(energy_limit);
+    if (!alarm.empty())
+      return alarm;
+    // what damping takes between two evaluations is known to a per cent or two
+    const bool is_large =
+      energy.relative_error() > 0.01 || energy.error_of_losses() > 0.03;
+    if (is_large && !warned_of_energy)
+      {
+        std::ostringstream text;
+        text << std::setprecision(3) << "from t = " << state.time
+             << " s on the energy-balance error is large: "
+             << 100. * energy.relative_error() << " % of what came in, "
+             << 100. * energy.error_of_losses()
+             << " % of what damping, cracks, friction and impacts took";
+        warned_of_energy = true;
+        run.log.warn(text.str());
+      }
+    keep(state);
+    return "";
+  }
+
+
+  void
+  Supervision::keep(const State &state)
+  {
+    last_good.displacement = state.displacement;
+    last_good.velocity     = state.velocity;
+    last_good.time         = state.time;
+    if (!has_memory)
+      last_good.memory = state.memory; // for the stress
+  }
+
+
+  void
+  Supervision::check_motion(const State &state, const bool at_end)
+  {
+    if (!at_end && !looks.due(state.step))
+      return;
+    check_cracks(state.time);
+    check_slips(state.time);
+  }
+
+
+  void
+  Supervision::check_cracks(const double time)
+  {
+    if (warned_of_cracks || !has_memory)
+      return;
+    const WidestCrack widest = widest_crack(run);
+    warned_of_cracks         = widest.share > widest_share;
+    if (!warned_of_cracks)
+      return;
+    std::ostringstream text;
+    text << std::setprecision(3) << "at t = " << time
+         << " s a crack is open by " << 1e3 * widest.opening << " mm, "
+         << 100. * widest.share
+         << " % of its cell: what cracks have cut off is loose from now on; "
+            "that it comes loose can be relied on, how it moves then cannot";
+    run.log.warn(text.str());
+  }
+
+
+  void
+  Supervision::check_slips(const double time)
+  {
+    if (warned_of_slips || run.contact == nullptr)
+      return;
+    double       farthest = 0.;
+    unsigned int surface  = 0;
+    for (const ContactPoint &point : run.contact->points())
+      {
+        const double slip = std::hypot(point.gap[1], point.gap[2]);
+        if (point.joined && slip > farthest)
+          {
+            farthest = slip;
+            surface  = point.surface;
+          }
+      }
+    const auto all =
+      Utilities::MPI::all_gather(run.log.communicator(),
+                                 std::make_pair(farthest, surface));
+    std::tie(farthest, surface) = *std::max_element(all.begin(), all.end());
+    warned_of_slips             = farthest > 0.5 * run.contact->cell_size();
+    if (!warned_of_slips)
+      return;
+    std::ostringstream text;
+    text << std::setprecision(3) << "at t = " << time << " s \""
+         << run.contact->surface_names()[surface] << "\" has slipped by "
+         << farthest
+         << " m, more than half a cell of the interfaces: nodes still act on "
+            "those they faced at the start; that it slides so far can be "
+            "relied on, where it comes to rest cannot";
+    run.log.warn(text.str());
+  }
+
+
+  void
+  Supervision::check_contact() const
+  {
+    if (run.contact == nullptr)
+      return;
+    const ContactSolver::Effort effort = run.contact->effort();
+    if (effort.unsolved == 0)
+      return;
+    std::ostringstream text;
+    text << std::setprecision(3) << "the contact of " << effort.unsolved
+         << " clusters of nodes was not solved: gaps miss the laws of their "
+            "interfaces by up to "
+         << 100. * effort.residual
+         << " % of the motion in a step; compare with a run with a smaller "
+            "\"Safety factor\" in section \"Time\"";
+    run.log.warn(text.str());
+  }
+
+
+  std::string
+  Supervision::draw_last_good() const
+  {
+    return write_fields(run,
+                        {{&last_good.displacement, {"displacement"}},
+                         {&last_good.velocity, {"velocity"}}},
+                        // cracks have gone on since
+                        has_memory ? nullptr : &last_good,
+                        "last_good",
+                        last_good.time);
+  }
+} // namespace Voussoir

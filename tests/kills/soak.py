@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+"""Lets a run of many earthquakes go on for hours of motion in pieces, each of which
+is stopped at a random moment and goes on with --restart on another number of ranks:
+neither memory nor files may grow beyond what histories explain, and in the end the
+histories are those of a run in one piece on one rank, bit for bit.
+
+usage: soak.py PROGRAM [--case CASE.prm] [--hours H] [--ranks 1,2,3] [--piece SECONDS]
+               [--seed N] [--folder SCRATCH]
+
+Exit code 1 if something grows, a run does not go on, or the histories differ.
+"""
+
+import argparse
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+STOPPED = 75
+# of what the run in one piece leaves: the same bit for bit, on any ranks
+SAME = ["histories.csv"]
+# peak memory of a rank differs from run to run by pages of MPI and of the allocator
+MEMORY_PLAY = 8.0  # MB
+
+
+def command(options, ranks, end, restart):
+    program = [str(options.program.parent / "voussoir-run"), "-n", str(ranks), str(options.case),
+               "--set", "Output/Folder=run", "--set", f"Time/End time={end!r}"]
+    return program + (["--restart"] if restart else [])
+
+
+def run(options, folder, ranks, end, restart, seconds=float("inf")):
+    """Exit code and peak memory of its largest process [MB]; stops the run after so
+    many seconds."""
+    with open(folder / "terminal.txt", "ab") as terminal:
+        process = subprocess.Popen(command(options, ranks, end, restart), cwd=folder,
+                                   stdout=terminal, stderr=subprocess.STDOUT)
+    stop, stopped = time.monotonic() + seconds, False
+    while True:
+        pid, status, usage = os.wait4(process.pid, os.WNOHANG)
+        if pid != 0:
+            process.returncode = os.waitstatus_to_exitcode(status)
+            return process.returncode, usage.ru_maxrss / 1024.
+        if not stopped and time.monotonic() > stop:
+            process.send_signal(signal.SIGTERM)
+            stopped = True
+        time.sleep(0.05)
+
+
+def sizes(folder):
+    return {str(path.relative_to(folder / "run")): path.stat().st_size
+            for path in (folder / "run").rglob("*") if path.is_file()}
+
+
+def checkpoint_bytes(found):
+    return max((size for name, size in found.items() if "step-" in name), default=0)
+
+
+def is_history(name):
+    return name.endswith(".csv") or name == "log.txt"
+
+
+def reached(folder):
+    """Simulated time of the last line of the histories [s]."""
+    lines = (folder / "run" / "histories.csv").read_text().splitlines()
+    return float(lines[-1].split(",")[0]) if len(lines) > 1 else 0.0
+
+
+def main():
+    here = pathlib.Path(__file__).resolve().parent
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("--case", type=pathlib.Path, default=here / "soak.prm")
+    parser.add_argument("--hours", type=float, default=24.0)
+    parser.add_argument("--ranks", default="1,2,3")
+    parser.add_argument("--piece", type=float, default=20.0, help="seconds of wall time")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("soak"))
+    options = parser.parse_args()
+    options.program = options.program.resolve()
+    options.case = options.case.resolve()
+    ranks_to_try = [int(n) for n in options.ranks.split(",")]
+    chance = random.Random(options.seed)
+    end = 3600.0 * options.hours
+    failures = []
+
+    pieces = options.folder / "pieces"
+    shutil.rmtree(options.folder, ignore_errors=True)
+    pieces.mkdir(parents=True)
+    first_memory, first_checkpoint, n_pieces, restart, last = {}, 0, 0, False, None
+    while True:
+        ranks = chance.choice([n for n in ranks_to_try if n != last] or ranks_to_try)
+        last = ranks
+        code, memory = run(options, pieces, ranks, end, restart,
+                           options.piece * chance.uniform(0.3, 1.7))
+        if code not in (0, STOPPED):
+            sys.exit(f"piece {n_pieces + 1} on {ranks} ranks ends with {code}; see {pieces}")
+        n_pieces += 1
+        restart = (pieces / "run" / "checkpoint").exists()
+        if not restart:
+            continue
+        found = sizes(pieces)
+        checkpoint = checkpoint_bytes(found)
+        print(f"piece {n_pieces}, {ranks} ranks: until {reached(pieces) / 3600:.3f} h, "
+              f"{memory:.1f} MB, checkpoint {checkpoint} bytes, "
+              f"{sum(size for name, size in found.items() if is_history(name))} of tables",
+              flush=True)
+        if not memory <= first_memory.setdefault(ranks, memory) + MEMORY_PLAY:
+            failures.append(f"memory on {ranks} ranks grew from {first_memory[ranks]:.1f} "
+                            f"to {memory:.1f} MB in piece {n_pieces}")
+        first_checkpoint = first_checkpoint or checkpoint
+        # damage may spread, and a number has more or fewer digits in the header
+        if checkpoint > 1.5 * first_checkpoint + 10000:
+            failures.append(f"the checkpoint grew from {first_checkpoint} to {checkpoint} bytes")
+        steps = [name for name in found if "step-" in name]
+        if len(steps) > 2:
+            failures.append(f"{len(steps)} checkpoints stay: " + ", ".join(steps))
+        if code == 0:
+            break
+    if len(first_memory) < 2 and len(ranks_to_try) > 1:
+        failures.append("all pieces had the same number of ranks: take a smaller --piece")
+
+    straight = options.folder / "straight"
+    straight.mkdir()
+    # the static state depends on the ranks that found it, and is kept
+    shutil.copytree(pieces / "static_states", straight / "static_states")
+    if run(options, straight, 1, end, False)[0] != 0:
+        sys.exit(f"the run in one piece fails; see {straight}")
+    for name in SAME:
+        if (pieces / "run" / name).read_bytes() != (straight / "run" / name).read_bytes():
+            failures.append(f"{name} is not that of the run in one piece")
+    ours, theirs = sizes(pieces), sizes(straight)
+    for name in sorted(ours.keys() | theirs.keys()):
+        if name not in ours or name not in theirs:
+            if "checkpoint" not in name:
+                failures.append(f"{name} is in one of the folders only")
+        elif name.endswith(".csv") and (
+                len((pieces / "run" / name).read_bytes().splitlines())
+                != len((straight / "run" / name).read_bytes().splitlines())):
+            failures.append(f"{name} has other lines than that of the run in one piece")
+    for failure in failures:
+        print(failure)
+    print(f"{options.hours} h in {n_pieces} pieces on {options.ranks} ranks, "
+          f"{len(failures)} failures")
+    sys.exit(1 if failures else 0)
+
+
+if __name__ == "__main__":
+    main()

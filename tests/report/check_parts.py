@@ -1,0 +1,330 @@
+#!/usr/bin/python3
+"""Parts of a report against what is known of made-up results: a wall of two blocks
+with a joint that gapes more upstream, and summaries of which the verdict is plain.
+
+usage: check_parts.py FOLDER_OF_THE_REPORT
+"""
+
+import functools
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+report = pathlib.Path(sys.argv[1]).resolve()
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(report))
+import needed  # noqa: E402, F401
+import numpy as np  # noqa: E402
+import verdicts  # noqa: E402
+from verdicts import is_true  # noqa: E402
+from vtkmodules.util.numpy_support import numpy_to_vtk  # noqa: E402
+from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray  # noqa: E402
+from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_QUAD, vtkUnstructuredGrid  # noqa: E402
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: E402
+from voussoir_report import charts, faces, grid, interfaces, page, records, structure, verdict  # noqa: E402
+from voussoir_report.run import Run  # noqa: E402
+
+compare = functools.partial(verdicts.compare, round_off=1e-9)
+
+LENGTH, THICKNESS, HEIGHT, LEVELS = 40., 8., 20., 4  # of the wall [m], and cells upwards
+UPSTREAM, DOWNSTREAM = 1., 0.5  # opening of the joint over the elevation [mm/m]
+
+PARAMETERS = """set Title = A wall of two blocks
+subsection Ground motion
+  set Type = none
+  subsection Sine
+    set Frequency = 3 # default: 2
+  end
+end
+subsection Interfaces
+  set Names = joint # default:
+  subsection joint
+    set Key depth = 0 # default: 0.1
+  end
+end
+subsection Materials
+  set Names = concrete # default:
+  subsection concrete
+    set Class = linear elastic
+  end
+end
+subsection Mesh
+  set Type = box
+  subsection arch dam
+    set Cell size = 9 # default: 16
+  end
+  subsection box
+    set Cells = 2, 1, 4 # default: 1, 1, 1
+  end
+end
+"""
+LOG = """Material concrete: mass 1.5e+07 kg, P wave 4015 m/s, S wave 2532 m/s; its largest cells carry waves up to 6.4 Hz with 8 nodes per wavelength
+Damping: Maxwell, asked 5 %, achieved
+      1 Hz 4.0 %  4 Hz 5.0 %  16 Hz 5.0 %
+"""
+SUMMARY = {"verdict": "no objection", "version": "test", "warnings": [], "time step [s]": 1e-3,
+           "largest stable step [s]": 1.2e-3,
+           "energy balance": {"largest energy-balance error": 1e-3,
+                              "energy-balance error, share of the losses": 1e-3}}
+
+
+def write_grid(file, corners, kind, values, names):
+    """Cells of their own corners (n, 4 or 8, 3), values at them, and lists of names."""
+    mesh, points = vtkUnstructuredGrid(), vtkPoints()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(corners.reshape(-1, 3)), deep=True))
+    mesh.SetPoints(points)
+    n = corners.shape[1]
+    for cell in range(len(corners)):
+        mesh.InsertNextCell(kind, n, list(range(n * cell, n * cell + n)))
+    for name, numbers in values.items():
+        array = numpy_to_vtk(np.ascontiguousarray(numbers, float).reshape(-1), deep=True)
+        array.SetName(name)
+        mesh.GetPointData().AddArray(array)
+    for name, texts in names.items():
+        array = vtkStringArray()
+        array.SetName(name)
+        for text in texts:
+            array.InsertNextValue(f'"{text}"')
+        mesh.GetFieldData().AddArray(array)
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(str(file))
+    writer.SetInputData(mesh)
+    writer.Write()
+
+
+def make_wall(folder, summary=SUMMARY, log=LOG):
+    folder.mkdir()
+    (folder / "parameters.prm").write_text(PARAMETERS)
+    (folder / "summary.json").write_text(json.dumps(summary))
+    (folder / "log.txt").write_text(log)
+    unit = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], float)
+    size = np.array([0.5 * LENGTH, THICKNESS, HEIGHT / LEVELS])
+    cells = np.array([(unit + (i, 0, k)) * size - (0.5 * LENGTH, 0.5 * THICKNESS, 0.)
+                      for i in range(2) for k in range(LEVELS)])
+    write_grid(folder / "envelopes.vtu", cells, VTK_HEXAHEDRON, {"material": np.zeros(cells.shape[:2])},
+               {"material_names": ["concrete"]})
+    quads = cells[LEVELS:, [0, 3, 7, 4]]  # the side x = 0 of the second block
+    slope = np.where(quads[..., 1] > 0., UPSTREAM, DOWNSTREAM)
+    write_grid(folder / "interface_envelopes.vtu", quads, VTK_QUAD,
+               {"largest_opening_mm": slope * quads[..., 2], "interface": np.zeros(quads.shape[:2])},
+               {"interface_names": ["joint"]})
+    (folder / "energy.csv").write_text(
+        "time [s],kinetic [J],strain [J],damping [J],material [J],closing cracks [J],constraints [J],input [J],"
+        "boundary [J]\n0,0,0,0,0,0,0,0,0\n1,1,1,1,0,0,0,3,0\n")
+    (folder / "interfaces.csv").write_text("time [s],joint largest opening [mm],joint largest slip [mm],"
+                                           "joint sliding safety [-]\n0,0,0,2\n1,20,441,1\n")
+    for name in ("over_stress.csv", "over_stress.vtu"):
+        (folder / name).touch()
+    return Run(folder)
+
+
+def check_profiles(run):
+    is_true("the joint is one of the dam", interfaces.joints_of(run) == ("joint",))
+    edges = interfaces.edges_of(run, "joint")
+    for side, slope in (("upstream", UPSTREAM), ("downstream", DOWNSTREAM)):
+        levels, opening = edges[side]
+        compare(f"levels of the profile {side}", len(levels), LEVELS + 1, 0.)
+        compare(f"opening at the crest, {side} [mm]", opening[-1], slope * HEIGHT, 1e-3)
+        compare(f"opening at half the height, {side} [mm]", opening[LEVELS // 2], slope * HEIGHT / 2., 1e-3)
+
+
+def check_abscissa(run):
+    """What stands below a face is the x of the model, and +x is on the left bank: on the
+    left for those who look downstream."""
+    dam = grid.dam_of(run)
+    for side, sign in (("upstream", -1.), ("downstream", 1.)):
+        corners = dam.grid.points[dam.side(side)]
+        panel = faces.panel_of(dam, side, corners, corners[..., 0])
+        at = panel.places.reshape(-1, 2)[panel.values.argmax(), 0]  # of the largest x
+        order = np.argsort(panel.ticks[0])
+        shown = np.interp(0.5 * at, panel.ticks[0][order], panel.ticks[1][order])
+        compare(f"x below half way to the left bank, {side} [m]", shown, LENGTH / 4., 0.1)
+        axes = charts.place(charts.Figure(), 0., 0., 4., 2.)
+        charts.draw_panel(axes, panel, charts.Scale([panel.values], ""))
+        left, right = axes.transData.transform([(at, 0.), (-at, 0.)])[:, 0]
+        is_true(f"left bank where it belongs, {side}", sign * (left - right) > 0.)
+        is_true(f"labels say the same, {side}",
+                [label.get_text().replace("−", "-") for label in axes.get_xticklabels()]
+                == [f"{x:g}" for x in panel.ticks[1]])
+        is_true(f"axes have names, {side}", axes.get_xlabel() and axes.get_ylabel())
+
+
+def check_colours():
+    for ends in ((-10., 4.), (-4., 10.)):
+        scale = charts.Scale([np.array(ends)], "stress", 0.)
+        compare("tension and pressure of the same amount, distances from white", scale.norm(3.) - 0.5,
+                0.5 - scale.norm(-3.), 0.)
+        compare("white is zero", scale.norm(0.), 0.5, 0.)
+    noise = charts.Scale([np.array([0., 3e-14])], "opening [mm]", 0., "inferno_r", low=0.)
+    compare("end of the bar of noise", noise.levels[-1], 1., 0.)
+    is_true("noise is said to be zero", noise.label == "opening [mm]: 0 everywhere")
+
+
+def surface(**changed):
+    values = {"area [m2]": 10., "largest opening [mm]": 0., "largest slip [mm]": 0., "residual slip [mm]": 0.,
+              "smallest sliding safety": 1., "time at safety one or below [s]": 0., "slip rate at the end [mm/s]": 0.}
+    return {"interfaces": {"surfaces": {"joint": {**values, **changed}}}}
+
+
+def over_stress(ratio, share, text):
+    return {"over-stress": {"verdict": text, "upstream face": {
+        "largest ratio": ratio, "at the time [s]": 2., "at [m]": [59., 1., 20.],
+        "above 1": {"share at any time [%]": share, "largest share at once [%]": share,
+                    "accumulated time [s]": 0.5}}}}
+
+
+def check_verdicts(scratch):
+    """What must not stand under a good verdict, and what may."""
+    lowered = LOG + "  note: cells of up to 33 m are longer than 4 m, beyond which a crack would snap back; to " \
+                    "keep its energy their tensile strength is lowered by up to 59 %.\n"
+    block = {"blocks": {"left": {"time at safety one or below [s]": 0., "smallest safety": 1.008,
+                                 "time of the smallest safety [s]": 2.}}}
+    sliding = surface(**{"residual slip [mm]": 441., "slip rate at the end [mm/s]": 92.})
+    sliding["interfaces"].update(block)
+    loose = "at t = 4 s a crack is open by 388 mm, 2 % of its cell: what cracks have cut off is loose from now on"
+    for name, changed, log, numerical, engineering, judged in (
+            ("nothing assessed", {}, LOG, "good", "open", {}),
+            ("demand over strength of 3.7",
+             over_stress(3.7, 78., "non-linear analysis is called for: it reaches 3.7"), LOG, "good", "bad",
+             {"demand over static tensile strength": "not met", "linear analysis": "not met"}),
+            ("demand below strength", over_stress(0.7, 0., "linear analysis suffices"), LOG, "good", "good",
+             {"demand over static tensile strength": "met"}),
+            ("open through", {"through cracks": {"largest opening from face to face at one moment [mm]": 64.,
+                                                 "at the time [s]": 4.,
+                                                 "opening from face to face at the end [mm]": 0.}},
+             LOG, "good", "bad", {"dam open from face to face at one moment": "not met"}),
+            ("sliding on", sliding, LOG, "good", "bad",
+             {"slip at the end": "to be judged", "slip rate at the end": "not met",
+              "left: resistance over contact forces, smallest": "not met"}),
+            ("slipped and at rest", surface(**{"residual slip [mm]": 12.}), LOG, "good", "doubt",
+             {"slip at the end": "to be judged", "slip rate at the end": "met"}),
+            ("a slip that is no number", surface(**{"residual slip [mm]": None}), LOG, "good", "doubt",
+             {"slip at the end": "to be judged"}),
+            ("strength lowered", {}, lowered, "doubt", "open", {"tensile strength lowered, as cells are too long for "
+                                                                "the fracture energy, by up to": "to be judged"}),
+            ("loose", {"verdict": "with warnings, see there", "warnings": [loose]}, LOG, "good", "doubt", {}),
+            ("a numerical warning", {"verdict": "with warnings, see there", "warnings": ["the contact of 3 clusters"]},
+             LOG, "doubt", "open", {}),
+            ("energy lost", {"energy balance": {"largest energy-balance error": 0.02}}, LOG, "bad", "open",
+             {"energy-balance error, of what came in": "not met"}),
+            ("energy is no number", {"energy balance": {"largest energy-balance error": None}}, LOG, "bad", "open",
+             {"energy-balance error, of what came in": "not met"}),
+            ("stopped", {"verdict": "stopped: the motion grows without end"}, LOG, "bad", "open", {})):
+        run = make_wall(scratch / name.replace(" ", "_"), {**SUMMARY, **changed}, log)
+        checks, results = verdict.verdicts_of(run)
+        found = {line.what: line.judged for line in checks.lines + results.lines}
+        is_true(f"{name}: numerical checks {numerical}, engineering results {engineering}",
+                (checks.colour, results.colour) == (numerical, engineering))
+        if judged:
+            is_true(f"{name}: {judged}", judged.items() <= found.items())
+        if name == "loose":
+            is_true("what came loose is an engineering result", results.remarks == [loose] and not checks.remarks)
+
+
+def check_input(run):
+    is_true("entries of what the case does not use are left out",
+            run.own_entries == ["Interfaces/Names = joint", "Interfaces/joint/Key depth = 0",
+                                "Materials/Names = concrete", "Mesh/box/Cells = 2, 1, 4"])
+    compare("damping achieved half way between 1 and 4 Hz [%]", float(structure.damping_at(run, 2.)), 4.5, 0.)
+    is_true("none beyond what is known", structure.damping_at(run, 0.5) == "–")
+    table = structure.waves_table([run])
+    is_true("what the mesh carries", table.rows[0][:4] == ["concrete", page.number(4015.), page.number(2532.), "6.4"])
+    compare("cells through the thickness", grid.dam_of(run).cells_through(0.5), 1., 0.)
+    is_true("extent", structure.extents(run) == "−20.0 to 20.0; −4.00 to 4.00; 0 to 20.0")
+
+
+def check_records(scratch):
+    table = scratch / "table.txt"
+    table.write_text("# A record. From a book.\n" + "".join(f"{0.02 * i:.2f} 0.1\n" for i in range(151)))
+    peer = scratch / "record.at2"
+    peer.write_text("PEER\nA record\nACCELERATION\nNPTS=  500, DT=  .0100 SEC\n 0.1 0.2\n")
+    compare("duration of a table [s]", records.duration_of(table), 3., 1e-6)
+    compare("duration of an AT2 file [s]", records.duration_of(peer), 4.99, 1e-6)
+    is_true("hash", records.sha256(table) == hashlib.sha256(table.read_bytes()).hexdigest())
+    times = np.linspace(0., 10., 1001)
+    sine, cosine = np.sin(2. * np.pi * times), np.cos(2. * np.pi * times)
+    compare("correlation of a sine with itself", records.correlation(sine, 0.3 * sine), 1., 1e-9)
+    is_true("with a cosine there is none", abs(records.correlation(sine, cosine)) < 1e-2)
+    is_true("nor with rest", records.correlation(sine, 0. * sine) is None)
+
+
+def make_page(folder, file, **environment):
+    answer = subprocess.run([report / "voussoir-report", folder, "-o", file], text=True, stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT, check=False, env={**os.environ, **environment})
+    is_true(f"a page is made: {file.name}", answer.returncode == 0)
+    return file.read_text(encoding="utf-8") if answer.returncode == 0 else ""
+
+
+def check_page(scratch):
+    folder = scratch / "sliding_on"
+    text = make_page(folder, scratch / "without.html", VOUSSOIR_VTK_JS="/nowhere/vtk.js")
+    kinds = dict(re.findall(r'<div class="verdict (\w+)">\s*<span class="soft">([^<]*)<', text)[::-1])
+    is_true("blocks of a page", kinds == {"good": "Numerical checks", "bad": "Engineering results"})
+    is_true("no verdict of old", "But look" not in text and "but look" not in text)
+    is_true("a scene without vtk.js is said to stand still", "vtk.js was not found" in text and "vtk-js" not in text)
+    is_true("all of the input", "all of parameters.prm" in text and "subsection Interfaces" in text)
+    library = page.vtk_js()
+    browser = shutil.which("chromium")
+    if library is None or browser is None:
+        print("the scene is not tried, as there is no " + ("chromium" if library else "vtk.js"))
+        return
+    file = scratch / "with.html"
+    text = make_page(folder, file)
+    is_true("a page with a scene stays small [5 MB]", len(text.encode()) < 5e6)
+    is_true("it loads nothing", not re.search(r'(?:src|href)="(?!data:|#)', text))
+    turned = scratch / "turned.html"
+    turned.write_text(text.replace("</body>", TURN + "</body>"))
+    state = browse(browser, scratch, "--dump-dom", file)
+    is_true("the scene is drawn", 'data-state="turns"' in state)
+    pictures = []
+    for name, which in (("still", file), ("turned", turned)):
+        browse(browser, scratch, f"--screenshot={scratch / name}.png", which)
+        pictures.append((scratch / f"{name}.png").read_bytes())
+    is_true("the scene turns", pictures[0] != pictures[1])
+
+
+TURN = """<script>
+window.addEventListener("load", () => setTimeout(() => {
+  const canvas = document.querySelector(".scene canvas"), box = canvas.getBoundingClientRect();
+  const move = (kind, x, y) => canvas.dispatchEvent(new PointerEvent(kind, {
+    bubbles: true, cancelable: true, pointerId: 1, pointerType: "mouse", isPrimary: true, button: 0, buttons: 1,
+    clientX: box.left + x, clientY: box.top + y, pageX: box.left + x, pageY: box.top + y}));
+  move("pointerdown", 300, 300);
+  for (let i = 1; i < 20; ++i) move("pointermove", 300 + 10 * i, 300 - 5 * i);
+  move("pointerup", 490, 205);
+}, 5000));
+</script>"""
+
+
+def browse(browser, scratch, what, file):
+    with tempfile.TemporaryDirectory(dir=scratch) as profile:
+        return subprocess.run(
+            [browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+             "--disable-background-networking", "--disable-component-update", "--disable-sync",
+             f"--user-data-dir={profile}", "--window-size=1280,3000", "--virtual-time-budget=15000", what,
+             f"file://{file}"], text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False,
+            timeout=300).stdout
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        scratch = pathlib.Path(name)
+        run = make_wall(scratch / "wall")
+        check_profiles(run)
+        check_abscissa(run)
+        check_colours()
+        check_input(run)
+        check_records(scratch)
+        check_verdicts(scratch)
+        check_page(scratch)
+    verdicts.end()
+
+
+if __name__ == "__main__":
+    main()

@@ -85,7 +85,7 @@ namespace Voussoir
                   mine      = key;
                 }
             }
-        // MPI_MIN of 64 bits without sign is wrong in Open MPI 4.1 with AVX-512
+        // MPI_MIN of std::uint64_t was seen to be wrong under Open MPI 4.1
         const auto all = Utilities::MPI::all_gather(communicator, mine);
         const std::uint64_t first = *std::min_element(all.begin(), all.end());
         if (first == nowhere)

@@ -42,7 +42,7 @@ namespace Voussoir
                "which the partition deals them, so that results on other "
                "numbers of ranks differ by round-off, which cracks and joints "
                "that clap multiply. Reproducible: so that they do not depend "
-               "on the number of ranks, bit for bit, for a small price; "
+               "on the number of ranks, bit for bit, at a price; "
                "doc/running.md says which results.");
   }
 
@@ -146,9 +146,7 @@ namespace Voussoir
         use_own_geometry();
         for (const auto &cell : dof_handler.active_cell_iterators())
           if (cell->is_locally_owned())
-            for (const unsigned int line : cell->line_indices())
-              longest_edge =
-                std::max(longest_edge, cell->line(line)->diameter());
+            longest_edge = std::max(longest_edge, Voussoir::longest_edge(cell));
         longest_edge = Utilities::MPI::max(longest_edge, grid.communicator());
       }
 

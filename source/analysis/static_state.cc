@@ -532,9 +532,13 @@ namespace Voussoir
     StaticStages::search_equilibrium(const Vector   &force,
                                      MaterialMemory *memory)
     {
-      const double tolerance = model.contact != nullptr ?
-                                 0.1 * parameters.rest :
-                                 std::max(parameters.tolerance, 1e-8);
+      // on the way as far as the increments' own error, 1e-3, lets it matter
+      constexpr double on_the_path = 1e-5;
+      const double     of_the_last = model.contact != nullptr ?
+                                       0.1 * parameters.rest :
+                                       std::max(parameters.tolerance, 1e-8);
+      const double     tolerance =
+        is_last ? of_the_last : std::max(of_the_last, on_the_path);
       // a crack that runs far takes several steps for each cell on its way
       const unsigned int patience =
         memory != nullptr && may_be_halved ? 100 : 300;

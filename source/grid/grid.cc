@@ -9,12 +9,15 @@
 #include <deal.II/distributed/fully_distributed_tria.h>
 #include <deal.II/distributed/tria.h>
 #include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/manifold.h>
 #include <deal.II/grid/tria_description.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <sstream>
+#include <tuple>
 
 namespace Voussoir
 {
@@ -117,6 +120,130 @@ namespace Voussoir
         }
       return items;
     }
+
+
+    // New vertices of what lies on a curved surface, in the coordinates of a
+    // chart.
+    class CurvedSurface : public FlatManifold<3>
+    {
+    public:
+      explicit CurvedSurface(const CoarseMesh::Chart &chart)
+        : onto_surface(chart.onto_surface)
+      {}
+
+      std::unique_ptr<Manifold<3>>
+      clone() const override
+      {
+        return std::make_unique<CurvedSurface>(*this);
+      }
+
+      Point<3>
+      get_new_point(const ArrayView<const Point<3>> &points,
+                    const ArrayView<const double>   &weights) const override
+      {
+        return onto_surface(FlatManifold<3>::get_new_point(points, weights));
+      }
+
+    private:
+      std::function<Point<3>(const Point<3> &)> onto_surface;
+    };
+
+    constexpr types::manifold_id curved_surface = 1;
+
+
+    void
+    attach_curved_surface(const CoarseMesh::Chart &chart,
+                          Triangulation<3>        &triangulation)
+    {
+      if (!chart.curved_faces.empty())
+        triangulation.set_manifold(curved_surface, CurvedSurface(chart));
+    }
+
+
+    // Places in space of a triangulation's vertices, by their index.
+    std::vector<Point<3>>
+    positions(const Triangulation<3>  &triangulation,
+              const CoarseMesh::Chart &chart)
+    {
+      std::vector<Point<3>> result = triangulation.get_vertices();
+      if (chart.vertices.empty())
+        return result;
+      std::vector<unsigned int> order;
+      for (unsigned int v = 0; v < result.size(); ++v)
+        if (triangulation.vertex_used(v))
+          order.push_back(v);
+      const auto line = [&](const unsigned int v) {
+        return std::make_tuple(result[v][0], result[v][2], result[v][1]);
+      };
+      std::sort(order.begin(), order.end(), [&](const auto a, const auto b) {
+        return line(a) < line(b);
+      });
+      std::vector<Point<3>> coordinates;
+      for (const unsigned int v : order)
+        coordinates.push_back(result[v]);
+      const auto places = chart.positions(coordinates);
+      for (std::size_t i = 0; i < order.size(); ++i)
+        result[order[i]] = places[i];
+      return result;
+    }
+
+
+    // Coarse ones before fine ones, since what a vertex hangs on may have ends
+    // that hang themselves. Returns which were moved.
+    std::vector<bool>
+    move_hanging_vertices(const Triangulation<3> &triangulation,
+                          std::vector<Point<3>>  &places)
+    {
+      std::vector<bool> is_hanging(places.size());
+      const auto move = [&](const unsigned int vertex, const auto &parent) {
+        is_hanging[vertex] = true;
+        places[vertex]     = Point<3>();
+        for (const unsigned int v : parent->vertex_indices())
+          places[vertex] += places[parent->vertex_index(v)] /
+                            static_cast<double>(parent->n_vertices());
+      };
+      for (unsigned int level = 0; level < triangulation.n_levels(); ++level)
+        for (const auto &cell :
+             triangulation.active_cell_iterators_on_level(level))
+          if (!cell->is_artificial())
+            {
+              for (const unsigned int line : cell->line_indices())
+                if (cell->line(line)->has_children())
+                  move(cell->line(line)->child(0)->vertex_index(1),
+                       cell->line(line));
+              for (const unsigned int face : cell->face_indices())
+                if (cell->face(face)->has_children())
+                  move(cell->face(face)->child(0)->vertex_index(3),
+                       cell->face(face));
+            }
+      return is_hanging;
+    }
+
+
+    // From the coordinates of the chart into space. Nothing is refined after
+    // that.
+    void
+    place_vertices(const CoarseMesh::Chart &chart,
+                   Grid::Triangulation     &triangulation)
+    {
+      if (chart.vertices.empty())
+        return;
+      std::vector<Point<3>> places = positions(triangulation, chart);
+      std::vector<bool> moved = move_hanging_vertices(triangulation, places);
+      for (const auto &cell : triangulation.cell_iterators())
+        for (const unsigned int v : cell->vertex_indices())
+          cell->vertex(v) = places[cell->vertex_index(v)];
+      // a ghost cell's neighbours are not all known here
+      const auto owned = GridTools::get_locally_owned_vertices(triangulation);
+      std::transform(moved.begin(),
+                     moved.end(),
+                     owned.begin(),
+                     moved.begin(),
+                     std::logical_and<bool>());
+      triangulation.communicate_locally_moved_vertices(moved);
+      triangulation.set_all_manifold_ids(numbers::flat_manifold_id);
+      triangulation.reset_all_manifolds();
+    }
   } // namespace
 
 
@@ -125,7 +252,12 @@ namespace Voussoir
   {
     prm.add_parameter("Global refinement",
                       global_refinement,
-                      "How many times each cell is cut into eight.",
+                      "How many times each cell is cut into eight. The new "
+                      "nodes of an arch dam without wedges lie on its true "
+                      "faces, joints and canyon; other meshes are refined by "
+                      "the middles of their edges. Every rank holds the mesh "
+                      "before it is refined, and only its part of the mesh "
+                      "after that: so large meshes are given as coarse ones.",
                       Patterns::Integer(0, 6));
     prm.add_parameter(
       "Local refinement",
@@ -235,6 +367,27 @@ namespace Voussoir
 
 
   void
+  Grid::create_coarse(const CoarseMesh               &coarse,
+                      const std::vector<CellData<3>> &cells,
+                      dealii::Triangulation<3>       &triangulation) const
+  {
+    const auto &chart = coarse.chart;
+    triangulation.create_triangulation(chart.vertices.empty() ?
+                                         coarse.vertices :
+                                         chart.vertices,
+                                       cells,
+                                       SubCellData());
+    attach_curved_surface(chart, triangulation);
+    std::vector<std::vector<unsigned int>> faces(cells.size());
+    for (const CoarseMesh::Face &face : chart.curved_faces)
+      faces[face.cell].push_back(face.face);
+    for (const auto &cell : triangulation.cell_iterators())
+      for (const unsigned int face : faces[cell->index()])
+        cell->face(face)->set_all_manifold_ids(curved_surface);
+  }
+
+
+  void
   Grid::create_p4est(const CoarseMesh               &coarse,
                      const std::vector<CellData<3>> &cells,
                      const GridParameters           &parameters,
@@ -249,10 +402,11 @@ namespace Voussoir
                                               const auto) -> unsigned int {
       return static_cast<unsigned int>(1000. * materials.costs[material(cell)]);
     });
-    triangulation->create_triangulation(coarse.vertices, cells, SubCellData());
-    refine(*triangulation, parameters, materials);
+    create_coarse(coarse, cells, *triangulation);
+    refine(*triangulation, coarse.chart, parameters, materials);
     triangulation->repartition();
     triangulation->signals.weight.disconnect_all_slots();
+    place_vertices(coarse.chart, *triangulation);
     mesh = std::move(triangulation);
   }
 
@@ -265,8 +419,8 @@ namespace Voussoir
   {
     dealii::Triangulation<3> serial(
       dealii::Triangulation<3>::limit_level_difference_at_vertices);
-    serial.create_triangulation(coarse.vertices, cells, SubCellData());
-    refine(serial, parameters, materials);
+    create_coarse(coarse, cells, serial);
+    refine(serial, coarse.chart, parameters, materials);
 
     std::vector<unsigned int> weights;
     for (const auto &cell : serial.active_cell_iterators())
@@ -283,7 +437,9 @@ namespace Voussoir
     auto triangulation =
       std::make_unique<parallel::fullydistributed::Triangulation<3>>(
         mpi_communicator);
+    attach_curved_surface(coarse.chart, *triangulation);
     triangulation->create_triangulation(description);
+    place_vertices(coarse.chart, *triangulation);
     mesh = std::move(triangulation);
   }
 
@@ -318,6 +474,7 @@ namespace Voussoir
 
   void
   Grid::refine(dealii::Triangulation<3> &triangulation,
+               const CoarseMesh::Chart  &chart,
                const GridParameters     &parameters,
                const Materials          &materials) const
   {
@@ -335,6 +492,7 @@ namespace Voussoir
         const std::vector<bool> tagged = tags_in({item.set});
         for (unsigned int level = 0; level < item.levels; ++level)
           {
+            const auto places = positions(triangulation, chart);
             for (const auto &cell : triangulation.active_cell_iterators())
               if (cell->is_locally_owned())
                 {
@@ -342,28 +500,46 @@ namespace Voussoir
                   if (!item.set.empty())
                     inside = tagged[cell->material_id()];
                   else
-                    for (unsigned int d = 0; d < 3; ++d)
-                      inside = inside && cell->center()[d] >= item.lower[d] &&
-                               cell->center()[d] <= item.upper[d];
+                    {
+                      Point<3> centre;
+                      for (const unsigned int v : cell->vertex_indices())
+                        centre += 0.125 * places[cell->vertex_index(v)];
+                      for (unsigned int d = 0; d < 3; ++d)
+                        inside = inside && centre[d] >= item.lower[d] &&
+                                 centre[d] <= item.upper[d];
+                    }
                   if (inside)
                     cell->set_refine_flag();
                 }
             triangulation.execute_coarsening_and_refinement();
           }
       }
-    while (refine_for_waves(triangulation, materials))
+    while (refine_for_waves(triangulation, chart, materials))
       {}
   }
 
 
   bool
   Grid::refine_for_waves(dealii::Triangulation<3> &triangulation,
+                         const CoarseMesh::Chart  &chart,
                          const Materials          &materials) const
   {
+    if (std::all_of(materials.longest_edges.begin(),
+                    materials.longest_edges.end(),
+                    [](const double edge) { return std::isinf(edge); }))
+      return false;
+    const auto places    = positions(triangulation, chart);
+    const auto is_longer = [&](const auto &cell, const double edge) {
+      for (const unsigned int line : cell->line_indices())
+        if (places[cell->line(line)->vertex_index(0)].distance(
+              places[cell->line(line)->vertex_index(1)]) > edge)
+          return true;
+      return false;
+    };
     unsigned int flagged = 0;
     for (const auto &cell : triangulation.active_cell_iterators())
       if (cell->is_locally_owned() &&
-          longest_edge(cell) > materials.longest_edges[material(cell)])
+          is_longer(cell, materials.longest_edges[material(cell)]))
         {
           cell->set_refine_flag();
           ++flagged;

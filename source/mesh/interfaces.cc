@@ -86,6 +86,8 @@ namespace Voussoir
             {
               copies.push_back(entry->second);
               mesh.vertices.push_back(Point<3>(mesh.vertices[vertex]));
+              if (auto &coordinates = mesh.chart.vertices; !coordinates.empty())
+                coordinates.push_back(Point<3>(coordinates[vertex]));
             }
           auto &corners = mesh.cells[cells[i]];
           std::replace(corners.begin(), corners.end(), vertex, entry->second);

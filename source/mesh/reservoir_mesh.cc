@@ -152,7 +152,9 @@ namespace Voussoir
     CoarseMesh
     part(const CoarseMesh &mesh, const std::vector<bool> &kept)
     {
-      CoarseMesh                result;
+      CoarseMesh result;
+      result.chart.positions    = mesh.chart.positions;
+      result.chart.onto_surface = mesh.chart.onto_surface;
       std::vector<unsigned int> vertex_number(mesh.vertices.size(), none),
         cell_number(mesh.cells.size(), none);
       for (unsigned int c = 0; c < mesh.cells.size(); ++c)
@@ -166,6 +168,9 @@ namespace Voussoir
                   {
                     vertex_number[vertex] = result.vertices.size();
                     result.vertices.push_back(mesh.vertices[vertex]);
+                    if (!mesh.chart.vertices.empty())
+                      result.chart.vertices.push_back(
+                        mesh.chart.vertices[vertex]);
                   }
                 vertex = vertex_number[vertex];
               }
@@ -179,6 +184,10 @@ namespace Voussoir
           if (kept[face.cell])
             result.face_sets[name].push_back(
               {cell_number[face.cell], face.face});
+      for (const CoarseMesh::Face &face : mesh.chart.curved_faces)
+        if (kept[face.cell])
+          result.chart.curved_faces.push_back(
+            {cell_number[face.cell], face.face});
       for (const auto &[name, vertices] : mesh.vertex_sets)
         for (const unsigned int vertex : vertices)
           if (vertex_number[vertex] != none)

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <memory>
 #include <sstream>
 
 namespace Voussoir
@@ -129,6 +130,12 @@ namespace Voussoir
       unsigned int
       columns_per_block(const ArchDamSections &sections) const;
 
+      /** The true surfaces of the dam and its canyon. */
+      void
+      add_surfaces(const std::shared_ptr<const ArchDamSections> &sections,
+                   const std::shared_ptr<const ArchDamSweep>    &sweep,
+                   CoarseMesh::Chart                            &chart) const;
+
       /** Refuses many more cells than the memory holds. */
       void
       check_cells(const ArchDamSections &sections, const double height) const;
@@ -226,9 +233,9 @@ namespace Voussoir
     CoarseMesh
     ArchDam::generate() const
     {
-      const ArchDamShape    shape = this->shape();
-      const ArchDamSections sections(shape);
-      check_cells(sections, shape.height);
+      const ArchDamShape shape    = this->shape();
+      const auto         sections = std::make_shared<ArchDamSections>(shape);
+      check_cells(*sections, shape.height);
       std::array<ArchDamCrossSection::Ledge, 2> ledges;
       for (const unsigned int bank : {0, 1})
         {
@@ -236,26 +243,50 @@ namespace Voussoir
           ledges[bank].place = "Mesh/arch dam/" + wedge_section(bank);
         }
       const RockGrading         rock{rock_extent, growth, largest_cell};
-      const ArchDamCrossSection section(sections,
+      const ArchDamCrossSection section(*sections,
                                         shape.height,
                                         n_joints + 1,
-                                        columns_per_block(sections),
+                                        columns_per_block(*sections),
                                         rock,
                                         water_level,
                                         ledges);
-      const ArchDamSweep        sweep(
-        section, sections, shape.height, rock, n_thickness, cell_size);
+      const auto                sweep = std::make_shared<ArchDamSweep>(
+        section, *sections, shape.height, rock, n_thickness, cell_size);
       const unsigned int water_end =
         relative_water_length > 0. ?
-          sweep.first_in_dam + n_thickness +
-            sweep.layers_along(relative_water_length * shape.height) :
-          sweep.n_layers;
-      return make_arch_dam_mesh(section,
-                                sweep,
-                                make_wedges(sweep, section),
-                                columns_per_block(sections),
-                                water_end);
+          sweep->first_in_dam + n_thickness +
+            sweep->layers_along(relative_water_length * shape.height) :
+          sweep->n_layers;
+      const std::vector<AbutmentWedge> wedges = make_wedges(*sweep, section);
+
+      CoarseMesh mesh = make_arch_dam_mesh(
+        section, *sweep, wedges, columns_per_block(*sections), water_end);
+      // the planes that wedges slide on are planes in space only
+      if (wedges.empty())
+        add_surfaces(sections, sweep, mesh.chart);
+      else
+        mesh.chart = {};
+      return mesh;
     }
+
+
+    void
+    ArchDam::add_surfaces(
+      const std::shared_ptr<const ArchDamSections> &sections,
+      const std::shared_ptr<const ArchDamSweep>    &sweep,
+      CoarseMesh::Chart                            &chart) const
+    {
+      // the sweep looks at the sections
+      chart.positions = [sections,
+                         sweep](const CoarseMesh::Chart::Points &coordinates) {
+        return sweep->positions(coordinates);
+      };
+      // the dam's faces, joints and ends of the rock are planes of the chart
+      chart.onto_surface = [sections](const Point<3> &at) {
+        return Point<3>(at[0], at[1], sections->contour(at[0]));
+      };
+    }
+
 
     std::string
     ArchDam::describe(const CoarseMesh &mesh) const

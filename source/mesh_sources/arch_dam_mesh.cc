@@ -135,10 +135,11 @@ namespace Voussoir
               if (auto &number = vertex_number[line * (n_layers + 1) + j];
                   number != none)
                 {
-                  number = mesh.vertices.size();
-                  mesh.vertices.push_back(points[j]);
+                  number = mesh.chart.vertices.size();
+                  mesh.chart.vertices.push_back(points[j]);
                 }
           }
+        mesh.vertices = sweep.positions(mesh.chart.vertices);
         for (auto &cell : mesh.cells)
           for (unsigned int &vertex : cell)
             vertex = vertex_number[vertex];
@@ -198,15 +199,31 @@ namespace Voussoir
       }
 
 
+      template <typename Visitor>
+      void
+      for_each_face(const Side        &side,
+                    const unsigned int begin,
+                    const unsigned int end,
+                    const Visitor     &visit) const
+      {
+        constexpr std::array<unsigned int, 4> face_of_edge{{4, 1, 5, 0}};
+        for (unsigned int layer = begin; layer < end; ++layer)
+          if (const unsigned int cell =
+                cell_number[side.quad * n_layers + layer];
+              cell != none)
+            visit(CoarseMesh::Face{cell, face_of_edge[side.edge]});
+      }
+
+
       void
       name_faces(const std::string &name,
                  const Side        &side,
                  const unsigned int begin,
                  const unsigned int end)
       {
-        constexpr std::array<unsigned int, 4> face_of_edge{{4, 1, 5, 0}};
-        for (unsigned int layer = begin; layer < end; ++layer)
-          name_face(name, side.quad, layer, face_of_edge[side.edge]);
+        for_each_face(side, begin, end, [&](const CoarseMesh::Face &face) {
+          mesh.face_sets[name].push_back(face);
+        });
       }
 
 
@@ -276,6 +293,10 @@ namespace Voussoir
         name_faces("canyon", rock, dam_end, n_layers);
         name_faces("canyon downstream", rock, 0, dam_begin);
         name_faces("canyon upstream", rock, dam_end, n_layers);
+        for (const Side &side : {dam, rock})
+          for_each_face(side, 0, n_layers, [&](const CoarseMesh::Face &face) {
+            mesh.chart.curved_faces.push_back(face);
+          });
       }
 
       const ArchDamCrossSection        &section;

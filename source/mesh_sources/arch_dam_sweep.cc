@@ -69,9 +69,9 @@ namespace Voussoir
   {
     for (const auto &vertex : vertices)
       {
-        lines.push_back(sections.line(vertex.s, vertex.z));
-        upstream_end   = std::max(upstream_end, face(lines.back(), 1.)[1]);
-        downstream_end = std::min(downstream_end, face(lines.back(), -1.)[1]);
+        const auto line = sections.line(vertex.s, vertex.z);
+        upstream_end    = std::max(upstream_end, face(line, 1.)[1]);
+        downstream_end  = std::min(downstream_end, face(line, -1.)[1]);
       }
     upstream_end += full_length;
     downstream_end -= full_length;
@@ -87,45 +87,66 @@ namespace Voussoir
   ArchDamSweep::operator()(const unsigned int vertex) const
   {
     std::vector<Point<3>> result;
-    auto                  at   = vertices[vertex];
-    auto                  line = lines[vertex];
     for (unsigned int layer = 0; layer <= n_layers; ++layer)
       {
-        if (!moved.empty())
-          {
-            const unsigned int i =
-              std::clamp(layer,
-                         first_moved,
-                         first_moved + unsigned(moved.size()) - 1) -
-              first_moved;
-            if (layer == 0 || layer == first_moved + i)
-              {
-                at   = moved[i][vertex];
-                line = sections.line(at.s, at.z);
-              }
-          }
-        const Point<2> x = point(line, layer);
-        result.emplace_back(x[0], x[1], at.z);
+        const auto &at =
+          moved.empty() ?
+            vertices[vertex] :
+            moved[std::clamp(layer,
+                             first_moved,
+                             first_moved + unsigned(moved.size()) - 1) -
+                  first_moved][vertex];
+        result.emplace_back(at.s, layer, at.z);
       }
     return result;
   }
 
 
+  std::vector<Point<3>>
+  ArchDamSweep::positions(const std::vector<Point<3>> &coordinates) const
+  {
+    std::vector<Point<3>> result;
+    result.reserve(coordinates.size());
+    ArchDamSections::Line line;
+    for (std::size_t i = 0; i < coordinates.size(); ++i)
+      {
+        const Point<3> &at = coordinates[i];
+        if (i == 0 || at[0] != coordinates[i - 1][0] ||
+            at[2] != coordinates[i - 1][2])
+          line = sections.line(at[0], at[2]);
+        const Point<2> x = point(line, at[1]);
+        result.emplace_back(x[0], x[1], at[2]);
+      }
+    return result;
+  }
+
+
+  double
+  ArchDamSweep::part_of_way(const double layers) const
+  {
+    const unsigned int below = layers;
+    return layers > below ?
+             points[below] +
+               (layers - below) * (points[below + 1] - points[below]) :
+             points[below];
+  }
+
+
   Point<2>
   ArchDamSweep::point(const ArchDamSections::Line &line,
-                      const unsigned int           layer) const
+                      const double                 layer) const
   {
     if (layer >= first_in_dam && layer <= first_in_dam + n_thickness)
       return face(line, 2. * (layer - first_in_dam) / n_thickness - 1.);
-    const int          side = layer < first_in_dam ? -1 : 1;
-    const unsigned int j =
+    const int    side = layer < first_in_dam ? -1 : 1;
+    const double beside =
       side < 0 ? first_in_dam - layer : layer - first_in_dam - n_thickness;
     const Point<2> start  = face(line, side);
     const double   end    = side < 0 ? downstream_end : upstream_end;
     const double   length = std::abs(end - start[1]) + turning_length -
                           path(line.angle, turning_length)[1];
-    Point<2> x = start + side * path(line.angle, points[j] * length);
-    if (j + 1 == points.size())
+    Point<2> x = start + side * path(line.angle, part_of_way(beside) * length);
+    if (beside == points.size() - 1.)
       x[1] = end;
     return x;
   }

@@ -66,6 +66,10 @@ namespace Voussoir
    * material_id of a cell is the number of its tag: there is one tag for each
    * combination of material and sets that occurs. Set names are checked when
    * they are looked up, with the known names in the message.
+   *
+   * Cells of a mesh with a chart are refined in its coordinates, and then all
+   * vertices are moved to their places in space; hanging ones to the middle of
+   * the edge or face they hang on, so that no gap opens beside them.
    */
   class Grid
   {
@@ -191,8 +195,15 @@ namespace Voussoir
     void
     find_faces(const CoarseMesh &coarse);
 
+    /** In the coordinates of the chart, if the mesh has one. */
+    void
+    create_coarse(const CoarseMesh                       &coarse,
+                  const std::vector<dealii::CellData<3>> &cells,
+                  dealii::Triangulation<3>               &triangulation) const;
+
     void
     refine(dealii::Triangulation<3> &triangulation,
+           const CoarseMesh::Chart  &chart,
            const GridParameters     &parameters,
            const Materials          &materials) const;
 
@@ -200,6 +211,7 @@ namespace Voussoir
      *  whether there were any. */
     bool
     refine_for_waves(dealii::Triangulation<3> &triangulation,
+                     const CoarseMesh::Chart  &chart,
                      const Materials          &materials) const;
 
     MPI_Comm                       mpi_communicator;

@@ -4,6 +4,7 @@
 #include <deal.II/base/point.h>
 
 #include <array>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -26,7 +27,34 @@ namespace Voussoir
       unsigned int face;
     };
 
+    /**
+     * The true geometry: coordinates in which cells are refined, so that new
+     * vertices lie on the surfaces that the coarse ones approximate. Like
+     * deal.II's ChartManifold, but each vertex keeps its coordinates: nothing
+     * has to be pulled back.
+     */
+    struct Chart
+    {
+      using Points = std::vector<dealii::Point<3>>;
+
+      /** Coordinates of each vertex; none where cells are refined in space, by
+       *  the middles of their edges. */
+      Points vertices;
+
+      /** From such coordinates to space [m]. */
+      std::function<Points(const Points &)> positions;
+
+      /** Faces, from all their sides, on a surface that is curved in these
+       *  coordinates. */
+      std::vector<Face> curved_faces;
+
+      /** Moves the coordinates of a new vertex of such a face onto it. */
+      std::function<dealii::Point<3>(const dealii::Point<3> &)> onto_surface;
+    };
+
     std::vector<dealii::Point<3>> vertices;
+
+    Chart chart;
 
     /** Vertex indices in deal.II's lexicographic order (x fastest, then y, then
      * z of the reference cell). */

@@ -30,9 +30,15 @@ namespace Voussoir
                  const unsigned int         n_thickness,
                  const double               cell_size);
 
-    /** All vertices on the line of a vertex of the section [m]. */
+    /** All vertices on the line of a vertex of the section, as s [m], layer, z
+     *  [m]. */
     std::vector<dealii::Point<3>>
     operator()(const unsigned int vertex) const;
+
+    /** From s, layer, which may lie between two, and z to space [m]. Points
+     * with the same s and z in a row cost least. */
+    std::vector<dealii::Point<3>>
+    positions(const std::vector<dealii::Point<3>> &coordinates) const;
 
     /** Layers beside the dam that come nearest to a length [m]. */
     unsigned int
@@ -43,7 +49,11 @@ namespace Voussoir
   private:
     /** x, y on the sweep of a horizontal line through the dam. */
     dealii::Point<2>
-    point(const ArchDamSections::Line &line, const unsigned int layer) const;
+    point(const ArchDamSections::Line &line, const double layer) const;
+
+    /** Part of the way through the rock beside the dam after some layers. */
+    double
+    part_of_way(const double layers) const;
 
     /** Finds the vertices of the layers, from the middle of the dam on, in
      *  steps of at most this length [m]. */
@@ -68,8 +78,7 @@ namespace Voussoir
 
     const dealii::QGauss<1> quadrature{8}; // over the turn
 
-    Vertices                           vertices; // at the middle of the dam
-    std::vector<ArchDamSections::Line> lines;    // of them
+    Vertices vertices; // at the middle of the dam
 
     // Where ledges dip: the vertices in layers one after the other, and the
     // first of these.

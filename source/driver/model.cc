@@ -1,5 +1,6 @@
 #include <voussoir/driver/mesh_against_case.h>
 #include <voussoir/driver/model.h>
+#include <voussoir/grid/partition_counts.h>
 #include <voussoir/loads/added_mass.h>
 #include <voussoir/loads/water_level.h>
 #include <voussoir/mesh/interfaces.h>
@@ -396,6 +397,16 @@ namespace Voussoir
              ", at most ",
              solid.discretization.largest_interface(),
              " nodes of a rank owned by others");
+    const std::vector<double> costs = materials_of_grid(parameters, {}).costs;
+    for (const unsigned int n_ranks : parameters.grid.counted_ranks)
+      log.line("Partition into ",
+               count_partition(
+                 grid,
+                 [&](const Grid::Cell &cell) {
+                   return costs[grid.material(cell)];
+                 },
+                 n_ranks)
+                 .describe());
     log.line("Unknowns: ",
              solid.discretization.dof_handler.n_dofs(),
              " of degree ",

@@ -282,6 +282,14 @@ namespace Voussoir
                partition,
                "How the cells are dealt to the ranks; the results are "
                "the same.");
+    prm.add_parameter(
+      "Count partitions",
+      counted_ranks,
+      "Numbers of ranks, separated by commas, for which the log "
+      "says what a partition by p4est would be: balance, "
+      "neighbours of a rank and nodes that it exchanges with "
+      "them. The run itself needs no such ranks.",
+      Patterns::List(Patterns::Integer(1, 1000000)));
   }
 
 

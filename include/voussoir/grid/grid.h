@@ -38,6 +38,10 @@ namespace Voussoir
      *  cells are refined; none are if it is zero. */
     double nodes_per_wavelength = 0., highest_frequency = 10.;
 
+    /** Numbers of ranks for which a partition is counted, see
+     *  PartitionCounts. */
+    std::vector<unsigned int> counted_ranks;
+
     void
     declare(dealii::ParameterHandler &prm);
 

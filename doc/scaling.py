@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Runs the scaling benchmark on numbers of ranks of this machine, lets the program
+count partitions into more, and predicts the speed there from the measured rate and
+stated figures of a network: table on the terminal, figure and numbers in a folder.
+
+usage: scaling.py PROGRAM [--ranks 1,2] [--levels 1] [--counts 16,191,1024] [...]
+
+The prediction: a step takes as long as the rank with the most work, its cells at the
+rate of a core measured here, then an exchange in each direction with all its
+neighbours, each a latency and its bytes over the bandwidth. Computation and exchange
+do not overlap, and nothing else is shared between cores.
+"""
+
+import argparse
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+CASE = pathlib.Path(__file__).resolve().parent.parent / "prm/benchmarks/scaling.prm"
+# Guo, Li, Tu, Chen: PSDAP, 1.3 million unknowns, hours of its Table 1
+PAPER = {1: 949.4, 2: 499.7, 191: 18.9}
+BYTES = 24  # of a node
+COUNTED = re.compile(r"Partition into (\d+) ranks: largest load ([\d.e+]+) of the mean, "
+                     r"neighbours of a rank ([\d.e+]+) \(at most (\d+)\), "
+                     r"nodes it exchanges with them ([\d.e+]+) \(at most (\d+)\)")
+
+
+def run(options, ranks, level, counts=()):
+    """Summary of the run, and what it counted of partitions."""
+    folder = options.folder / f"{ranks}_ranks_level_{level}"
+    command = [str(options.program.parent / "voussoir-run"), "-n", str(ranks), str(CASE),
+               "--overwrite", "--set", f"Output/Folder={folder}",
+               f"Mesh/Global refinement={level}",
+               "Mesh/Count partitions=" + ", ".join(map(str, counts))]
+    process = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if process.returncode != 0:
+        sys.exit(process.stdout[-2000:])
+    partitions = [dict(zip(("ranks", "balance", "neighbours", "most neighbours", "nodes",
+                            "most nodes"), map(float, found)))
+                  for found in COUNTED.findall(process.stdout)]
+    return json.loads((folder / "summary.json").read_text()), partitions
+
+
+def step_seconds(summary):
+    return summary["loop time [s]"] / summary["steps"]
+
+
+def predict(partition, cell_seconds, cells, options):
+    """Seconds of a step."""
+    work = cell_seconds * cells / partition["ranks"] * partition["balance"]
+    exchange = 2. * (partition["most neighbours"] * options.latency +
+                     BYTES * partition["most nodes"] / options.bandwidth)
+    return work + exchange
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("--ranks", default="1,2", help="that run here")
+    parser.add_argument("--levels", default="1", help="of refinement")
+    parser.add_argument("--counts", default="16,64,191,1024", help="ranks to be counted")
+    parser.add_argument("--latency", type=float, default=2e-6, help="of a message [s]")
+    parser.add_argument("--bandwidth", type=float, default=1e9, help="of a rank [B/s]")
+    parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("output/scaling"))
+    options = parser.parse_args()
+    options.program = options.program.resolve()
+    options.folder = options.folder.resolve()
+    counts = [int(n) for n in options.counts.split(",")]
+
+    kept = []
+    for level in map(int, options.levels.split(",")):
+        for ranks in map(int, options.ranks.split(",")):
+            summary, partitions = run(options, ranks, level, counts if ranks == 1 else ())
+            if ranks == 1:
+                cell_seconds = step_seconds(summary) / summary["cells"]
+            memory = summary["peak memory of a rank [MB]"]
+            kept.append({"level": level, "ranks": ranks, "unknowns": summary["unknowns"],
+                         "step [ms]": 1e3 * step_seconds(summary),
+                         "MDOF-steps/s": summary["MDOF-steps/s"], "memory [MB]": memory})
+            print(f"{summary['unknowns']} unknowns on {ranks} ranks: "
+                  f"{kept[-1]['MDOF-steps/s']:.1f} MDOF-steps/s, {memory:.0f} MB a rank",
+                  flush=True)
+            for partition in partitions:
+                seconds = predict(partition, cell_seconds, summary["cells"], options)
+                ideal = cell_seconds * summary["cells"] / partition["ranks"]
+                kept.append({"level": level, "predicted step [ms]": 1e3 * seconds,
+                             "efficiency": ideal / seconds, **partition})
+                print(f"  {partition['ranks']:.0f} ranks: balance {partition['balance']:.3f}, "
+                      f"at most {partition['most neighbours']:.0f} neighbours and "
+                      f"{partition['most nodes']:.0f} nodes; predicted step "
+                      f"{1e3 * seconds:.3f} ms, efficiency {100 * ideal / seconds:.0f} %")
+    options.folder.mkdir(parents=True, exist_ok=True)
+    (options.folder / "scaling.json").write_text(json.dumps(kept, indent=1) + "\n")
+    plot(kept, options.folder / "scaling.png")
+
+
+def plot(kept, path):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as pyplot
+
+    figure, axes = pyplot.subplots(figsize=(6., 4.5))
+    for level in sorted({one["level"] for one in kept}):
+        measured = {one["ranks"]: one["step [ms]"] for one in kept
+                    if one["level"] == level and "step [ms]" in one}
+        predicted = {one["ranks"]: one["predicted step [ms]"] for one in kept
+                     if one["level"] == level and "predicted step [ms]" in one}
+        unknowns = next(one["unknowns"] for one in kept if one["level"] == level)
+        label = f"{unknowns / 1e6:.1f} million unknowns"
+        first = measured[min(measured)] * min(measured)
+        axes.loglog(list(measured), [first / ms for ms in measured.values()], "o",
+                    label=label + ", measured")
+        axes.loglog(list(predicted), [first / ms for ms in predicted.values()], "x--",
+                    label=label + ", predicted")
+    axes.loglog(list(PAPER), [PAPER[1] / hours for hours in PAPER.values()], "s-",
+                label="PSDAP, 1.3 million unknowns")
+    most = max(one["ranks"] for one in kept)
+    axes.loglog([1, most], [1, most], "k:", linewidth=1., label="ideal")
+    axes.set_xlabel("ranks")
+    axes.set_ylabel("times as fast as one rank")
+    axes.legend()
+    axes.grid(True, which="both", alpha=0.3)
+    figure.savefig(path, dpi=150, bbox_inches="tight")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,41 @@
+#ifndef voussoir_grid_partition_counts_h
+#define voussoir_grid_partition_counts_h
+
+#include <voussoir/grid/grid.h>
+
+namespace Voussoir
+{
+  /** What an exchange between ranks would be if a mesh were dealt to so many of
+   *  them. */
+  struct PartitionCounts
+  {
+    unsigned int ranks;
+
+    /** The largest cost of the cells of a rank over the mean one. */
+    double balance;
+
+    /** Ranks with which one has nodes in common, mean and most; nodes that it
+     *  receives or sends, mean and most. */
+    double       neighbours, nodes;
+    unsigned int most_neighbours, most_nodes;
+
+    /** A line for the log. */
+    std::string
+    describe() const;
+  };
+
+  /**
+   * Deals the cells as p4est does, in the order of its trees and by their cost,
+   * and counts what ranks have in common, without running them. Nodes are those
+   * of degree 1; each belongs to the first rank at it, and the others exchange
+   * it with that one. All ranks must call this together.
+   *
+   * @param cost of a cell, as for the balance of ranks
+   */
+  PartitionCounts
+  count_partition(const Grid                                      &grid,
+                  const std::function<double(const Grid::Cell &)> &cost,
+                  const unsigned int                               n_ranks);
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,48 @@
+#include <voussoir/grid/partition_counts.h>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /**
+     * A cube of 4 x 4 x 4 cells dealt to eight ranks: each has an eighth.
+     * Between two of them lie 12 faces of 4 nodes, 6 edges of 2 nodes at four
+     * ranks, and the middle at all; the first rank has 12 + 3 * 6 + 7 of what
+     * is exchanged.
+     */
+    class CountedPartition : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto parameters = make_case(file);
+        const auto simulation = make_simulation(*parameters, communicator);
+        const PartitionCounts counts = count_partition(
+          simulation->model.grid, [](const Grid::Cell &) { return 1.; }, 8);
+        verdicts.near("largest load over the mean", counts.balance, 1., 1e-14);
+        // the first with all, the next three at an edge with three, then faces
+        verdicts.near("neighbours of a rank",
+                      counts.neighbours,
+                      2. * (7. + 3. * 3. + 3.) / 8.,
+                      1e-14);
+        verdicts.near("most", counts.most_neighbours, 7., 0.);
+        verdicts.near("nodes that a rank exchanges",
+                      counts.nodes,
+                      2. * (12. * 4. + 6. * 2. * 3. + 7.) / 8.,
+                      1e-14);
+        verdicts.near("most", counts.most_nodes, 12. + 18. + 7., 0.);
+      }
+    };
+
+    // Reference: closed form
+    const Registry<Check>::Add<CountedPartition>
+      registered("counted partition", "What partitions would exchange.");
+  } // namespace
+} // namespace Voussoir

@@ -8,6 +8,9 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <map>
+#include <set>
+
 namespace Voussoir
 {
   using namespace dealii;
@@ -129,12 +132,6 @@ namespace Voussoir
     else
       quadratures = {QGauss<1>(degree + 1)};
     crack_share = share_of_crack(quadratures[0], degree);
-    if (parameters.one_point(false))
-      {
-        static_assert(corner_quadrature == 1);
-        quadratures.push_back(QGaussLobatto<1>(2));
-        data.mapping_update_flags |= update_quadrature_points;
-      }
     matrix_free.reinit(mapping,
                        std::vector<const DoFHandler<3> *>{&dof_handler},
                        std::vector<const AffineConstraints<double> *>{
@@ -161,6 +158,8 @@ namespace Voussoir
           places[grid.owned_cell(matrix_free.get_cell_iterator(batch, lane))] =
             {batch, lane};
       }
+    if (parameters.one_point(false))
+      keep_corners_only();
 
     node_positions.resize(n_owned_nodes());
     FEValues<3> nodes(mapping,
@@ -256,6 +255,62 @@ namespace Voussoir
               }
           }
       }
+  }
+
+
+  void
+  Discretization::keep_corners_only()
+  {
+    const unsigned int n_batches = matrix_free.n_cell_batches();
+    matrix_free.corners.resize(n_batches);
+    auto &geometry =
+      const_cast<
+        internal::MatrixFreeFunctions::MappingInfo<3, double, Lanes> &>(
+        matrix_free.get_mapping_info())
+        .cell_data[0];
+    // blocks of the batches, which may share them, begin at these offsets
+    auto                  &offsets = geometry.data_index_offsets;
+    std::set<unsigned int> begins(offsets.begin(), offsets.end());
+    begins.insert(geometry.JxW_values.size());
+    std::map<unsigned int, unsigned int> kept;
+    AlignedVector<Lanes>                 weights;
+    AlignedVector<Tensor<2, 3, Lanes>>   jacobians;
+    for (unsigned int batch = 0; batch < n_batches; ++batch)
+      if (has_one_point(material_of_batch[batch]))
+        {
+          const unsigned int n_cells =
+            matrix_free.n_active_entries_per_cell_batch(batch);
+          for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+            for (unsigned int v = 0; v < 8; ++v)
+              for (unsigned int d = 0; d < 3; ++d)
+                matrix_free.corners[batch][v][d][lane] =
+                  matrix_free
+                    .get_cell_iterator(batch, std::min(lane, n_cells - 1))
+                    ->vertex(v)[d];
+          offsets[batch] = 0; // FEEvaluation::reinit takes the address
+        }
+      else
+        {
+          const auto [place, is_new] =
+            kept.emplace(offsets[batch], weights.size());
+          if (is_new)
+            for (unsigned int i = offsets[batch];
+                 i < *begins.upper_bound(offsets[batch]);
+                 ++i)
+              {
+                weights.push_back(geometry.JxW_values[i]);
+                jacobians.push_back(geometry.jacobians[0][i]);
+              }
+          offsets[batch] = place->second;
+        }
+    if (weights.empty())
+      {
+        weights.resize(1);
+        jacobians.resize(1);
+      }
+    // copies have no room to grow
+    geometry.JxW_values   = AlignedVector<Lanes>(weights);
+    geometry.jacobians[0] = AlignedVector<Tensor<2, 3, Lanes>>(jacobians);
   }
 
 

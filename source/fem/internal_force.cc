@@ -38,7 +38,7 @@ namespace Voussoir
 
 
     using CellLoop =
-      std::function<void(const Discretization::MatrixFree &,
+      std::function<void(const dealii::MatrixFree<3, double, Lanes> &,
                          Vector &,
                          const Vector &,
                          const std::pair<unsigned int, unsigned int> &)>;
@@ -52,7 +52,7 @@ namespace Voussoir
             const Run                 &run,
             Rounding                  *rounding = nullptr)
     {
-      return [&, rounding](const Discretization::MatrixFree &,
+      return [&, rounding](const dealii::MatrixFree<3, double, Lanes> &,
                            Vector                                      &dst,
                            const Vector                                &src,
                            const std::pair<unsigned int, unsigned int> &range) {

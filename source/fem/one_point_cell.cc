@@ -141,7 +141,7 @@ namespace Voussoir
     std::array<Lanes, 24> x;
     for (unsigned int v = 0; v < 8; ++v)
       {
-        const auto corner = nodes.quadrature_point(v);
+        const auto &corner = corners[batch][v];
         for (unsigned int d = 0; d < 3; ++d)
           x[8 * d + v] = 0.125 * corner[d];
       }

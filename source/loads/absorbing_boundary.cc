@@ -228,6 +228,10 @@ namespace Voussoir
     {
       const Discretization &discretization = faces.solid.discretization;
       std::vector<std::pair<types::global_dof_index, Contribution>> records;
+      std::size_t                                                   n_faces = 0;
+      faces.visit([&](const Cell &, const unsigned int) { ++n_faces; });
+      records.reserve(n_faces * at_points.n_quadrature_points *
+                      faces.scalar().n_dofs_per_face());
       faces.visit([&](const Cell &cell, const unsigned int face) {
         at_points.reinit(cell, face);
         const double middle = cell->face(face)->center()[2];
@@ -336,11 +340,15 @@ namespace Voussoir
                               points,
                               update_values | update_quadrature_points |
                                 update_normal_vectors | update_JxW_values);
-    for (auto [node, contribution] : find_tractions(faces, at_points))
-      {
-        contribution.node = boundary_number.at(node);
-        boundary.contributions.push_back(contribution);
-      }
+    {
+      const auto tractions = find_tractions(faces, at_points);
+      boundary.contributions.reserve(tractions.size());
+      for (const auto &[node, contribution] : tractions)
+        {
+          boundary.contributions.push_back(contribution);
+          boundary.contributions.back().node = boundary_number.at(node);
+        }
+    }
     sides = find_side_faces(faces, at_points);
   }
 

@@ -15,7 +15,7 @@ namespace Voussoir
   class AcousticSpace
   {
   public:
-    using MatrixFree = Discretization::MatrixFree;
+    using MatrixFree = dealii::MatrixFree<3, double, Lanes>;
 
     /** Local refinement is not applied to water. */
     AcousticSpace(const CoarseMesh     &mesh,

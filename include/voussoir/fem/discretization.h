@@ -104,8 +104,14 @@ namespace Voussoir
   class Discretization
   {
   public:
-    using MatrixFree = dealii::MatrixFree<3, double, Lanes>;
-    using Cell       = dealii::DoFHandler<3>::active_cell_iterator;
+    using Cell = dealii::DoFHandler<3>::active_cell_iterator;
+
+    struct MatrixFree : dealii::MatrixFree<3, double, Lanes>
+    {
+      /** Corners of the cells of each batch, which are all the geometry that
+       *  cells with one point need; none if there are no such cells. */
+      dealii::AlignedVector<std::array<dealii::Point<3, Lanes>, 8>> corners;
+    };
 
     /**
      * @param has_memory whether the law of each material has a memory; those
@@ -134,10 +140,6 @@ namespace Voussoir
     dealii::AffineConstraints<double> constraints;
     dealii::IndexSet                  owned_dofs, relevant_dofs;
     MatrixFree                        matrix_free;
-
-    /** Number of the quadrature whose points are the corners of the cells, in
-     *  the matrix-free data of cells with one point. */
-    static constexpr unsigned int corner_quadrature = 1;
 
     /** Material of each cell batch of the matrix-free data, which holds cells
      *  of one material only. */
@@ -236,6 +238,11 @@ namespace Voussoir
     void
     use_own_geometry();
 
+    /** Keeps the corners of the cells with one point, and frees what the
+     *  library has computed of their geometry. */
+    void
+    keep_corners_only();
+
     std::vector<dealii::types::global_dof_index> first_dof_of_rank;
     std::vector<Place>                           places; // of owned cells
 
@@ -257,34 +264,59 @@ namespace Voussoir
       dealii::types::global_dof_index node;
       Record                          record;
     };
+    std::vector<Item>                         own;
     std::map<unsigned int, std::vector<char>> outgoing;
+    const unsigned int                        rank =
+      dealii::Utilities::MPI::this_mpi_process(grid.communicator());
+    own.reserve(records.size());
     for (const auto &[node, record] : records)
       {
         Item item{node, record};
         __builtin_clear_padding(&item); // records are ordered by their bytes
-        auto      &buffer = outgoing[owner(node)];
+        const unsigned int to = owner(node);
+        if (to == rank)
+          {
+            own.push_back(item);
+            continue;
+          }
+        auto      &buffer = outgoing[to];
         const auto bytes  = reinterpret_cast<const char *>(&item);
         buffer.insert(buffer.end(), bytes, bytes + sizeof(Item));
       }
-    // a map ordered by rank
-    const auto incoming =
+    // ordered by rank, this one among them
+    auto incoming =
       dealii::Utilities::MPI::some_to_some(grid.communicator(), outgoing);
-    std::vector<const char *> items;
-    for (const auto &buffer : incoming)
-      for (std::size_t i = 0; i < buffer.second.size(); i += sizeof(Item))
-        items.push_back(buffer.second.data() + i);
-    // the records of one node by themselves
-    if (reproducible)
-      std::sort(items.begin(), items.end(), [](const char *a, const char *b) {
-        return std::memcmp(a, b, sizeof(Item)) < 0;
-      });
+    incoming[rank];
     std::vector<std::pair<unsigned int, Record>> arrived;
-    for (const char *const bytes : items)
+    const auto                                   add = [&](const Item &item) {
+      arrived.emplace_back(owned_node(item.node), item.record);
+    };
+    const auto for_each_item = [](const std::vector<char> &buffer,
+                                  const auto              &visit) {
+      for (std::size_t i = 0; i < buffer.size(); i += sizeof(Item))
+        {
+          Item item;
+          std::memcpy(&item, buffer.data() + i, sizeof(Item));
+          visit(item);
+        }
+    };
+    arrived.reserve(own.size());
+    if (reproducible) // the records of one node by themselves
       {
-        Item item;
-        std::memcpy(&item, bytes, sizeof(Item));
-        arrived.emplace_back(owned_node(item.node), item.record);
+        for (const auto &buffer : incoming)
+          for_each_item(buffer.second,
+                        [&](const Item &item) { own.push_back(item); });
+        std::sort(own.begin(), own.end(), [](const Item &a, const Item &b) {
+          return std::memcmp(&a, &b, sizeof(Item)) < 0;
+        });
+        std::for_each(own.begin(), own.end(), add);
       }
+    else
+      for (const auto &[from, buffer] : incoming)
+        if (from == rank)
+          std::for_each(own.begin(), own.end(), add);
+        else
+          for_each_item(buffer, add);
     return arrived;
   }
 } // namespace Voussoir

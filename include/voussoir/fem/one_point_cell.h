@@ -45,7 +45,8 @@ namespace Voussoir
     using MatrixFree = Discretization::MatrixFree;
 
     explicit OnePointCell(const MatrixFree &matrix_free)
-      : nodes(matrix_free, 0, Discretization::corner_quadrature)
+      : nodes(matrix_free)
+      , corners(matrix_free.corners)
       , dof_info(matrix_free.get_dof_info())
       , local_size(matrix_free.get_vector_partitioner()->locally_owned_size() +
                    matrix_free.get_vector_partitioner()->n_ghost_indices())
@@ -160,6 +161,7 @@ namespace Voussoir
     find_nodes(const unsigned int batch);
 
     dealii::FEEvaluation<3, -1, 0, 3, double>             nodes;
+    const decltype(MatrixFree::corners)                  &corners;
     const dealii::internal::MatrixFreeFunctions::DoFInfo &dof_info;
     const unsigned int                                    local_size;
 

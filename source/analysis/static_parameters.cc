@@ -43,6 +43,14 @@ namespace Voussoir
                       "With interfaces: motion in a natural period over the "
                       "largest displacement at which the state is at rest.",
                       Patterns::Double(1e-12, 1e-2));
+    prm.add_parameter(
+      "Points",
+      points,
+      "Named points \"name: x y z\" [m], separated by \";\", "
+      "whose displacement after each stage is in "
+      "static_stages.csv. Empty: the upstream edge of the crest "
+      "in the middle of its length and at its quarters, where "
+      "the mesh has an \"upstream face\".");
     prm.add_parameter("Keep in",
                       kept,
                       "Folder, beside that of the results, in which the static "

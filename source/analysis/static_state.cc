@@ -1,6 +1,7 @@
 #include <voussoir/analysis/equilibrium_search.h>
 #include <voussoir/analysis/lost_equilibrium.h>
 #include <voussoir/analysis/relaxation.h>
+#include <voussoir/analysis/stage_results.h>
 #include <voussoir/analysis/static_state.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/text.h>
@@ -166,8 +167,9 @@ namespace Voussoir
       const AffineConstraints<double>     constraints;
       std::unique_ptr<ElasticSolver>      solver;
       std::unique_ptr<Relaxation>         relaxation; // with contact or memory
-      Vector                              loads;      // so far [N]
-      std::vector<std::string>            stage;      // names of its loads
+      const StageResults                  results;
+      Vector                              loads;  // so far [N]
+      std::vector<std::string>            stage;  // names of its loads
       Vector                              before; // displacement before it [m]
       bool                                by_multigrid = true; // this stage
       unsigned int                        damped_steps = 0;    // of this stage
@@ -199,6 +201,7 @@ namespace Voussoir
           on_springs ? model.boundaries.supports.list() :
                        model.boundaries.supports_with_absorbing(
                          parameters.supports == StaticSupports::roller)))
+      , results(model.solid.discretization, parameters.points)
       , loads(model.solid.discretization.create_vector())
     {
       const Timer clock;
@@ -605,6 +608,7 @@ namespace Voussoir
       report["sum of reactions [N]"]     = to_json(reactions);
       report["largest displacement [m]"] = largest;
       report["names"]                    = stage;
+      results.describe(state.displacement, model.contact, report);
     }
 
 

@@ -1,10 +1,12 @@
 #include <voussoir/base/active.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_section.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/base/text.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/driver/case.h>
 #include <voussoir/mesh/mesh_check.h>
+#include <voussoir/output/material_memory.h>
 
 #include <algorithm>
 
@@ -28,6 +30,27 @@ namespace Voussoir
         names.push_back(name);
       return names;
     }
+
+    /** Whether the file has a value for any entry of a handler. */
+    bool
+    gives_any(const ParameterFile &file, const ParameterHandler &prm)
+    {
+      std::ostringstream text;
+      prm.print_parameters(text, ParameterHandler::JSON);
+      const std::string nothing(1, '\0');
+      const std::function<bool(const nlohmann::json &, const std::string &)>
+        any = [&](const nlohmann::json &node, const std::string &path) {
+          if (node.contains("value") && node["value"].is_string())
+            return file.given(path, nothing) != nothing;
+          for (const auto &[name, child] : node.items())
+            if (child.is_object() &&
+                any(child, path.empty() ? name : path + "/" + name))
+              return true;
+          return false;
+        };
+      return any(nlohmann::json::parse(text.str()), "");
+    }
+
 
     // Each name becomes a section.
     void
@@ -180,6 +203,12 @@ namespace Voussoir
                       Patterns::MultipleSelection(
                         choices(Registry<Observer>::names())));
     prm.add_parameter(
+      "Observers for the verdict",
+      for_verdict,
+      "Adds over-stress where a linear elastic material has a tensile strength, "
+      "and through cracks where a material cracks, if the observers do not name "
+      "them and the mesh has an upstream and a downstream face.");
+    prm.add_parameter(
       "Energy interval",
       energy_interval,
       "Time between two lines of the energy balance [s]; 0 for every 50 steps. "
@@ -229,6 +258,7 @@ namespace Voussoir
     {
       std::vector<std::string> changes{"Output/Observers=" +
                                        join(Registry<Observer>::names(), ", ")};
+      changes.push_back("Acceptance/Names=criterion");
       name_each_class<InterfaceLaw>(changes, "Interfaces", "Law");
       name_each_class<Material>(changes, "Materials", "Class");
       name_each_class<Load>(changes, "Loads", "Class");
@@ -250,6 +280,7 @@ namespace Voussoir
              const std::function<void(ParameterHandler &)> &declare_more)
     : file(file)
   {
+    add_observers();
     declare();
     if (declare_more)
       declare_more(prm);
@@ -310,11 +341,15 @@ namespace Voussoir
     in_section(prm, "Damping", [&] { damping.declare(prm); });
     in_section(prm, "Time", [&] { time.declare(prm); });
     in_section(prm, "Study", [&] { study.declare(prm); });
+    check_names(split_list(file.given("Acceptance/Names")),
+                "\"Names\" in section \"Acceptance\"");
+    in_section(prm, "Acceptance", [&] { acceptance.declare(prm, file); });
     in_section(prm, "Output", [&] {
       output.declare(prm);
       const auto names =
         split_list(file.given("Output/Observers", output.observers));
       check_names(names, "\"Observers\" in section \"Output\"");
+      declare_unused_observers(names);
       for (const std::string &name : names)
         if (Registry<Observer>::entries().count(name) > 0)
           {
@@ -327,6 +362,36 @@ namespace Voussoir
             });
           }
     });
+  }
+
+
+  void
+  Case::declare_unused_observers(const std::vector<std::string> &used)
+  {
+    for (const std::string &name : Registry<Observer>::names())
+      {
+        if (std::find(used.begin(), used.end(), name) != used.end())
+          continue;
+        const std::string place = "Output/" + name;
+        ParameterHandler  own;
+        in_section(own, place, [&] {
+          Registry<Observer>::entries()[name].create()->declare_parameters(own);
+        });
+        // what nobody has given stays out of the file as it was run
+        if (!gives_any(file, own))
+          continue;
+        in_section(prm, name, [&] {
+          observers.declare_one(prm,
+                                name,
+                                place,
+                                name,
+                                "\"Observers\" in section \"Output\"",
+                                false);
+        });
+        notes.push_back("section \"" + place +
+                        "\" is not used, as \"Observers\" in section "
+                        "\"Output\" does not name it");
+      }
   }
 
 
@@ -357,6 +422,7 @@ namespace Voussoir
     damping.check(modes.number);
     check_reproducible();
     study.check();
+    acceptance.check();
     const bool rigid_base = wave.enters_through == WaveEntrance::rigid_base;
     if (ground_motion.type != GroundMotionType::none && !rigid_base &&
         split_list(boundaries.absorbing.face_sets).empty())
@@ -401,6 +467,55 @@ namespace Voussoir
     if (!static_state.stage_names().empty() && static_state.kept.empty())
       refuse("a static state that is found again for each number of ranks",
              "name a folder in \"Keep in\" of section \"Static state\"");
+  }
+
+
+  void
+  Case::add_observers()
+  {
+    const std::string setting = file.given("Output/Observers for the verdict");
+    if (setting == "false" || setting == "no")
+      return;
+    std::string              strengths;
+    bool                     cracks = false;
+    std::vector<std::string> observers =
+      split_list(file.given("Output/Observers", output.observers));
+    for (const std::string &name : split_list(file.given("Materials/Names")))
+      {
+        const std::string place = "Materials/" + name,
+                          type = file.given(place + "/Class", "linear elastic"),
+                          strength = file.given(place + "/Tensile strength");
+        if (Registry<Material>::entries().count(type) == 0)
+          continue; // refused later
+        if (type == "linear elastic" &&
+            parse_number(strength).value_or(0.) > 0.)
+          strengths += (strengths.empty() ? "" : "; ") + name + ": " + strength;
+        cracks = cracks ||
+                 tells_of_cracks(*Registry<Material>::entries()[type].create());
+      }
+    std::vector<std::string> changes;
+    const auto               wants = [&](const std::string &name) {
+      return std::find(observers.begin(), observers.end(), name) !=
+             observers.end();
+    };
+    const auto add = [&](const std::string &name) {
+      if (wants(name))
+        return;
+      added_observers.push_back(name);
+      observers.push_back(name);
+    };
+    const std::string section = "Output/over-stress/";
+    if (!strengths.empty() || !file.given(section + "Tensile strength").empty())
+      add("over-stress");
+    if (wants("over-stress") && !strengths.empty() &&
+        file.given(section + "Tensile strength").empty() &&
+        file.given(section + "Strengths of materials").empty())
+      changes.push_back(section + "Strengths of materials=" + strengths);
+    if (cracks)
+      add("through cracks");
+    if (!added_observers.empty())
+      changes.push_back("Output/Observers=" + join(observers, ", "));
+    file = file.with(changes);
   }
 
 

@@ -40,7 +40,8 @@ namespace Voussoir
       static const std::set<std::string> free{"Time/End time",
                                               "Output/Energy interval",
                                               "Output/Energy limit"};
-      if (is_free_of_results(entry) || free.count(entry) > 0)
+      if (is_free_of_results(entry) || free.count(entry) > 0 ||
+          entry.rfind("Acceptance/", 0) == 0)
         return true;
       // of observers: when they write
       const std::string last = entry.substr(entry.rfind('/') + 1);
@@ -76,7 +77,7 @@ namespace Voussoir
     is_free_of_static_state(const std::string &line)
     {
       for (const char *const section :
-           {"Time/", "Output/", "Ground motion/", "Modes/"})
+           {"Time/", "Output/", "Ground motion/", "Modes/", "Acceptance/"})
         if (line.rfind(section, 0) == 0)
           return true;
       return false;

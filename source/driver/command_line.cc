@@ -5,6 +5,8 @@
 #include <voussoir/driver/command_line.h>
 #include <voussoir/driver/simulation.h>
 #include <voussoir/driver/study.h>
+#include <voussoir/driver/summary_preview.h>
+#include <voussoir/driver/verdict_tables.h>
 
 #include <deal.II/base/timer.h>
 
@@ -140,6 +142,7 @@ namespace Voussoir
       double                   time_step = 0., seconds = 0., megabytes = 0.;
       unsigned long long       steps = 0;
       std::vector<std::string> warnings;
+      nlohmann::json           checks; // numerical ones
     };
 
 
@@ -150,8 +153,9 @@ namespace Voussoir
     {
       options.quiet    = true;
       options.validate = true;
-      Simulation   simulation(parameters, options, communicator);
-      Run         &run     = simulation.run;
+      Simulation simulation(parameters, options, communicator);
+      Run       &run = simulation.run;
+      check_summary_paths(run);
       const double seconds = double(run.n_steps()) * seconds_per_step(run);
       Utilities::System::MemoryStats memory;
       Utilities::System::get_memory_stats(memory);
@@ -160,7 +164,8 @@ namespace Voussoir
               seconds,
               Utilities::MPI::max(memory.VmHWM / 1024., communicator),
               run.n_steps(),
-              simulation.log.warnings()};
+              simulation.log.warnings(),
+              numerical_checks(*run.setup)};
     }
 
 
@@ -174,6 +179,7 @@ namespace Voussoir
         return;
       for (const std::string &warning : found.warnings)
         std::cout << "Warning: " << warning << '\n';
+      std::cout << description("Numerical checks known before", found.checks);
       std::cout << "Valid: " << found.unknowns << " unknowns, time step "
                 << found.time_step << " s, " << found.steps << " steps"
                 << (parameters.damping.modes.empty() ?

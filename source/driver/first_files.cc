@@ -1,3 +1,4 @@
+#include <voussoir/base/text.h>
 #include <voussoir/driver/first_files.h>
 #include <voussoir/files/table.h>
 #include <voussoir/output/field_writer.h>
@@ -76,6 +77,60 @@ namespace Voussoir
   {
     write_accelerations(motion, folder, log);
     write_spectra(motion.fits, folder, log);
+  }
+
+
+  void
+  write_static_stages(const nlohmann::json &static_state,
+                      const std::string    &folder,
+                      Log                  &log)
+  {
+    if (!static_state.contains("stages") ||
+        Utilities::MPI::this_mpi_process(log.communicator()) != 0)
+      return;
+    std::string text;
+    for (const nlohmann::json &stage : static_state.at("stages"))
+      {
+        std::vector<std::string> titles{"stage"},
+          line{join(stage.at("names").get<std::vector<std::string>>(), ", ")};
+        const auto add = [&](const std::string &title, const double value) {
+          titles.push_back(title);
+          line.push_back(csv_line({value}));
+        };
+        const auto add_vector = [&](const std::string    &what,
+                                    const std::string    &unit,
+                                    const nlohmann::json &vector,
+                                    const double          factor) {
+          for (unsigned int d = 0; d < 3; ++d)
+            add(what + ' ' + "xyz"[d] + ' ' + unit,
+                factor * vector.at(d).get<double>());
+        };
+        add_vector("loads so far",
+                   "[MN]",
+                   stage.at("sum of loads so far [N]"),
+                   1e-6);
+        add_vector("reactions", "[MN]", stage.at("sum of reactions [N]"), 1e-6);
+        add("largest displacement [m]", stage.at("largest displacement [m]"));
+        add_vector("largest displacement",
+                   "[m]",
+                   stage.at("largest displacement x, y, z [m]"),
+                   1.);
+        add_vector("place of the largest displacement",
+                   "[m]",
+                   stage.at("place of the largest displacement [m]"),
+                   1.);
+        for (const char *group : {"points", "interfaces"})
+          if (stage.contains(group))
+            for (const auto &[name, values] : stage.at(group).items())
+              for (const auto &[quantity, value] : values.items())
+                if (value.is_number())
+                  add(name + ' ' + quantity, value);
+        if (text.empty())
+          text = csv_heading(titles) + '\n';
+        text += csv_heading(line) + '\n';
+      }
+    const std::string name = folder + "/static_stages.csv";
+    log.attempted(name, write_file(name, text));
   }
 
 

@@ -346,6 +346,8 @@ namespace Voussoir
   {
     for (const std::string &warning : parameters.warnings)
       log.warn(warning);
+    for (const std::string &note : parameters.notes)
+      log.line("note: ", note);
     check_levels(parameters, log);
     report(log);
   }
@@ -499,12 +501,10 @@ namespace Voussoir
   }
 
 
-  void
-  Model::report_materials(Log &log) const
+  std::vector<double>
+  Model::widest_crack_bands() const
   {
-    const MPI_Comm            communicator = grid.communicator();
-    const std::vector<double> carried      = carried_frequencies();
-    std::vector<double>       widest(solid.materials.size(), 0.); // crack bands
+    std::vector<double> widest(solid.materials.size(), 0.);
     for (const auto &cell : grid.triangulation().active_cell_iterators())
       if (cell->is_locally_owned())
         {
@@ -514,6 +514,16 @@ namespace Voussoir
                      CrackBands::along_edges(cell,
                                              solid.discretization.crack_share));
         }
+    Utilities::MPI::max(widest, grid.communicator(), widest);
+    return widest;
+  }
+
+
+  void
+  Model::report_materials(Log &log) const
+  {
+    const std::vector<double> carried = carried_frequencies(),
+                              widest  = widest_crack_bands();
     for (unsigned int m = 0; m < solid.materials.size(); ++m)
       {
         const ElasticConstants c = solid.materials[m]->elastic_constants();
@@ -526,8 +536,7 @@ namespace Voussoir
              << std::setprecision(2) << carried[m]
              << " Hz with 8 nodes per wavelength";
         log.line(text.str());
-        const double band = Utilities::MPI::max(widest[m], communicator);
-        if (const std::string remark = solid.materials[m]->remark(band);
+        if (const std::string remark = solid.materials[m]->remark(widest[m]);
             !remark.empty())
           log.line("  note: ", remark);
         if (solid.materials[m]->n_history() > 0 &&

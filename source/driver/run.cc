@@ -2,6 +2,7 @@
 #include <voussoir/base/text.h>
 #include <voussoir/driver/first_files.h>
 #include <voussoir/driver/run.h>
+#include <voussoir/driver/verdict_tables.h>
 
 #include <iomanip>
 
@@ -153,6 +154,7 @@ namespace Voussoir
   void
   Run::open_output()
   {
+    write_static_stages(rest.summary, folder.path(), log);
     write_modes(modes, observed);
     write_ground_motion(setup->plan.motion, folder.path(), log);
     energy.open(folder.path(), folder.start_time(), folder.restarts(), log);
@@ -230,8 +232,11 @@ namespace Voussoir
           observer.second->finish(state, summary.observers);
         log.write_growing_files();
         log.look_for_lost_files();
-        write_summary(folder.path(), summary, log);
       }
+    summary.checks = numerical_checks(*this);
+    summary.judge(model.parameters.acceptance);
+    if (folder.exists())
+      write_summary(folder.path(), summary, log);
     log(conclusion(*this, summary));
     log(times.table());
     refuse_missing_files(log.missing_files());
@@ -293,6 +298,8 @@ namespace Voussoir
     RunSummary summary = summary_of(*this);
     summary.end        = RunEnd::stopped;
     summary.reason     = reason;
+    summary.checks     = numerical_checks(*this);
+    summary.judge(model.parameters.acceptance);
     std::string written;
     if (folder.exists())
       {

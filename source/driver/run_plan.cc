@@ -58,9 +58,25 @@ namespace Voussoir
     , observers(model.parameters.observers.make(model.parameters.file))
     , motion(model, log)
   {
-    const ObservedModel seen = observed(log);
-    for (const auto &observer : observers)
-      observer.second->check(seen);
+    const ObservedModel seen  = observed(log);
+    const auto         &added = model.parameters.added_observers;
+    for (auto observer = observers.begin(); observer != observers.end();)
+      try
+        {
+          observer->second->check(seen);
+          ++observer;
+        }
+      catch (const UserError &error)
+        {
+          if (std::find(added.begin(), added.end(), observer->first) ==
+              added.end())
+            throw;
+          log.line("note: not looked at for the verdict: ",
+                   observer->first,
+                   ", because ",
+                   error.what());
+          observer = observers.erase(observer);
+        }
   }
 
 
@@ -84,9 +100,14 @@ namespace Voussoir
   double
   RunPlan::record_interval() const
   {
-    double shortest = 0.;
+    double      shortest = 0.;
+    const auto &added    = model.parameters.added_observers;
     for (const auto &observer : observers)
       {
+        // what looks for the verdict does not change the time step
+        if (std::find(added.begin(), added.end(), observer.first) !=
+            added.end())
+          continue;
         const double interval = observer.second->record_interval();
         if (interval > 0. && (shortest == 0. || interval < shortest))
           shortest = interval;

@@ -1,7 +1,9 @@
 #include <voussoir/base/json_entries.h>
+#include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/run.h>
 #include <voussoir/driver/run_summary.h>
+#include <voussoir/driver/verdict_tables.h>
 #include <voussoir/mesh/mesh_quality.h>
 #include <voussoir/output/material_memory.h>
 #include <voussoir/signals/response_spectrum.h>
@@ -111,6 +113,7 @@ namespace Voussoir
     entry("modes", part.modes);
     entry("reservoir", part.reservoir);
     entry("materials", part.materials);
+    entry("detachment", part.detachment);
     entry("energy balance", part.energy);
   }
 
@@ -162,15 +165,32 @@ namespace Voussoir
   std::string
   RunSummary::verdict() const
   {
-    switch (end)
+    if (end == RunEnd::stopped)
+      return stopped + reason;
+    if (end == RunEnd::failed)
+      return failed + reason;
+    std::vector<std::string> bad, open;
+    for (const nlohmann::json *table : {&checks, &results, &acceptance})
       {
-        case RunEnd::stopped:
-          return stopped + reason;
-        case RunEnd::failed:
-          return failed + reason;
-        default:
-          return warnings.empty() ? "no objection" : "with warnings, see there";
+        for (const std::string &name : not_met(*table))
+          bad.push_back(name);
+        for (const std::string &name : not_judged(*table))
+          open.push_back(name);
       }
+    if (!bad.empty())
+      return "not met: " + join(bad, "; ");
+    if (!open.empty())
+      return "to be judged: " + join(open, "; ");
+    return warnings.empty() ? "no objection" : "with warnings, see there";
+  }
+
+
+  void
+  RunSummary::judge(const AcceptanceParameters &criteria)
+  {
+    const nlohmann::json summary(*this);
+    results    = engineering_results(summary);
+    acceptance = criteria.table(summary);
   }
 
 
@@ -184,6 +204,9 @@ namespace Voussoir
       write_entries(json, *summary.step);
     if (summary.march)
       write_entries(json, *summary.march);
+    write_entry(json, "numerical checks", summary.checks);
+    write_entry(json, "engineering results", summary.results);
+    write_entry(json, "acceptance table", summary.acceptance);
     json["verdict"] = summary.verdict();
     if (summary.model)
       json["warnings"] = summary.warnings;
@@ -211,6 +234,15 @@ namespace Voussoir
     summary.warnings = json.value("warnings", summary.warnings);
     summary.missing_files =
       json.value("files not written", summary.missing_files);
+    for (const auto &[name, table] :
+         {std::make_pair("numerical checks", &summary.checks),
+          std::make_pair("engineering results", &summary.results),
+          std::make_pair("acceptance table", &summary.acceptance)})
+      if (json.contains(name))
+        {
+          *table = json.at(name);
+          left.erase(name);
+        }
     for (const char *name : {"verdict", "warnings", "files not written"})
       left.erase(name);
     summary.observers = left;
@@ -246,31 +278,6 @@ namespace Voussoir
 
   namespace
   {
-    std::map<std::string, CellQuality>
-    worst_cells(const Model &model)
-    {
-      const MPI_Comm                 communicator = model.grid.communicator();
-      const std::vector<std::string> names = model.parameters.material_names();
-      std::vector<MeshQuality>       qualities(names.size());
-      for (const auto &cell :
-           model.grid.triangulation().active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            std::array<Point<3>, 8> vertices;
-            for (const unsigned int v : cell->vertex_indices())
-              vertices[v] = cell->vertex(v);
-            qualities[model.solid.grid().material(cell)].take(vertices);
-          }
-      std::map<std::string, CellQuality> result;
-      for (unsigned int i = 0; i < names.size(); ++i)
-        result[names[i]] = {
-          Utilities::MPI::min(qualities[i].scaled_jacobian, communicator),
-          Utilities::MPI::max(qualities[i].aspect_ratio, communicator),
-          Utilities::MPI::min(qualities[i].smallest_angle, communicator)};
-      return result;
-    }
-
-
     std::optional<TargetSpectrum>
     target_spectrum(const GroundMotion &motion)
     {
@@ -325,6 +332,30 @@ namespace Voussoir
                           Utilities::MPI::sum(water->loss, communicator)};
     }
   } // namespace
+
+
+  std::map<std::string, CellQuality>
+  worst_cells(const Model &model)
+  {
+    const MPI_Comm                 communicator = model.grid.communicator();
+    const std::vector<std::string> names = model.parameters.material_names();
+    std::vector<MeshQuality>       qualities(names.size());
+    for (const auto &cell : model.grid.triangulation().active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          std::array<Point<3>, 8> vertices;
+          for (const unsigned int v : cell->vertex_indices())
+            vertices[v] = cell->vertex(v);
+          qualities[model.solid.grid().material(cell)].take(vertices);
+        }
+    std::map<std::string, CellQuality> result;
+    for (unsigned int i = 0; i < names.size(); ++i)
+      result[names[i]] = {
+        Utilities::MPI::min(qualities[i].scaled_jacobian, communicator),
+        Utilities::MPI::max(qualities[i].aspect_ratio, communicator),
+        Utilities::MPI::min(qualities[i].smallest_angle, communicator)};
+    return result;
+  }
 
 
   ModelSummary
@@ -391,6 +422,12 @@ namespace Voussoir
     if (run.model.solid.internal_force.has_memory())
       march.materials =
         memory_summary(run.observed, run.model.parameters.material_names());
+    if (const WidestCrack widest = widest_crack(run.observed, true);
+        widest.opening > 0.)
+      march.detachment = {
+        {"crack over its cell", widest.share},
+        {"crack opening [mm]", 1e3 * widest.opening},
+        {"at [m]", {widest.where[0], widest.where[1], widest.where[2]}}};
     march.energy = run.energy.summary();
     return summary;
   }
@@ -411,6 +448,12 @@ namespace Voussoir
       text << "Contact: " << 100. * summary.march->contact_share.value_or(0.)
            << " % of the loop, " << run.contact->effort().paths
            << " clusters by path following\n";
+    for (const auto &[title, table] :
+         {std::make_pair("Numerical checks", &summary.checks),
+          std::make_pair("Engineering results", &summary.results),
+          std::make_pair("Acceptance table", &summary.acceptance)})
+      text << description(title, *table);
+    text << "Verdict: " << summary.verdict() << '\n';
     for (const std::string &warning : summary.warnings)
       text << "Warning: " << warning << '\n';
     return text.str();

@@ -142,6 +142,7 @@ namespace Voussoir
       summary.model  = summary_of(plan.model);
       if (setup != nullptr)
         summary.step = summary_of(*setup);
+      summary.judge(plan.model.parameters.acceptance);
       write_summary(folder.path(), summary, log);
       throw StoppedRun(std::string(lost.what()) +
                          (picture.empty() ?

@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/base/text.h>
 #include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/simulation.h>
@@ -108,6 +109,44 @@ namespace Voussoir
                         "\" has been done with \"" + difference->first +
                         "\", the study now has \"" + difference->second + "\"" +
                         remedy);
+    }
+
+
+    /** The criteria that a run meets, in words; "none". Empty: it has not
+     * ended, or lacks their numbers. */
+    std::string
+    met_criteria(const std::vector<Criterion> &criteria,
+                 const RunSummary             &summary)
+    {
+      if (summary.end == RunEnd::failed)
+        return "";
+      std::vector<std::string> met;
+      for (const Criterion &criterion : criteria)
+        try
+          {
+            if (criterion.look(summary).second)
+              met.push_back(criterion.text);
+          }
+        catch (const UserError &)
+          {
+            return "";
+          }
+      return met.empty() ? "none" : join(met, "; ");
+    }
+
+
+    /** Values of entries in their order, numbers by their size. */
+    bool
+    comes_before(const StudyValues &a, const StudyValues &b)
+    {
+      for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        if (a[i].second != b[i].second)
+          {
+            const auto x = parse_number(a[i].second),
+                       y = parse_number(b[i].second);
+            return x && y ? *x < *y : a[i].second < b[i].second;
+          }
+      return a.size() < b.size();
     }
 
 
@@ -521,6 +560,13 @@ namespace Voussoir
         for (const nlohmann::json &limit : theirs.at("limits"))
           limits.push_back({limit.at(0), limit.at(1), limit.at(2)});
       }
+    // runs of a search come in the order of its steps
+    if (parameters.seeks_limit())
+      std::stable_sort(outcomes.begin(),
+                       outcomes.end(),
+                       [](const Outcome &a, const Outcome &b) {
+                         return comes_before(a.values, b.values);
+                       });
   }
 
 
@@ -597,6 +643,8 @@ namespace Voussoir
           columns.push_back(&number);
           heading.push_back(number.path);
         }
+    if (parameters.seeks_limit())
+      heading.push_back("criterion met");
     heading.push_back("verdict");
     std::string text = csv_heading(heading) + '\n';
     for (const Outcome &outcome : outcomes)
@@ -609,6 +657,8 @@ namespace Voussoir
             const std::optional<double> value = number->in(outcome.numbers);
             line.push_back(value ? number_text(*value) : "");
           }
+        if (parameters.seeks_limit())
+          line.push_back(met_criteria(parameters.criteria(), outcome.summary));
         line.push_back(verdict_of(outcome.summary));
         text += csv_heading(line) + '\n';
       }
@@ -628,6 +678,11 @@ namespace Voussoir
         for (const SummaryNumber &number : parameters.numbers())
           if (const std::optional<double> value = number.in(outcome.numbers))
             run["quantities"][number.path] = *value;
+        if (parameters.seeks_limit())
+          if (const std::string met =
+                met_criteria(parameters.criteria(), outcome.summary);
+              !met.empty())
+            run["criterion met"] = met;
         all["runs"].push_back(run);
       }
     if (parameters.reduces_strengths())

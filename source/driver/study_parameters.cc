@@ -211,6 +211,8 @@ namespace Voussoir
       "interfaces/surfaces/*/residual slip [mm];"
       "interfaces/surfaces/*/slip rate at the end [mm/s];"
       "interfaces/blocks/*/smallest safety;"
+      "interfaces/blocks/*/slip at the end [mm];"
+      "over-stress/*/largest ratio;"
       "over-stress/*/above 1/share at any time [%];"
       "over-stress/*/above 1/accumulated time [s];"
       "through cracks/largest opening from face to face at one moment [mm];"

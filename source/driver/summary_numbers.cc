@@ -6,6 +6,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
+#include <functional>
 #include <iomanip>
 #include <sstream>
 
@@ -44,19 +45,45 @@ namespace Voussoir
     }
 
 
+    /** Visits what fits the rest of a path, with its object and the names that
+     *  lead there. */
     void
-    collect(const nlohmann::json           &part,
-            const std::vector<std::string> &names,
-            const std::size_t               depth,
-            std::vector<double>            &found)
+    visit(const nlohmann::json                                    &part,
+          const nlohmann::json                                    *around,
+          const std::vector<std::string>                          &names,
+          std::vector<std::string>                                &way,
+          const std::function<void(const nlohmann::json &value,
+                                   const nlohmann::json &around)> &action)
     {
-      if (depth == names.size() && part.is_number())
-        found.push_back(part.get<double>());
-      if (depth == names.size() || !part.is_structured())
+      if (way.size() == names.size())
+        {
+          if (around != nullptr && !part.is_structured())
+            action(part, *around);
+          return;
+        }
+      if (!part.is_structured())
         return;
       for (const auto &[name, value] : part.items())
-        if (fits(name, names[depth]))
-          collect(value, names, depth + 1, found);
+        if (fits(name, names[way.size()]))
+          {
+            way.push_back(name);
+            visit(value, &part, names, way, action);
+            way.pop_back();
+          }
+    }
+
+
+    /** What stands beside a number under one of two names, or null. */
+    nlohmann::json
+    beside(const nlohmann::json &around,
+           const std::string    &own_name,
+           const std::string    &name)
+    {
+      if (!around.is_object())
+        return {};
+      return around.contains(own_name) ? around.at(own_name) :
+             around.contains(name)     ? around.at(name) :
+                                         nlohmann::json();
     }
   } // namespace
 
@@ -83,15 +110,64 @@ namespace Voussoir
   {}
 
 
+  std::optional<SummaryNumber::Found>
+  SummaryNumber::find(const nlohmann::json &summary) const
+  {
+    return find(summary, is_smallest(path));
+  }
+
+
+  std::optional<SummaryNumber::Found>
+  SummaryNumber::find(const nlohmann::json &summary, const bool smallest) const
+  {
+    std::optional<Found>     found;
+    std::vector<std::string> way;
+    visit(summary,
+          nullptr,
+          names,
+          way,
+          [&](const nlohmann::json &value, const nlohmann::json &around) {
+            if (!value.is_number())
+              return;
+            const double number = value;
+            if (found &&
+                !(smallest ? number < found->value : number > found->value))
+              return;
+            const std::string name = dealii::Utilities::trim(
+              way.back().substr(0, way.back().find('[')));
+            found = {number,
+                     way,
+                     beside(around,
+                            "time of the " + name + " [s]",
+                            "at the time [s]"),
+                     beside(around, "place of the " + name + " [m]", "at [m]")};
+          });
+    return found;
+  }
+
+
   std::optional<double>
   SummaryNumber::in(const nlohmann::json &summary) const
   {
-    std::vector<double> found;
-    collect(summary, names, 0, found);
-    if (found.empty())
-      return {};
-    return is_smallest(path) ? *std::min_element(found.begin(), found.end()) :
-                               *std::max_element(found.begin(), found.end());
+    if (const std::optional<Found> found = find(summary))
+      return found->value;
+    return {};
+  }
+
+
+  bool
+  SummaryNumber::is_in(const nlohmann::json &summary) const
+  {
+    bool                     any = false;
+    std::vector<std::string> way;
+    visit(summary,
+          nullptr,
+          names,
+          way,
+          [&](const nlohmann::json &value, const nlohmann::json &) {
+            any = any || value.is_number() || value.is_null();
+          });
+    return any;
   }
 
 
@@ -115,6 +191,13 @@ namespace Voussoir
                     "\"; write \"PATH > VALUE\" or \"PATH < VALUE\" with the "
                     "path of a number in summary.json, as \"histories/crest/"
                     "largest displacement [m] > 0.1\", or \"stopped\".");
+  }
+
+
+  const SummaryNumber *
+  Criterion::about() const
+  {
+    return number ? &*number : nullptr;
   }
 
 

@@ -23,7 +23,25 @@ namespace Voussoir
 
   namespace
   {
-    const Registry<Material>::Add<MaterialOf<IsotropicElasticity>>
+    /** Hooke's law, with a strength that does not limit its stress. */
+    struct LinearElastic : IsotropicElasticity
+    {
+      double tensile_strength = 0.; // [Pa]
+
+      void
+      declare_parameters(ParameterHandler &prm)
+      {
+        IsotropicElasticity::declare_parameters(prm);
+        prm.add_parameter("Tensile strength",
+                          tensile_strength,
+                          "Static tensile strength, which the observer "
+                          "over-stress compares with the stress [Pa]; the law "
+                          "itself bears any. 0: not given.",
+                          Patterns::Double(0., 1e8));
+      }
+    };
+
+    const Registry<Material>::Add<MaterialOf<LinearElastic>>
       registered("linear elastic", "Isotropic Hooke's law.");
   } // namespace
 } // namespace Voussoir

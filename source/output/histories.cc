@@ -100,6 +100,9 @@ namespace Voussoir
              largest,
              std::vector<std::array<double, n_quantities>>(
                recorder.points().size()));
+        keep("time of the largest displacement",
+             time_of_largest,
+             std::vector<double>(recorder.points().size()));
         keep(
           "window",
           [this] { return recorder.save(); },
@@ -125,16 +128,19 @@ namespace Voussoir
       }
 
       void
-      conclude(const State &, nlohmann::json &summary) override
+      conclude(const State &state, nlohmann::json &summary) override
       {
         if (recorder.points().empty())
           return;
+        if (state.step == 0)
+          take_rest(state);
         auto &result = summary["histories"];
         for (unsigned int p = 0; p < recorder.points().size(); ++p)
           {
             auto &point = result[recorder.points()[p].name];
-            point["largest displacement [m]"] = largest[p][0];
-            point["largest velocity [m/s]"]   = largest[p][1];
+            point["largest displacement [m]"]             = largest[p][0];
+            point["time of the largest displacement [s]"] = time_of_largest[p];
+            point["largest velocity [m/s]"]               = largest[p][1];
             point["largest acceleration of a single step [m/s2]"] =
               largest[p][2];
             point["largest filtered acceleration [m/s2]"] = largest[p][3];
@@ -187,27 +193,51 @@ namespace Voussoir
       void
       flush() override
       {
-        const int reference = recorder.reference();
         for (const auto &line : recorder.take())
+          take_line(line);
+        table.flush();
+      }
+
+      void
+      take_line(const PointRecorder::Line &line)
+      {
+        const int           reference = recorder.reference();
+        std::vector<double> values;
+        for (unsigned int p = 0; p < line.points.size(); ++p)
           {
-            std::vector<double> values;
-            for (unsigned int p = 0; p < line.points.size(); ++p)
+            Motion motion = motion_of(line, p);
+            for (unsigned int k = 0; k < n_quantities; ++k)
               {
-                Motion motion = motion_of(line, p);
-                for (unsigned int k = 0; k < n_quantities; ++k)
+                if (is_relative(p))
+                  motion[k] -= motion_of(line, reference)[k];
+                if (const double amount = motion[k].norm();
+                    amount > largest[p][k])
                   {
-                    if (is_relative(p))
-                      motion[k] -= motion_of(line, reference)[k];
-                    largest[p][k] = std::max(largest[p][k], motion[k].norm());
+                    largest[p][k] = amount;
+                    if (k == 0)
+                      time_of_largest[p] = line.time;
                   }
-                for (unsigned int d = 0; d < 3; ++d)
-                  for (unsigned int k = 0; k < n_quantities; ++k)
-                    if (wanted(k))
-                      values.push_back(motion[k][d]);
               }
-            if (has_line(line.step))
-              table.write(line.time, values);
+            for (unsigned int d = 0; d < 3; ++d)
+              for (unsigned int k = 0; k < n_quantities; ++k)
+                if (wanted(k))
+                  values.push_back(motion[k][d]);
           }
+        if (has_line(line.step))
+          table.write(line.time, values);
+      }
+
+      /** The state at rest, which a run without steps ends with. */
+      void
+      take_rest(const State &state)
+      {
+        PointRecorder::Line line{0, state.time, {}};
+        for (const Tensor<1, 3> &u : recorder.displacement(state.displacement))
+          {
+            line.points.emplace_back();
+            line.points.back()[0] = u;
+          }
+        take_line(line);
         table.flush();
       }
 
@@ -224,6 +254,7 @@ namespace Voussoir
 
       // of each point: amounts of its motion
       std::vector<std::array<double, n_quantities>> largest;
+      std::vector<double>                           time_of_largest; // [s]
     };
 
     const Registry<Observer>::Add<Histories>

@@ -51,6 +51,9 @@ namespace Voussoir
       }
     sum[cohesion] += limits.bond + (open ? 0. : limits.cohesion);
     sum[friction] += open ? 0. : limits.friction * point.area;
+    const Tensor<1, 3> velocity = point.velocity * point.frame;
+    for (unsigned int d = 0; d < 3 && !open; ++d)
+      sum[moving_x + d] += point.area * velocity[d];
   }
 
   template void
@@ -86,9 +89,10 @@ namespace Voussoir
   double
   safety_from_sums(const SlidingBlock        &block,
                    const double              *sums,
-                   const std::vector<double> &areas)
+                   const std::vector<double> &areas,
+                   const Tensor<1, 3>        &inertia)
   {
-    Tensor<1, 3>              force;
+    Tensor<1, 3>              force = -inertia;
     std::vector<SlidingPlane> closed;
     for (const SlidingBlock::Plane &plane : block.planes)
       {
@@ -105,5 +109,24 @@ namespace Voussoir
             {plane.normal, sum[friction] / closed_area, sum[cohesion]});
       }
     return sliding_safety(closed, force);
+  }
+
+
+  Tensor<1, 3>
+  slip_velocity(const SlidingBlock        &block,
+                const double              *sums,
+                const std::vector<double> &areas)
+  {
+    Tensor<1, 3> moving;
+    double       closed = 0., whole = 0.;
+    for (const SlidingBlock::Plane &plane : block.planes)
+      {
+        const double *sum = sums + n_quantities * plane.surface;
+        for (unsigned int d = 0; d < 3; ++d)
+          moving[d] += plane.side * sum[moving_x + d];
+        closed += areas[plane.surface] - sum[open_area];
+        whole += areas[plane.surface];
+      }
+    return closed > 1e-9 * whole ? moving / closed : Tensor<1, 3>();
   }
 } // namespace Voussoir

@@ -41,10 +41,13 @@ namespace Voussoir
           "Blocks of rock whose safety against sliding as a whole is watched: "
           "\"cell set: surface, surface\", separated by \";\", with all "
           "surfaces of contact that hold the block, one for each plane. It is "
-          "that of limit equilibrium under the resultant of the contact "
-          "forces: along one plane or along the line where two of them meet, "
-          "zero if the block lifts off, infinite if nothing drives it or "
-          "other planes block its way.");
+          "that of limit equilibrium under what drives the block, weight, "
+          "water, uplift, thrust of the dam, and its inertia as if it went with "
+          "its base: along one plane or along the line where two of them meet, "
+          "zero if the block lifts off, infinite if nothing drives it or other "
+          "planes block its way. The mobilised ratio is how much of what the "
+          "planes bear the contact forces take, at most one. Both are means "
+          "over 0.443 of the shortest period that the mesh carries.");
         declare_interval(prm,
                          "Time between two lines of interfaces.csv [s]. In it "
                          "the sliding safety of a surface is (c A + f N) / T, "
@@ -64,7 +67,7 @@ namespace Voussoir
         parse_points(points_text, place);
         find_sliding_blocks(blocks_text,
                             blocks_place,
-                            model.solid.discretization,
+                            model.solid,
                             *model.interfaces);
       }
 
@@ -112,7 +115,7 @@ namespace Voussoir
                                      communicator());
         blocks = find_sliding_blocks(blocks_text,
                                      blocks_place,
-                                     run().solid.discretization,
+                                     run().solid,
                                      contact());
 
         const std::size_t n_surfaces   = contact().surface_names().size();
@@ -155,6 +158,18 @@ namespace Voussoir
             for (unsigned int b = 0; b < blocks.size(); ++b)
               safety_of_blocks[b].load(saved.at(b));
           });
+        window = std::max(0.443 / run().carried_frequency, run().time_step);
+        keep("block windows",
+             windows,
+             std::vector<std::vector<double>>(
+               blocks.size(),
+               std::vector<double>(n_of_window + n_quantities * n_surfaces)));
+        keep("largest open area",
+             largest_open,
+             std::vector<std::array<double, 2>>(n_surfaces, {{0., 0.}}));
+        keep("largest openings",
+             largest_opening,
+             std::vector<std::array<double, 2>>(n_surfaces, {{0., 0.}}));
         keep("time at one", time_at_one, std::vector<double>(n_surfaces, 0.));
         keep("energies at start", energies_at_start, energies());
         keep("last look", last_look, 0.);
@@ -170,8 +185,14 @@ namespace Voussoir
         describe_surfaces(result["surfaces"]);
         for (unsigned int b = 0; b < blocks.size(); ++b)
           {
-            auto &block = result["blocks"][blocks[b].name];
-            block       = safety_of_blocks[b].summary();
+            auto &block                      = result["blocks"][blocks[b].name];
+            block                            = safety_of_blocks[b].summary();
+            const double *now                = windows[b].data();
+            block["largest mobilised ratio"] = now[most_mobilised];
+            block["slip at the end [mm]"]    = 1e3 * now[slip_now];
+            block["largest slip [mm]"]       = 1e3 * now[largest_slip];
+            block["slip rate at the end [mm/s]"] = 1e3 * now[rate_now];
+            block["mass [kg]"]                   = blocks[b].mass;
             block["id"] = number_of(blocks[b].name, run().names.cell_sets);
           }
         for (const NearestContactPoint &point : points)
@@ -192,7 +213,10 @@ namespace Voussoir
                {"opening [mm]", "level slip [mm]", "upward slip [mm]"})
             titles.push_back(point.name + ' ' + quantity);
         for (const SlidingBlock &block : blocks)
-          titles.push_back(block.name + " block safety [-]");
+          {
+            titles.push_back(block.name + " block safety [-]");
+            titles.push_back(block.name + " mobilised ratio [-]");
+          }
         return titles;
       }
 
@@ -223,6 +247,11 @@ namespace Voussoir
                                                &look.largest[2 * s],
                                                areas[s]);
             line.insert(line.end(), values.begin(), values.end());
+            const double open = sums[n_quantities * s + open_area];
+            if (open > largest_open[s][0])
+              largest_open[s] = {{open, look.time}};
+            if (look.largest[2 * s] > largest_opening[s][0])
+              largest_opening[s] = {{look.largest[2 * s], look.time}};
             const double safety = values.back();
             smallest_safety[s]  = std::min(smallest_safety[s], safety);
             // what slides is at its limit, up to the waves inside
@@ -233,11 +262,57 @@ namespace Voussoir
           line.push_back(1e3 * sums[n_quantities * areas.size() + k]);
         for (unsigned int b = 0; b < blocks.size(); ++b)
           {
-            line.push_back(safety_from_sums(blocks[b], sums, areas));
-            safety_of_blocks[b].add(look.time, since, line.back());
+            look_at_block(b, look.time, since, sums);
+            line.push_back(from_json_number(windows[b][safety_now]));
+            line.push_back(windows[b][mobilised_now]);
           }
         last_look = std::max(last_look, look.time);
         return line;
+      }
+
+      /** Goes on with the means of a block. */
+      void
+      look_at_block(const unsigned int b,
+                    const double       time,
+                    const double       since,
+                    const double      *sums)
+      {
+        const SlidingBlock &block    = blocks[b];
+        double             *now      = windows[b].data();
+        double             *means    = now + n_of_window;
+        const std::size_t   n_sums   = n_quantities * areas.size();
+        const Tensor<1, 3>  velocity = slip_velocity(block, sums, areas);
+        now[rate_now]                = velocity.norm();
+        now[slip_now]                = 0.;
+        for (const SlidingBlock::Plane &plane : block.planes)
+          now[slip_now] = std::max(now[slip_now],
+                                   sums[n_quantities * plane.surface + slip] /
+                                     areas[plane.surface]);
+        now[largest_slip] = std::max(now[largest_slip], now[slip_now]);
+        for (std::size_t k = 0; k < n_sums; ++k)
+          means[k] += since * sums[k];
+        now[elapsed] += since;
+        const bool is_first = time <= 0.;
+        if (!is_first && now[elapsed] < window * (1. - 1e-6))
+          return;
+        for (std::size_t k = 0; k < n_sums; ++k)
+          means[k] = is_first ? sums[k] : means[k] / now[elapsed];
+        Tensor<1, 3> inertia;
+        for (unsigned int d = 0; d < 3 && !is_first; ++d)
+          inertia[d] = block.mass * (velocity[d] - now[velocity_before + d]) /
+                       now[elapsed];
+        const double safety = safety_from_sums(block, means, areas, inertia),
+                     of_contact = safety_from_sums(block, means, areas, {});
+        safety_of_blocks[b].add(time - 0.5 * now[elapsed],
+                                now[elapsed],
+                                safety);
+        now[safety_now]     = json_number(safety);
+        now[mobilised_now]  = of_contact > 0. ? 1. / of_contact : 0.;
+        now[most_mobilised] = std::max(now[most_mobilised], now[mobilised_now]);
+        for (unsigned int d = 0; d < 3; ++d)
+          now[velocity_before + d] = velocity[d];
+        now[elapsed] = 0.;
+        std::fill_n(means, n_sums, 0.);
       }
 
       void
@@ -262,10 +337,14 @@ namespace Voussoir
         const char *kinds[] = {"impact", "friction", "bond", "bars", "uplift"};
         for (unsigned int s = 0; s < names.size(); ++s)
           {
-            auto &surface                          = result[names[s]];
-            surface["id"]                          = s;
-            surface["area [m2]"]                   = areas[s];
-            surface["largest opening [mm]"]        = 1e3 * values[4 * s];
+            auto &surface                              = result[names[s]];
+            surface["id"]                              = s;
+            surface["area [m2]"]                       = areas[s];
+            surface["largest opening [mm]"]            = 1e3 * values[4 * s];
+            surface["time of the largest opening [s]"] = largest_opening[s][1];
+            surface["largest open share [%]"] =
+              100. * largest_open[s][0] / areas[s];
+            surface["time of the largest open share [s]"] = largest_open[s][1];
             surface["largest slip [mm]"]           = 1e3 * values[4 * s + 1];
             surface["residual slip [mm]"]          = 1e3 * values[4 * s + 2];
             surface["slip rate at the end [mm/s]"] = 1e3 * values[4 * s + 3];
@@ -322,6 +401,26 @@ namespace Voussoir
 
       std::vector<SlidingBlock>  blocks;
       std::vector<SafetyHistory> safety_of_blocks;
+
+      // largest open area [m2] and opening [m] of each surface, and when [s]
+      std::vector<std::array<double, 2>> largest_open, largest_opening;
+
+      // of each block what is known of it now, then sums times their time since
+      // the last mean
+      enum OfWindow
+      {
+        elapsed,         // [s]
+        velocity_before, // of the slip, at the last mean [m/s]
+        safety_now = 4,  // last mean
+        mobilised_now,   // last mean
+        most_mobilised,  // of these
+        slip_now,        // largest mean of a plane [m]
+        largest_slip,    // of these
+        rate_now,        // of the slip [m/s]
+        n_of_window
+      };
+      std::vector<std::vector<double>> windows;
+      double                           window = 0.; // [s]
     };
 
     const Registry<Observer>::Add<Interfaces> registered(

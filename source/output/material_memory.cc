@@ -183,22 +183,27 @@ namespace Voussoir
 
 
   WidestCrack
-  widest_crack(const ObservedRun &run)
+  widest_crack(const ObservedRun &run, const bool ever)
   {
-    WidestCrack widest;
-    for_each_crack(run,
-                   [&](const Discretization::Cell &,
-                       const unsigned int,
-                       const double        band,
-                       const CrackOpening &opening) {
-                     if (opening.now > widest.share * band)
-                       widest = {opening.now, opening.now / band};
-                   });
-    const auto all =
-      Utilities::MPI::all_gather(run.solid.grid().communicator(),
-                                 std::make_pair(widest.share, widest.opening));
-    const auto most = *std::max_element(all.begin(), all.end());
-    return {most.second, most.first};
+    // share, opening, place
+    std::array<double, 5> widest{};
+    for_each_crack(
+      run,
+      [&](const Discretization::Cell &cell,
+          const unsigned int,
+          const double        band,
+          const CrackOpening &opening) {
+        const double wide = ever ? opening.largest : opening.now;
+        if (wide > widest[0] * band)
+          {
+            const Point<3> where = cell->center();
+            widest = {{wide / band, wide, where[0], where[1], where[2]}};
+          }
+      });
+    for (const auto &other :
+         Utilities::MPI::all_gather(run.solid.grid().communicator(), widest))
+      widest = std::max(widest, other);
+    return {widest[1], widest[0], Point<3>(widest[2], widest[3], widest[4])};
   }
 
 

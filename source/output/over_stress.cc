@@ -2,6 +2,7 @@
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/option.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/base/parse_numbers.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/files/table.h>
 #include <voussoir/materials/principal_stress.h>
@@ -169,9 +170,15 @@ namespace Voussoir
           "Tensile strength",
           strengths,
           "Static tensile strength of the concrete, one for all faces or one "
-          "for each [Pa]. The demand-capacity ratio is the tension over it." +
-            usually(Usual::tensile_strength),
-          Patterns::List(Patterns::Double(0.), 1));
+          "for each [Pa]; 0 for that of the materials. The demand-capacity ratio "
+          "is the tension over it.",
+          Patterns::List(Patterns::Double(0., 1e8), 1));
+        prm.add_parameter(
+          "Strengths of materials",
+          of_materials,
+          "The same by material, \"concrete: 2e6; crest: 3e6\", where \"Tensile "
+          "strength\" is 0. Without it those that linear elastic materials have "
+          "themselves.");
         prm.add_parameter("Ratios",
                           ratios,
                           "Demand-capacity ratios above which time and area "
@@ -212,11 +219,7 @@ namespace Voussoir
                           std::to_string(strengths.size()) + " values for " +
                           std::to_string(face_sets.size()) +
                           " face sets; give one for all or one for each.");
-        for (const double strength : strengths)
-          if (strength <= 0.)
-            throw UserError("\"Tensile strength\" in " + section +
-                            " is 0; give the static tensile strength of the "
-                            "concrete in Pa.");
+        strengths_of_nodes(model, faces);
         if (ratios[0] != 1. ||
             std::adjacent_find(ratios.begin(),
                                ratios.end(),
@@ -240,6 +243,8 @@ namespace Voussoir
         const double interval = state.step == 0 ? 0. : run().time_step;
         next_step             = state.step + 1;
         find_ratios(state);
+        if (state.step == 0)
+          at_rest = ratio_of_node;
         for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
           {
             const double ratio = ratio_of_node[node];
@@ -271,20 +276,17 @@ namespace Voussoir
         stress = std::make_unique<FaceStress>(run(), *mesh);
         areas  = std::make_unique<AreaAbove>(*mesh, ratios);
         directions.clear();
-        strength_of_node.clear();
+        strength_of_node = strengths_of_nodes(run(), *mesh);
         for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
-          {
-            if (compared != ComparedStress::principal)
-              directions.push_back(mesh->arch_and_cantilever(node));
-            const unsigned int set = mesh->sets_and_nodes()[node].first;
-            strength_of_node.push_back(
-              strengths[strengths.size() == 1 ? 0 : set]);
-          }
+          if (compared != ComparedStress::principal)
+            directions.push_back(mesh->arch_and_cantilever(node));
+        at_rest.assign(mesh->n_nodes(), 0.);
         largest.assign(2 * mesh->n_nodes(), 0.);
         times.assign(n_ratios() * mesh->n_nodes(), 0.);
         keep([this] {
           auto values = mesh->keyed_values(largest, 2);
           values.merge(mesh->keyed_values(times, n_ratios(), ", times"));
+          values.merge(mesh->keyed_values(at_rest, 1, ", at rest"));
           return values;
         });
         keep("next step", next_step, 0);
@@ -330,9 +332,14 @@ namespace Voussoir
         double   largest, time;
         Point<3> where;
 
+        double largest_at_rest; // ratio of the static state [-]
+
         // of each ratio of the list: accumulated time of the point that has
-        // most [s], area ever above it and largest one at a moment [m2]
-        std::vector<double> accumulated, ever, at_once, time_at_once;
+        // most [s], and of those that the static state has below the ratio,
+        // area of the static state, area ever above it and largest one at a
+        // moment [m2]
+        std::vector<double> accumulated, beyond_rest, resting, ever, at_once,
+          time_at_once;
       };
 
       FaceMesh
@@ -343,6 +350,56 @@ namespace Voussoir
                         place,
                         "face_set",
                         model.names.face_sets);
+      }
+
+      /** Strength at each node of the faces, the least of what meets there
+       *  [Pa]. */
+      std::vector<double>
+      strengths_of_nodes(const ObservedModel &model,
+                         const FaceMesh      &faces) const
+      {
+        std::map<std::string, double> of_material;
+        for (const std::string &item : split_list(of_materials, ';'))
+          {
+            const auto        colon = item.rfind(':');
+            const std::string name  = Utilities::trim(item.substr(0, colon));
+            const auto        value =
+              colon == std::string::npos ?
+                       std::optional<double>() :
+                       parse_number(Utilities::trim(item.substr(colon + 1)));
+            const auto &known = model.names.materials;
+            if (!value ||
+                std::find(known.begin(), known.end(), name) == known.end())
+              throw UserError("\"Strengths of materials\" in " + section +
+                              " has \"" + item +
+                              "\"; write \"MATERIAL: STRENGTH\" with a "
+                              "material of the case.");
+            of_material[name] = *value;
+          }
+        std::vector<double> strength(faces.n_nodes(),
+                                     std::numeric_limits<double>::max());
+        for (std::size_t i = 0; i < faces.places().size(); ++i)
+          {
+            const unsigned int node = faces.nodes_of_places()[i],
+                               set  = faces.sets_and_nodes()[node].first;
+            const std::string &material =
+              model.names
+                .materials[model.solid.grid().material(faces.places()[i].cell)];
+            double value = strengths[strengths.size() == 1 ? 0 : set];
+            if (const auto own = of_material.find(material);
+                value == 0. && own != of_material.end())
+              value = own->second;
+            strength[node] = std::min(strength[node], value);
+          }
+        const bool any_missing =
+          std::any_of(strength.begin(), strength.end(), [](const double value) {
+            return value <= 0.;
+          });
+        if (Utilities::MPI::logical_or(any_missing, faces.communicator()))
+          throw UserError("\"Tensile strength\" in " + section +
+                          " is 0; give the static tensile strength of the "
+                          "concrete in Pa, there or with its material.");
+        return strength;
       }
 
       /** The tension of cracked concrete says nothing about its demand. */
@@ -451,7 +508,9 @@ namespace Voussoir
       find_faces() const
       {
         const auto          communicator = mesh->communicator();
-        std::vector<double> ratio, ever(n_areas()), accumulated(n_areas());
+        std::vector<double> ratio, ever(n_areas()), accumulated(n_areas()),
+          beyond_rest(n_areas()), resting(n_areas()),
+          most_at_rest(names.size());
         // of each set: largest ratio, time, place
         std::vector<std::array<double, 5>> most(
           names.size(), {{-std::numeric_limits<double>::max()}});
@@ -461,19 +520,28 @@ namespace Voussoir
             const Point<3>    &where = mesh->position(node);
             const auto         above = accumulated_times(node);
             ratio.push_back(largest[2 * node]);
-            most[set] = std::max(most[set],
+            most[set]         = std::max(most[set],
                                  {{largest[2 * node],
-                                   largest[2 * node + 1],
-                                   where[0],
-                                   where[1],
-                                   where[2]}});
+                                           largest[2 * node + 1],
+                                           where[0],
+                                           where[1],
+                                           where[2]}});
+            most_at_rest[set] = std::max(most_at_rest[set], at_rest[node]);
             for (unsigned int r = 0; r < n_ratios(); ++r)
-              accumulated[set * n_ratios() + r] =
-                std::max(accumulated[set * n_ratios() + r], above[r]);
+              {
+                const unsigned int i = set * n_ratios() + r;
+                accumulated[i]       = std::max(accumulated[i], above[r]);
+                if (at_rest[node] <= ratios[r])
+                  beyond_rest[i] = std::max(beyond_rest[i], above[r]);
+              }
           }
         areas->add(ratio, ever.data());
-        ever = sum_over_ranks(ever, communicator);
+        areas->add(at_rest, resting.data());
+        ever    = sum_over_ranks(ever, communicator);
+        resting = sum_over_ranks(resting, communicator);
         Utilities::MPI::max(accumulated, communicator, accumulated);
+        Utilities::MPI::max(beyond_rest, communicator, beyond_rest);
+        Utilities::MPI::max(most_at_rest, communicator, most_at_rest);
         const auto total =
           sum_over_ranks(areas->total(names.size()), communicator);
         for (const auto &other : Utilities::MPI::all_gather(communicator, most))
@@ -490,10 +558,13 @@ namespace Voussoir
             face.largest                          = greatest;
             face.time                             = time;
             face.where                            = Point<3>(x, y, z);
+            face.largest_at_rest                  = most_at_rest[set];
             for (unsigned int i = set * n_ratios(); i < (set + 1) * n_ratios();
                  ++i)
               {
                 face.accumulated.push_back(accumulated[i]);
+                face.beyond_rest.push_back(beyond_rest[i]);
+                face.resting.push_back(resting[i]);
                 face.ever.push_back(ever[i]);
                 face.at_once.push_back(at_once[i][0]);
                 face.time_at_once.push_back(at_once[i][1]);
@@ -517,10 +588,14 @@ namespace Voussoir
                               {"at the time [s]", face.time},
                               {"at [m]",
                                {face.where[0], face.where[1], face.where[2]}},
+                              {"largest ratio at rest", face.largest_at_rest},
                               {"area [m2]", face.area}};
         for (unsigned int r = 0; r < ratios.size(); ++r)
           result["above " + number(ratios[r])] = {
             {"accumulated time [s]", face.accumulated[r]},
+            {"accumulated time of what is below at rest [s]",
+             face.beyond_rest[r]},
+            {"share at rest [%]", 100. * face.resting[r] / face.area},
             {"area at any time [m2]", face.ever[r]},
             {"share at any time [%]", 100. * face.ever[r] / face.area},
             {"largest area at once [m2]", face.at_once[r]},
@@ -552,11 +627,16 @@ namespace Voussoir
           reasons.push_back(number(share) + " % of the " + face.name +
                             " is above the ratio 1 at some time, more than " +
                             number(largest_share) + " %");
-        // where the curve is furthest above its limit
+        if (face.largest_at_rest > 1.)
+          reasons.push_back("the demand-capacity ratio of the " + face.name +
+                            " is " + number(face.largest_at_rest) +
+                            " in the static state");
+        // where the curve is furthest above its limit; how long the static
+        // state lasts says nothing
         unsigned int worst  = 0;
         double       excess = 0.;
         for (unsigned int r = 0; r < ratios.size(); ++r)
-          if (const double own = face.accumulated[r] - allowed_time(ratios[r]);
+          if (const double own = face.beyond_rest[r] - allowed_time(ratios[r]);
               own > excess && ratios[r] < largest_ratio)
             {
               worst  = r;
@@ -565,7 +645,7 @@ namespace Voussoir
         if (excess > 0.)
           reasons.push_back(
             "the " + face.name + " is above the ratio " +
-            number(ratios[worst]) + " for " + number(face.accumulated[worst]) +
+            number(ratios[worst]) + " for " + number(face.beyond_rest[worst]) +
             " s, longer than " + number(allowed_time(ratios[worst])) + " s");
         return reasons;
       }
@@ -614,6 +694,7 @@ namespace Voussoir
       std::string         sets     = "upstream face, downstream face";
       ComparedStress      compared = ComparedStress::principal;
       std::vector<double> strengths{0.};
+      std::string         of_materials;
       std::vector<double>
              ratios{1., 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.};
       double longest_time = 0.4, largest_ratio = 2., largest_share = 20.;
@@ -629,6 +710,7 @@ namespace Voussoir
       std::vector<std::array<Tensor<1, 3>, 2>> directions;
       std::vector<double>                      strength_of_node, ratio_of_node;
       std::vector<double>                      largest, times;
+      std::vector<double>                      at_rest; // ratio at t = 0
 
       unsigned long long next_step = 0; // to be counted
 

@@ -1,4 +1,3 @@
-#include <voussoir/base/error.h>
 #include <voussoir/files/table.h>
 #include <voussoir/output/picture_series.h>
 
@@ -38,14 +37,13 @@ namespace Voussoir
   {
     for (const double time : times)
       if (time > model.end_time)
-        {
-          std::ostringstream text;
-          text << "\"Times\" in section \"" << section << "\" names " << time
-               << " s, which lies after the \"End time\" of section "
-                  "\"Time\", "
-               << model.end_time << " s; leave it out or compute longer.";
-          throw UserError(text.str());
-        }
+        model.log.line("note: no picture at ",
+                       time,
+                       " s, which \"Times\" in section \"",
+                       section,
+                       "\" names: the run ends at ",
+                       model.end_time,
+                       " s");
   }
 
 

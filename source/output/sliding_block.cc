@@ -59,12 +59,12 @@ namespace Voussoir
 
 
   std::vector<SlidingBlock>
-  find_sliding_blocks(const std::string    &text,
-                      const std::string    &place,
-                      const Discretization &discretization,
-                      const Contact        &contact)
+  find_sliding_blocks(const std::string &text,
+                      const std::string &place,
+                      const Solid       &solid,
+                      const Contact     &contact)
   {
-    const Grid               &grid  = discretization.grid;
+    const Grid               &grid  = solid.grid();
     const auto               &names = contact.surface_names();
     std::vector<SlidingBlock> blocks;
     for (const std::string &item : split_list(text, ';'))
@@ -91,6 +91,12 @@ namespace Voussoir
             block.planes.push_back(
               {surface, side, side / normal.norm() * normal});
           }
+        const std::vector<bool> inside = grid.tags_in({block.name});
+        for (const auto &cell : grid.triangulation().active_cell_iterators())
+          if (cell->is_locally_owned() && inside[cell->material_id()])
+            block.mass +=
+              cell->measure() * solid.material_of(cell).inertial_density();
+        block.mass = Utilities::MPI::sum(block.mass, grid.communicator());
         blocks.push_back(block);
       }
     return blocks;

@@ -28,6 +28,7 @@ namespace Voussoir
       std::uint64_t           cell;    // Grid::global_key
       unsigned int            corner;  // of the cell
       types::global_dof_index node;    // there
+      Point<3>                where;   // that is [m]
 
       // of the edges of the cell that begin there, in thousandths, as those of
       // cells of other size begin there too
@@ -39,8 +40,16 @@ namespace Voussoir
       void
       serialize(Archive &archive, const unsigned int)
       {
-        archive &opening &cell &corner &node &directions &begins &ends;
+        archive &opening &cell &corner &node &where &directions &begins &ends;
       }
+    };
+
+
+    /** A way from face to face. */
+    struct Way
+    {
+      double   opening = 0.; // where it is narrowest [mm]
+      Point<3> where;        // that is [m]
     };
 
 
@@ -51,7 +60,7 @@ namespace Voussoir
      * of two cells if an edge of both begins in their corner. They are taken in
      * from the most open one on until a chain is whole.
      */
-    double
+    Way
     widest_way(std::vector<CrackedEighth> eighths)
     {
       const auto none = [&](const bool CrackedEighth::*at_face) {
@@ -60,7 +69,7 @@ namespace Voussoir
                             [&](const auto &one) { return one.*at_face; });
       };
       if (none(&CrackedEighth::begins) || none(&CrackedEighth::ends))
-        return 0.;
+        return {};
       std::sort(eighths.begin(),
                 eighths.end(),
                 [](const auto &a, const auto &b) {
@@ -100,9 +109,9 @@ namespace Voussoir
           others.push_back(i);
           if (const std::size_t chain = chains.find_set(i);
               begins[chain] && ends[chain])
-            return own.opening;
+            return {own.opening, own.where};
         }
-      return 0.;
+      return {};
     }
 
 
@@ -201,14 +210,14 @@ namespace Voussoir
         const Ways ways = find_ways();
         compare(ways, state.time);
         if (has_line(state.step))
-          table.write(state.time, {ways.now, ways.ever});
+          table.write(state.time, {ways.now.opening, ways.ever.opening});
       }
 
     private:
       void
       prepare() override
       {
-        keep("most", most, {{0., 0.}});
+        keep("most", most, {});
         shares.clear();
         for (unsigned int m = 0; m < run().solid.materials.size(); ++m)
           shares.push_back(
@@ -226,8 +235,10 @@ namespace Voussoir
         summary["through cracks"] = {
           {"largest opening from face to face at one moment [mm]", most[0]},
           {"at the time [s]", most[1]},
-          {"opening from face to face at the end [mm]", ways.now},
-          {"largest openings ever from face to face [mm]", ways.ever}};
+          {"opening from face to face at the end [mm]", ways.now.opening},
+          {"largest openings ever from face to face [mm]", ways.ever.opening}};
+        if (most[0] > 0.)
+          summary["through cracks"]["at [m]"] = {most[2], most[3], most[4]};
       }
 
       static void
@@ -245,15 +256,16 @@ namespace Voussoir
       /** Widest openings all the way from face to face [mm]. */
       struct Ways
       {
-        double now;
-        double ever; // by the largest openings, which need not be of one moment
+        Way now;
+        Way ever; // by the largest openings, which need not be of one moment
       };
 
       void
       compare(const Ways &ways, const double time)
       {
-        if (!(ways.now <= most[0])) // a NaN stays
-          most = {{ways.now, time}};
+        if (const auto &[opening, where] = ways.now;
+            !(opening <= most[0])) // a NaN stays
+          most = {{opening, time, where[0], where[1], where[2]}};
       }
 
       Ways
@@ -298,6 +310,7 @@ namespace Voussoir
                                   Grid::global_key(cracked.cell),
                                   corner,
                                   nodes[corner], // vertices come first
+                                  cracked.cell->vertex(corner),
                                   directions_at(cracked.cell, corner),
                                   touched[0][corner],
                                   touched[1][corner]};
@@ -339,8 +352,9 @@ namespace Voussoir
       // of each owned cell, whether its corners lie on the two sets of faces
       std::vector<std::array<std::bitset<8>, 2>> touching;
 
-      // largest opening all the way at one moment [mm], and when [s]
-      std::array<double, 2> most{{0., 0.}};
+      // largest opening all the way at one moment [mm], when [s], and where it
+      // was narrowest [m]
+      std::array<double, 5> most{};
     };
 
     const Registry<Observer>::Add<ThroughCracks> registered(

@@ -99,8 +99,8 @@ namespace Voussoir
   block_safety(const Simulation &simulation, const std::string &block)
   {
     const Contact &contact = *simulation.run.contact;
-    const auto     blocks  = find_sliding_blocks(
-      block, "\"Blocks\"", simulation.model.solid.discretization, contact);
+    const auto     blocks =
+      find_sliding_blocks(block, "\"Blocks\"", simulation.model.solid, contact);
     std::vector<double> sums(InterfaceSum::n_quantities *
                              contact.surfaces().size()),
       areas(contact.surfaces().size());
@@ -112,7 +112,7 @@ namespace Voussoir
     const MPI_Comm communicator = simulation.model.grid.communicator();
     sums                        = sum_over_ranks(sums, communicator);
     areas                       = sum_over_ranks(areas, communicator);
-    return safety_from_sums(blocks[0], sums.data(), areas);
+    return safety_from_sums(blocks[0], sums.data(), areas, {});
   }
 
   /** An entry with a vector. */

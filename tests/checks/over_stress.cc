@@ -27,6 +27,7 @@ namespace Voussoir
         for (const std::string stress : {"principal", "arch and cantilever"})
           sine(stress);
         two_moments();
+        at_rest();
         limits();
       }
 
@@ -139,6 +140,43 @@ namespace Voussoir
                           above.at("accumulated time [s]").get<double>() / step,
                           1.,
                           1e-10);
+          }
+      }
+
+      // 1.2 times the strength at rest, 1.5 times it in both steps
+      void
+      at_rest() const
+      {
+        const auto front = found(
+          [&](const double, const double t) {
+            return (t < 0.5 * step ? 1.2 : 1.5) * strength;
+          },
+          2,
+          "principal");
+        verdict->near("largest ratio at rest",
+                      front.at("largest ratio at rest"),
+                      1.2,
+                      1e-10);
+        for (const auto &[ratio, share, beyond] :
+             std::vector<std::tuple<std::string, double, double>>{
+               {"1.1", 100., 0.}, {"1.3", 0., 2.}})
+          {
+            const auto &above = front.at("above " + ratio);
+            verdict->near("share at rest above ratio " + ratio + " [%], plus 1",
+                          1. + above.at("share at rest [%]").get<double>(),
+                          1. + share,
+                          1e-10);
+            verdict->near("time above it over the step",
+                          above.at("accumulated time [s]").get<double>() / step,
+                          2.,
+                          1e-10);
+            verdict->near(
+              "  of what is below at rest, plus 1",
+              1. + above.at("accumulated time of what is below at rest [s]")
+                       .get<double>() /
+                     step,
+              1. + beyond,
+              1e-10);
           }
       }
 

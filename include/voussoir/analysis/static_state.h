@@ -40,6 +40,7 @@ namespace Voussoir
     double         tolerance  = 1e-8;
     double         rest       = 1e-6;
     std::string    kept       = "static_states"; // folder
+    std::string    points; // whose displacements are results of each stage
 
     /** Loads that are not active. */
     std::vector<std::string> left_out;

@@ -7,6 +7,7 @@
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/constraints/interface_parameters.h>
 #include <voussoir/constraints/projection.h>
+#include <voussoir/driver/acceptance.h>
 #include <voussoir/driver/material_test.h>
 #include <voussoir/driver/study_parameters.h>
 #include <voussoir/fem/damping.h>
@@ -120,6 +121,8 @@ namespace Voussoir
     double      checkpoint_interval = 10.;
     double      checkpoint_time     = 0.;
 
+    bool for_verdict = true;
+
     bool
     has_checkpoints() const
     {
@@ -168,12 +171,19 @@ namespace Voussoir
     WaveParameters                 wave;
     DampingParameters              damping;
     TimeParameters                 time;
+    AcceptanceParameters           acceptance;
     OutputParameters               output;
     StudyParameters                study;
     NamedObjects<Observer>         observers;
 
-    /** Values that are hardly meant so, for the log. */
-    std::vector<std::string> warnings;
+    /** Observers that the file does not name, which look at strengths that it
+     *  gives: over-stress, and cracks that go through. One that does not fit
+     *  the mesh is left out. */
+    std::vector<std::string> added_observers;
+
+    /** Values that are hardly meant so, and sections that are not used, for the
+     *  log. */
+    std::vector<std::string> warnings, notes;
 
     /** The mesh that the case asks for, checked; a report goes to @p log. */
     CoarseMesh
@@ -200,6 +210,15 @@ namespace Voussoir
   private:
     void
     declare();
+
+    /** Adds those observers. */
+    void
+    add_observers();
+
+    /** Takes sections of observers that are not among these, as where "--set"
+     *  leaves one out: their entries are checked, and the log says it. */
+    void
+    declare_unused_observers(const std::vector<std::string> &used);
 
     /** Lets the uplift of interfaces come with the first load of water, where
      *  the file does not say with which. */

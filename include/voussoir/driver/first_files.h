@@ -13,6 +13,13 @@ namespace Voussoir
                       const std::string      &folder,
                       Log                    &log);
 
+  /** Writes static_stages.csv, a line for each stage of the summary of a static
+   *  state, into a folder. */
+  void
+  write_static_stages(const nlohmann::json &static_state,
+                      const std::string    &folder,
+                      Log                  &log);
+
   /** Writes modes.vtu into the folder of a run, if there are modes. */
   void
   write_modes(const Modes &modes, const ObservedRun &run);

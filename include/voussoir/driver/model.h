@@ -33,6 +33,11 @@ namespace Voussoir
     double
     carried_frequency() const;
 
+    /** Width of the widest crack band of each material; 0 for one without
+     *  cells. All ranks must call this together [m]. */
+    std::vector<double>
+    widest_crack_bands() const;
+
     /** Whether an earthquake enters as inertia on a rigid base. */
     bool
     rigid_base() const;

@@ -76,7 +76,8 @@ namespace Voussoir
     std::map<std::string, FitSummary> fits; // by component
     nlohmann::json                    static_state, modes;
     std::optional<WaterSummary>       reservoir;
-    nlohmann::json materials; // what their laws tell, by name
+    nlohmann::json materials;  // what their laws tell, by name
+    nlohmann::json detachment; // the widest crack, over its cell
     EnergySummary  energy;
   };
 
@@ -100,13 +101,22 @@ namespace Voussoir
     /** What observers found, under the names they gave it. */
     nlohmann::json observers = nlohmann::json::object();
 
+    /** Tables of lines with "met", see verdict_tables.h and
+     *  AcceptanceParameters; null: there is none. */
+    nlohmann::json checks, results, acceptance;
+
     std::vector<std::string>           warnings;
     std::map<std::string, std::string> missing_files; // with the reason
 
-    /** "no objection", "with warnings, see there", "stopped: ..." or "failed:
-     *  ...". */
+    /** "stopped: ..." or "failed: ..."; else "not met: ..." or "to be judged:
+     *  ..." with the lines of the tables of which that is so, "with warnings,
+     *  see there" or "no objection". */
     std::string
     verdict() const;
+
+    /** Makes the tables of results and acceptance from the rest. */
+    void
+    judge(const AcceptanceParameters &acceptance);
   };
 
   /** The contents of summary.json, which are written and read here alone. A
@@ -134,6 +144,10 @@ namespace Voussoir
 
     const RunSummary summary;
   };
+
+  /** Called on all ranks, by the names of the materials. */
+  std::map<std::string, CellQuality>
+  worst_cells(const Model &model);
 
   /** Called on all ranks. */
   ModelSummary

@@ -27,6 +27,30 @@ namespace Voussoir
     std::optional<double>
     in(const nlohmann::json &summary) const;
 
+    /** A number with its place. */
+    struct Found
+    {
+      double                   value;
+      std::vector<std::string> names; // along the path, without stars
+
+      /** When [s] and where [m] that was, if the summary says so beside it: "at
+       *  the time [s]", or "time of the smallest safety [s]" beside "smallest
+       *  safety"; likewise "at [m]" and "place of the ...". Else null. */
+      nlohmann::json time, place;
+    };
+
+    std::optional<Found>
+    find(const nlohmann::json &summary) const;
+
+    /** The smallest or largest of those that fit, whatever it is called. */
+    std::optional<Found>
+    find(const nlohmann::json &summary, const bool smallest) const;
+
+    /** Whether anything fits, be it a number or null for one that is not
+     *  finite. */
+    bool
+    is_in(const nlohmann::json &summary) const;
+
     const std::string path;
 
   private:
@@ -48,6 +72,10 @@ namespace Voussoir
   public:
     /** Throws UserError, which names the place, if it is none of these. */
     Criterion(const std::string &text, const std::string &place);
+
+    /** The number that it is about, or null. */
+    const SummaryNumber *
+    about() const;
 
     /** The number, if it is about one, and whether it meets the criterion. A
      *  run that was stopped meets what happened before. Throws UserError if a

@@ -28,6 +28,9 @@ namespace Voussoir
       force_z,
       cohesion, // with the bond [N]
       friction, // coefficient of what is closed, times area [m2]
+      moving_x, // velocity of the second side of what is closed against the
+      moving_y, // first, in global directions, times area [m3/s]
+      moving_z,
       n_quantities
     };
   }
@@ -70,15 +73,30 @@ namespace Voussoir
   surface_values(const double *sums, const double *largest, const double area);
 
   /**
-   * Safety of a block now.
+   * Safety of a block: what its planes can bear over what drives it. Its
+   * balance is M a = D + R with the contact forces R and all others D: weight,
+   * water, uplift, thrust of the dam. If it went with its base it would lack
+   * the acceleration a_s of its slip, so that limit equilibrium is that of D -
+   * M (a - a_s) = -(R - M a_s) . As long as nothing slides this is -R; while it
+   * slides, when friction caps R, it shows by how much the driving forces
+   * exceed what the planes bear.
    *
-   * @param sums  over all ranks, of all surfaces one after the other
-   * @param areas of all surfaces [m2]
+   * @param sums    over all ranks, of all surfaces one after the other
+   * @param areas   of all surfaces [m2]
+   * @param inertia M a_s [N]
    */
   double
-  safety_from_sums(const SlidingBlock        &block,
-                   const double              *sums,
-                   const std::vector<double> &areas);
+  safety_from_sums(const SlidingBlock         &block,
+                   const double               *sums,
+                   const std::vector<double>  &areas,
+                   const dealii::Tensor<1, 3> &inertia);
+
+  /** Mean velocity of a block's slip, over what is closed of its planes; zero
+   *  if nothing is [m/s]. */
+  dealii::Tensor<1, 3>
+  slip_velocity(const SlidingBlock        &block,
+                const double              *sums,
+                const std::vector<double> &areas);
 } // namespace Voussoir
 
 #endif

@@ -38,14 +38,15 @@ namespace Voussoir
   /** The crack that is open widest against its cell. */
   struct WidestCrack
   {
-    double opening = 0.; // now [m]
-    double share   = 0.; // of the width of the cell across it
+    double           opening = 0.; // [m]
+    double           share   = 0.; // of the width of the cell across it
+    dealii::Point<3> where;        // middle of that [m]
   };
 
-  /** Of all materials that tell of cracks; all ranks must call this together.
-   */
+  /** Of all materials that tell of cracks, now, or @p ever; all ranks must call
+   *  this together. */
   WidestCrack
-  widest_crack(const ObservedRun &run);
+  widest_crack(const ObservedRun &run, const bool ever = false);
 
   /**
    * Of each material with memory: the share of its volume that has left the

@@ -19,7 +19,7 @@ namespace Voussoir
     void
     declare_parameters(dealii::ParameterHandler &prm);
 
-    /** Refuses times after the end of the run. */
+    /** Says which times are after the end of the run. */
     void
     check(const ObservedModel &model) const;
 

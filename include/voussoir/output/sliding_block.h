@@ -2,6 +2,7 @@
 #define voussoir_output_sliding_block_h
 
 #include <voussoir/constraints/contact.h>
+#include <voussoir/materials/solid.h>
 
 #include <array>
 #include <limits>
@@ -21,6 +22,7 @@ namespace Voussoir
 
     std::string        name; // of its cell set
     std::vector<Plane> planes;
+    double             mass = 0.; // that has inertia [kg]
   };
 
   /**
@@ -29,10 +31,10 @@ namespace Voussoir
    * not on one side of its surfaces; @p place names the entry.
    */
   std::vector<SlidingBlock>
-  find_sliding_blocks(const std::string    &text,
-                      const std::string    &place,
-                      const Discretization &discretization,
-                      const Contact        &contact);
+  find_sliding_blocks(const std::string &text,
+                      const std::string &place,
+                      const Solid       &solid,
+                      const Contact     &contact);
 
   /** A plane with what it can bear now. */
   struct SlidingPlane
@@ -45,15 +47,15 @@ namespace Voussoir
   /**
    * Safety of a rigid block against sliding by limit equilibrium:
    *   (sum of f_i N_i + c_i A_i) / T .
-   * The resultant of the contact forces follows from statics, however uneven
-   * their distribution is. It is resolved into a force T against the sliding,
+   * The resultant follows from statics, however uneven the distribution of the
+   * contact forces is. It is resolved into a force T against the sliding,
    * and normal forces N_i of the planes on which the block then slides: along
    * one plane, or along the line where two of them meet (Londe, 1973). Which of
    * these it is follows from block theory (Goodman and Shi, 1985): no
    * normal force pulls, and the motion does not lead into another plane.
    *
    * @param planes those with contact; two that are parallel count one by one
-   * @param force  resultant of their contact forces on the block [N]
+   * @param force  on the block by which they would hold it [N]
    * @return 0 if the block lifts off, infinity if it is driven nowhere
    */
   double

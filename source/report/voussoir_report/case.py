@@ -295,13 +295,13 @@ def headline_section(runs):
 
 
 def conclusions_section(runs):
-    """Both verdicts of each run."""
+    """The verdicts of each run."""
     return Section("Conclusions", [
         *(Verdicts(run.label if len(runs) > 1 else "", verdict.verdicts_of(run),
-                   [note for note in run.notes if not verdict.LOWERED.search(note)]) for run in runs),
-        "Numerical checks say whether the equations were solved as they stand; engineering results say what came "
-        "out for the dam, compared with the limits that the case has. What is to be judged has no limit there. "
-        "Neither says that the model is right."])
+                   run.notes) for run in runs),
+        "The acceptance table has the criteria of the case; numerical checks say whether the equations were solved "
+        "as they stand; engineering results say what came out for the dam, by the program's own criteria. What is to "
+        "be judged has no limit there. None of them says that the model is right."])
 
 
 def input_entries_section(runs):

@@ -162,7 +162,7 @@ def planes_of(run):
     return [name for name in surfaces_of(run) if name not in joints_of(run)]
 
 
-def safety_picture(run, columns, caption, name):
+def safety_picture(run, columns, caption, name, axis="resistance over contact forces [-]"):
     """Sliding safety over time of some (name, values); none where nothing slides."""
     table = run.table("interfaces.csv")
     figure, axes = charts.new_figure(3.)
@@ -172,7 +172,7 @@ def safety_picture(run, columns, caption, name):
     finite = np.concatenate([values[np.isfinite(values)] for _, _, values in curves])
     axes.set_ylim(min(0.8, 0.9 * max(finite.min(initial=1.), 0.05)),
                   min(1.5 * finite.max(initial=2.), 20.))
-    charts.lines(axes, curves, run.title_in_chart, "time [s]", "resistance over contact forces [-]", log=True)
+    charts.lines(axes, curves, run.title_in_chart, "time [s]", axis, log=True)
     ticks = [tick for tick in (0.1, 0.2, 0.5, 1., 2., 5., 10., 20., 50.)
              if axes.get_ylim()[0] <= tick <= axes.get_ylim()[1]]
     axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
@@ -187,9 +187,12 @@ def blocks_table(runs):
             rows.append([f"{run.prefix}{name}",
                          number(values.get("safety at the start")), number(values.get("smallest safety")),
                          number(values.get("time of the smallest safety [s]")),
-                         number(values.get("time at safety one or below [s]"))])
-    return Table(["block: resistance over contact forces", "at the start [-]", "smallest [-]", "at the time [s]",
-                  "time at one or below [s]"], rows) if rows else None
+                         number(values.get("time at safety one or below [s]")),
+                         number(values.get("slip at the end [mm]")), number(values.get("slip rate at the end [mm/s]")),
+                         number(values.get("largest mobilised ratio"))])
+    return Table(["block: resistance over driving forces", "at the start [-]", "smallest [-]", "at the time [s]",
+                  "time at one or below [s]", "slip at the end [mm]", "slip rate at the end [mm/s]",
+                  "largest mobilised ratio [-]"], rows) if rows else None
 
 
 def planes_picture(runs):
@@ -224,8 +227,8 @@ def planes_section(runs):
         table = run.table("interfaces.csv")
         blocks = [(match[1], values) for match, values in table.matching(r"(.*) block safety \[-\]")]
         if blocks:
-            pictures.append(safety_picture(run, blocks, "Blocks: resistance over contact forces; red: one",
-                                           "block_safety"))
+            pictures.append(safety_picture(run, blocks, "Blocks: resistance over driving forces; red: one",
+                                           "block_safety", "resistance over driving forces [-]"))
         planes = [(name, table[f"{name} sliding safety [-]"]) for name in planes_of(run)]
         planes = [(name, values) for name, values in planes if np.isfinite(values).any()]
         if planes:
@@ -236,11 +239,12 @@ def planes_section(runs):
             if most > charts.NOISE:
                 pictures.append(history(run, planes_of(run), quantity, f"{quantity.capitalize()} of each plane",
                                         most))
-    text = ("Of a block: what its planes can bear along its way over what drives it, both from the contact "
-            "forces on all its planes; of a plane: what friction and cohesion can bear over its shear force, "
-            "point by point. Friction caps contact forces, so that the ratio of a block that slides stays at "
-            "one and does not fall below: judge it by its slip and slip rate. A gap in a curve means that "
-            "nothing drives the block, or that its way is barred.")
+    text = ("Of a block: what its planes can bear along its way over what drives it, weight, water, uplift, thrust of "
+            "the dam and its inertia as if it went with its base, by limit equilibrium; below one it slides, and slip "
+            "and slip rate tell what that means. The mobilised ratio is how much of what the planes bear the contact "
+            "forces take: at most one, as friction caps them. Of a plane: what friction and cohesion can bear over its "
+            "shear force, point by point, which does not fall below one either. A gap in a curve means that nothing "
+            "drives the block, or that its way is barred.")
     parts = [text, planes_picture(runs), blocks_table(runs), surfaces_table(runs, planes_of),
              Pictures(pictures, 2)]
     return Section("Slip planes and blocks", [part for part in parts if part])

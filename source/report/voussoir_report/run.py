@@ -39,7 +39,8 @@ SUMMARY = Group(
          {"effort": Group(optional={"unsolved clusters": NUMBER}),
           "blocks": Group(others=Group(
              {"time at safety one or below [s]": NUMBER},
-             dict.fromkeys(("safety at the start", "smallest safety", "time of the smallest safety [s]"),
+             dict.fromkeys(("safety at the start", "smallest safety", "time of the smallest safety [s]",
+                            "largest mobilised ratio", "slip at the end [mm]", "slip rate at the end [mm/s]"),
                            NUMBER_OR_NONE)))}),
      "modes": Group(optional={"modes": [Group(
          {"frequency [Hz]": NUMBER, "period [s]": NUMBER, "effective mass [-]": [NUMBER],
@@ -53,6 +54,13 @@ SUMMARY = Group(
           "above 1": Group(dict.fromkeys(("share at any time [%]", "largest share at once [%]",
                                           "accumulated time [s]"), NUMBER))},
          {"at [m]": [NUMBER]}))})
+
+# a table of verdicts: lines by their names
+LINES = Group(others=Group(
+    {}, {**dict.fromkeys(("value", "demand"), NUMBER_OR_NONE), **dict.fromkeys(("at most", "at least"), NUMBER),
+         **dict.fromkeys(("of", "load case", "source", "quantity"), TEXT),
+         "at the time [s]": NUMBER_OR_NONE, "at [m]": [NUMBER]}))
+SUMMARY.optional.update(dict.fromkeys(("numerical checks", "engineering results", "acceptance table"), LINES))
 
 # files that belong to a part of the summary
 FILES = {"histories": ("histories.csv",), "energy balance": ("energy.csv",), "envelopes": ("envelopes.vtu",),

@@ -11,7 +11,7 @@ MOST = 6  # runs of a study that are shown in detail
 VALUES = Group(others=TEXT)
 STUDY = Group(
     {"runs": [Group({"folder": TEXT, "verdict": TEXT, "values": VALUES},
-                    {"quantities": Group(others=NUMBER)})]},
+                    {"quantities": Group(others=NUMBER), "criterion met": TEXT})]},
     {"limits": [Group({"of": TEXT, "criterion": TEXT, "not met at": NUMBER, "met at": NUMBER,
                        "values": VALUES})]})
 
@@ -144,10 +144,12 @@ def study_section(_, studies):
     """Tables and curves of all studies; None without any."""
     parts = []
     for study in studies:
-        head = [*map(short, study.entries), *map(titled, study.quantities), "numerical verdict"]
+        met = ["criterion met"] if study.limits else []
+        head = [*map(short, study.entries), *map(titled, study.quantities), *met, "verdict"]
         rows = [[*(run["values"].get(entry, "–") for entry in study.entries),
                  *(number(run["quantities"][q]) if q in run.get("quantities", {}) else "–"
-                   for q in study.quantities), run["verdict"].split(". ")[0]] for run in study.runs]
+                   for q in study.quantities), *(run.get(key, "–") for key in met),
+                 run["verdict"].split(". ")[0]] for run in study.runs]
         parts.append(Table(head, rows, f"The runs of {study.folder.name}; each number as study.csv has it"))
         for limit in study.limits:
             others = ", ".join(f"{short(entry)} {value}" for entry, value in limit["values"].items())

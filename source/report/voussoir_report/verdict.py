@@ -1,8 +1,7 @@
-"""Two verdicts: whether the computation can be trusted, and what it means for the dam."""
+"""Two verdicts and the acceptance table, as the program's own tables have them."""
 
 import dataclasses
 import math
-import re
 
 from . import grid as grids
 from .page import number
@@ -12,16 +11,9 @@ MET, NOT_ASSESSED, TO_JUDGE, NOT_MET = "met", "not assessed", "to be judged", "n
 RANK = {MET: 0, NOT_ASSESSED: 1, TO_JUDGE: 2, NOT_MET: 3}
 COLOURS = {MET: "good", NOT_ASSESSED: "open", TO_JUDGE: "doubt", NOT_MET: "bad"}
 
-LOOSE = 5.  # opening at which no softening law of concrete has any strength left [mm]
-VISIBLE = 0.1  # openings and slips below it are those of an elastic mesh [mm]
-SLIDING = 1.05  # ratio of resistance to contact forces up to which waves hide that a block slides [-]
-MOVING = 1.  # rate above which a surface still slides [mm/s]
-ENERGY_LIMIT, ENERGY_TEXT = 0.01, "1 %"  # from there on the program warns
+VISIBLE = 0.1  # openings below it are those of an elastic mesh [mm]
 
-# warnings of the program on the state of the dam; all others are on the computation
-ENGINEERING = (r'"over-stress": ', r".* a crack is open by ", r'.*" has slipped by ',
-               r"a twentieth of the volume of ")
-LOWERED = re.compile(r"their (\w+ ?\w*) is lowered by up to ([\d.]+) %")
+CHECKS, RESULTS, ACCEPTANCE = "numerical checks", "engineering results", "acceptance table"
 
 
 @dataclasses.dataclass
@@ -66,107 +58,64 @@ def at(time, place=None):
     return ", ".join(words)
 
 
-def is_engineering(warning):
-    return any(re.match(pattern, warning) for pattern in ENGINEERING)
+def lines_of(run, name):
+    """The lines of a table of summary.json; those of the case in its order."""
+    table = run.summary.get(name, {})
+    order = [wanted for wanted in run.list("Acceptance/Names") if wanted in table] if name == ACCEPTANCE else table
+    for entry in order:
+        line = table[entry]
+        value = line.get("demand", line.get("value"))
+        limit = next((f"{sense} {number(line[sense])}" for sense in ("at most", "at least") if sense in line),
+                     "no limit in the case")
+        if name == ACCEPTANCE:
+            limit += f" ({line['source']})"
+            what = f"{entry}, {line['load case']}" + (f": {line['clause']}" if line.get("clause") else "")
+        else:
+            what = entry
+        missing = NOT_ASSESSED if value is None else TO_JUDGE
+        judged = {True: MET, False: NOT_MET, None: missing}.get(line.get("met"), NOT_MET)
+        place = ", ".join(part for part in (line.get("of", ""), at(line.get("at the time [s]"), line.get("at [m]")))
+                          if part)
+        yield Line(what, "no number" if value is None else number(clean(value)), limit, judged, place)
 
 
 def numerical_checks(run):
     """Whether equations, contact and files are as they should be."""
-    warnings = [text for text in run.warnings if not is_engineering(text)]
-    lines = [line for line in (energy_line(run), losses_line(run), contact_line(run), step_line(run),
-                               *strength_lines(run)) if line]
-    stopped = not run.verdict.startswith(("No objection", "With warnings"))
-    if stopped:
+    lines = list(lines_of(run, CHECKS))
+    judged = worst(lines)
+    if run.summary.get("verdict", "").startswith(("stopped: ", "failed: ")):
         title, judged = run.verdict, NOT_MET
-    elif any(line.judged == NOT_MET for line in lines):
-        title, judged = "A check is not met", NOT_MET
-    elif warnings or any(line.judged == TO_JUDGE for line in lines):
+    elif not lines:
+        title, judged = "Not known: the results are of a version that did not write its checks", TO_JUDGE
+    elif judged == NOT_MET:
+        title = "A check is not met"
+    elif run.warnings:
         title, judged = "To be looked at before the results are used", TO_JUDGE
     else:
-        title, judged = "No objection to the computation", MET
-    return Verdict("Numerical checks", title, lines, warnings, judged)
-
-
-def energy_line(run):
-    balance, key = run.summary.get("energy balance", {}), "largest energy-balance error"
-    if key not in balance:
-        return None
-    share = balance[key]
-    if share is None:
-        return Line("energy-balance error, of what came in", "no number", ENERGY_TEXT, NOT_MET)
-    return Line("energy-balance error, of what came in", percent(share), ENERGY_TEXT,
-                MET if share <= ENERGY_LIMIT else NOT_MET)
-
-
-def losses_line(run):
-    share = run.summary.get("energy balance", {}).get("energy-balance error, share of the losses")
-    if share is None:
-        return None
-    return Line("energy-balance error at the end, of the losses", percent(abs(share)), "3 %",
-                MET if abs(share) <= 0.03 else TO_JUDGE)
-
-
-def contact_line(run):
-    unsolved = run.summary.get("interfaces", {}).get("effort", {}).get("unsolved clusters")
-    if unsolved is None:
-        return None
-    return Line("clusters of contact nodes without a solution", number(unsolved), "0",
-                MET if unsolved == 0 else NOT_MET)
-
-
-def step_line(run):
-    step, stable = (run.summary.get(key) for key in ("time step [s]", "largest stable step [s]"))
-    if not step or not stable:
-        return None
-    return Line("time step over the largest stable one", number(step / stable), "1",
-                MET if step <= stable else NOT_MET)
-
-
-def strength_lines(run):
-    """Strengths that the program lowers where cells are too long for the fracture energy."""
-    most = {}
-    for what, share in LOWERED.findall("\n".join(run.notes)):
-        most[what] = max(float(share), most.get(what, 0.))
-    return [Line(f"{what} lowered, as cells are too long for the fracture energy, by up to", f"{share:g} %", "0",
-                 TO_JUDGE) for what, share in most.items()]
-
-
-def percent(share):
-    return f"{number(100. * share)} %" if abs(share) > 1e-8 else "below 10⁻⁶ %"
+        title = "All checks are met"
+    return Verdict("Numerical checks", title, lines, run.warnings, judged)
 
 
 def engineering_results(run):
     """What the run says of the dam, by what its summary has."""
-    lines = [line for line in (*over_stress_lines(run), tension_line(run), pressure_line(run), *crack_lines(run),
-                               opening_line(run), *slip_lines(run), *block_lines(run)) if line]
-    remarks = [text for text in run.warnings if is_engineering(text)]
+    lines = [line for line in (*lines_of(run, RESULTS), tension_line(run), pressure_line(run), opening_line(run))
+             if line]
     judged = worst(lines)
-    if remarks and RANK[judged] < RANK[TO_JUDGE]:
-        judged = TO_JUDGE
-    title = {MET: "The criteria looked at are met", NOT_MET: "Not all criteria are met",
-             TO_JUDGE: "To be judged: results without a limit in the case",
+    title = {MET: "What was looked at is met", NOT_MET: "Not all of it is met",
+             TO_JUDGE: "To be judged: results without a limit",
              NOT_ASSESSED: "Not assessed: no strength and no limit is known to compare with"}[judged]
-    return Verdict("Engineering results", title, lines, remarks, judged)
+    return Verdict("Engineering results", title, lines, [], judged)
 
 
-def over_stress_lines(run):
-    over = run.summary.get("over-stress")
-    if not over:
-        return
-    faces = [(name, face) for name, face in over.items() if name != "verdict"]
-    if faces:
-        name, face = max(faces, key=lambda item: item[1]["largest ratio"])
-        ratio = face["largest ratio"]
-        yield Line("demand over static tensile strength", number(ratio), "1", MET if ratio <= 1. else NOT_MET,
-                   f"{name}, {at(face['at the time [s]'], face.get('at [m]'))}")
-        share, name = max((face["above 1"]["share at any time [%]"], name) for name, face in faces)
-        limit = run.number("Output/over-stress/Largest share")
-        if limit > 0.:
-            yield Line("share of a face above its strength at any time", f"{number(share)} %", f"{limit:g} %",
-                       MET if share <= limit else NOT_MET, name if share > 0. else "")
-    suffices = over["verdict"].startswith("linear analysis suffices")
-    yield Line("linear analysis", "suffices" if suffices else "does not suffice",
-               "duration and extent of over-stress", MET if suffices else NOT_MET)
+def acceptance_table(run):
+    """The criteria of the case; None if it has none."""
+    lines = list(lines_of(run, ACCEPTANCE))
+    if not lines:
+        return None
+    judged = worst(lines)
+    title = {MET: "All criteria are met", NOT_MET: "Not all criteria are met"}.get(
+        judged, "Some criteria are not assessed, as the run has no such number")
+    return Verdict("Acceptance table", title, lines, [], judged)
 
 
 def is_linear(run):
@@ -201,27 +150,6 @@ def pressure_line(run):
     ratio = max(-smallest, 0.) / strength
     return Line("pressure on the faces over compressive strength", number(ratio), "1",
                 MET if ratio <= 1. else NOT_MET, f"{number(-smallest)} of {number(strength)} MPa")
-
-
-def crack_lines(run):
-    materials = run.summary.get("materials", {})
-    widest = max(((values.get("largest crack opening [mm]", 0.), name) for name, values in materials.items()),
-                 default=(0., ""))
-    if widest[0] > VISIBLE:
-        yield Line("largest crack opening in a cell", f"{number(widest[0])} mm",
-                   f"{number(LOOSE)} mm: no strength left", NOT_MET if widest[0] > LOOSE else TO_JUDGE, widest[1])
-    through = run.summary.get("through cracks", {})
-    key = "largest opening from face to face at one moment [mm]"
-    if key in through:
-        opening = through[key]
-        yield Line("dam open from face to face at one moment", f"{number(clean(opening))} mm", "closed",
-                   NOT_MET if opening > VISIBLE else MET,
-                   at(through.get("at the time [s]")) if opening > VISIBLE else "")
-        still = through.get("opening from face to face at the end [mm]", 0.)
-        if still > VISIBLE:
-            yield Line("dam open from face to face at the end", f"{number(still)} mm", "closed", NOT_MET)
-    elif widest[0] > VISIBLE:
-        yield Line("dam open from face to face", "not looked at", "closed (observer through cracks)", NOT_ASSESSED)
 
 
 def clean(value):
@@ -260,35 +188,5 @@ def opening_line(run):
                 TO_JUDGE, name)
 
 
-def slip_lines(run):
-    for key, what, unit, threshold, judged in (
-            ("residual slip [mm]", "slip at the end", "mm", VISIBLE, TO_JUDGE),
-            ("slip rate at the end [mm/s]", "slip rate at the end", "mm/s", MOVING, NOT_MET)):
-        value, name = largest_of(run, key)
-        if value is None:
-            continue
-        if value > threshold:
-            limit = f"at rest ({MOVING:g} mm/s)" if unit == "mm/s" else "no limit in the case"
-            yield Line(what, f"{number(value)} {unit}", limit, judged, name)
-        else:
-            yield Line(what, f"{number(clean(value))} {unit}", f"none ({threshold:g} {unit})", MET)
-
-
-def block_lines(run):
-    for name, block in run.summary.get("interfaces", {}).get("blocks", {}).items():
-        safety = block.get("smallest safety")
-        if safety is None:
-            yield Line(f"{name}: resistance over contact forces", "nothing drives it", "1", MET)
-            continue
-        time = block["time at safety one or below [s]"]
-        # friction caps the contact forces, so that a block that slides shows just one
-        # and one above it proves no safety
-        slides = safety < SLIDING or time > 0.
-        yield Line(f"{name}: resistance over contact forces, smallest", number(safety), "1, at which it slides",
-                   NOT_MET if slides else TO_JUDGE,
-                   ", ".join(part for part in (at(block.get("time of the smallest safety [s]")),
-                                               f"{number(time)} s at one or below" if time > 0. else "") if part))
-
-
 def verdicts_of(run):
-    return [numerical_checks(run), engineering_results(run)]
+    return [verdict for verdict in (acceptance_table(run), numerical_checks(run), engineering_results(run)) if verdict]

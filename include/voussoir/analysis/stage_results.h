@@ -1,0 +1,41 @@
+#ifndef voussoir_analysis_stage_results_h
+#define voussoir_analysis_stage_results_h
+
+#include <voussoir/constraints/contact.h>
+#include <voussoir/fem/point_weights.h>
+
+#include <memory>
+
+namespace Voussoir
+{
+  /** What a static stage has done to named points, to the body and to its
+   *  interfaces. */
+  class StageResults
+  {
+  public:
+    /**
+     * Called on all ranks.
+     *
+     * @param points as the entry has them; if it is empty the upstream edge of
+     *   the crest in the middle of its length and at its quarters, or none
+     *   where there is no face set "upstream face"
+     */
+    StageResults(const Discretization &discretization,
+                 const std::string    &points);
+
+    /** Adds displacements of the points, the largest one of all nodes with its
+     *  place, and opening, slip and forces of each surface of @p contact, which
+     *  may be null. Called on all ranks. */
+    void
+    describe(const Vector   &displacement,
+             const Contact  *contact,
+             nlohmann::json &report) const;
+
+  private:
+    const Discretization                     &discretization;
+    const std::vector<NamedPoint>             points;
+    const std::unique_ptr<const PointWeights> weights; // null without points
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,47 @@
+#ifndef voussoir_driver_verdict_tables_h
+#define voussoir_driver_verdict_tables_h
+
+#include <voussoir/driver/run_setup.h>
+
+namespace Voussoir
+{
+  /**
+   * Whether the computation can be trusted, as far as that is known before the
+   * first step: time step, distortion of cells, strengths that cells too long
+   * for their fracture energy lower, and the frequency that the cells of all
+   * materials carry beside that of the earthquake. A table of lines as
+   * at_most() makes them. Called on all ranks.
+   */
+  nlohmann::json
+  numerical_checks(const RunSetup &setup);
+
+  class Run;
+
+  /** These and what the run has shown: end, energy balance, contact, slips and
+   *  cracks too wide for the model, missing files. Called on all ranks. */
+  nlohmann::json
+  numerical_checks(const Run &run);
+
+  /**
+   * What a run says of the dam by what its summary has, whether or not the case
+   * has criteria of its own: demand over strength, whether the dam is open from
+   * face to face or a piece of it loose, slips and their rate at the end,
+   * safety of blocks. A table of lines as at_most() makes them.
+   */
+  nlohmann::json
+  engineering_results(const nlohmann::json &summary);
+
+  /** A table in lines of text; empty if there is none. */
+  std::string
+  description(const std::string &title, const nlohmann::json &table);
+
+  /** Frequency below which a share of the Arias intensity of these
+   *  accelerations lies, of all components [Hz]; 0 if nothing moves. */
+  double
+  frequency_of_intensity(
+    const std::array<std::vector<double>, 3> &accelerations,
+    const double                              sample_interval,
+    const double                              share);
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,166 @@
+#include <voussoir/analysis/stage_results.h>
+#include <voussoir/base/mpi.h>
+#include <voussoir/fem/nodal_values.h>
+
+#include <array>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    const std::string place = "\"Points\" in section \"Static state\"";
+
+
+    nlohmann::json
+    to_json(const Tensor<1, 3> &vector)
+    {
+      return {vector[0], vector[1], vector[2]};
+    }
+
+
+    /** Vertices of the upstream face at its top, of all ranks. */
+    std::vector<std::array<double, 3>>
+    crest_vertices(const Grid &grid)
+    {
+      std::vector<std::array<double, 3>> mine;
+      double top    = std::numeric_limits<double>::lowest(),
+             bottom = std::numeric_limits<double>::max();
+      grid.for_each_face("upstream face",
+                         [&](const auto &cell, const unsigned int face) {
+                           for (unsigned int v = 0; v < 4; ++v)
+                             {
+                               const Point<3> &at = cell->face(face)->vertex(v);
+                               mine.push_back({{at[0], at[1], at[2]}});
+                               top    = std::max(top, at[2]);
+                               bottom = std::min(bottom, at[2]);
+                             }
+                         });
+      top    = Utilities::MPI::max(top, grid.communicator());
+      bottom = Utilities::MPI::min(bottom, grid.communicator());
+      std::vector<std::array<double, 3>> result;
+      for (const auto &list :
+           Utilities::MPI::all_gather(grid.communicator(), mine))
+        for (const auto &at : list)
+          if (at[2] > top - 1e-6 * (top - bottom))
+            result.push_back(at);
+      std::sort(result.begin(), result.end());
+      return result;
+    }
+
+
+    std::vector<NamedPoint>
+    points_of(const Grid &grid, const std::string &text)
+    {
+      if (!text.empty())
+        return parse_points(text, place);
+      const auto &sets = grid.face_set_names();
+      if (std::find(sets.begin(), sets.end(), "upstream face") == sets.end())
+        return {};
+      const auto crest = crest_vertices(grid);
+      if (crest.empty())
+        return {};
+      std::vector<NamedPoint> points;
+      const double            first = crest.front()[0], last = crest.back()[0];
+      for (const auto &[name, share] :
+           std::vector<std::pair<std::string, double>>{
+             {"crest at its lower quarter of x", 0.25},
+             {"crest in the middle", 0.5},
+             {"crest at its upper quarter of x", 0.75}})
+        {
+          const double wanted  = first + share * (last - first);
+          const auto   nearest = *std::min_element(
+            crest.begin(), crest.end(), [wanted](const auto &a, const auto &b) {
+              return std::abs(a[0] - wanted) < std::abs(b[0] - wanted);
+            });
+          points.push_back(
+            {name, Point<3>(nearest[0], nearest[1], nearest[2])});
+        }
+      return points;
+    }
+
+
+    void
+    describe_interfaces(const Contact  &contact,
+                        const MPI_Comm  communicator,
+                        nlohmann::json &report)
+    {
+      const auto         &names = contact.surface_names();
+      std::vector<double> largest(2 * names.size()), sums(4 * names.size());
+      for (const ContactPoint &point : contact.points())
+        {
+          double *most = &largest[2 * point.surface],
+                 *sum  = &sums[4 * point.surface];
+          if (point.joined)
+            {
+              most[0] = std::max(most[0], point.gap[0]);
+              most[1] =
+                std::max(most[1], std::hypot(point.gap[1], point.gap[2]));
+            }
+          const Tensor<1, 3> force = point.force * point.frame;
+          sum[0] += point.force[0];
+          for (unsigned int d = 0; d < 3; ++d)
+            sum[1 + d] += force[d] - point.force[0] * point.frame[0][d];
+        }
+      Utilities::MPI::max(largest, communicator, largest);
+      sums = sum_over_ranks(sums, communicator);
+      for (unsigned int s = 0; s < names.size(); ++s)
+        report[names[s]] = {{"largest opening [mm]", 1e3 * largest[2 * s]},
+                            {"largest slip [mm]", 1e3 * largest[2 * s + 1]},
+                            {"normal force [MN]", 1e-6 * sums[4 * s]},
+                            {"shear force [MN]",
+                             1e-6 * std::hypot(sums[4 * s + 1],
+                                               sums[4 * s + 2],
+                                               sums[4 * s + 3])}};
+    }
+  } // namespace
+
+
+  StageResults::StageResults(const Discretization &discretization,
+                             const std::string    &points)
+    : discretization(discretization)
+    , points(points_of(discretization.grid, points))
+    , weights(this->points.empty() ?
+                nullptr :
+                std::make_unique<const PointWeights>(discretization,
+                                                     this->points,
+                                                     place))
+  {}
+
+
+  void
+  StageResults::describe(const Vector   &displacement,
+                         const Contact  *contact,
+                         nlohmann::json &report) const
+  {
+    const MPI_Comm communicator = discretization.grid.communicator();
+    // amount, place, displacement
+    std::array<double, 7> most{};
+    for (unsigned int node = 0; node < discretization.n_owned_nodes(); ++node)
+      {
+        const Tensor<1, 3> u  = node_value(displacement, node);
+        const Point<3>    &at = discretization.node_positions[node];
+        if (u.norm() > most[0])
+          most = {{u.norm(), at[0], at[1], at[2], u[0], u[1], u[2]}};
+      }
+    for (const auto &other : Utilities::MPI::all_gather(communicator, most))
+      most = std::max(most, other);
+    report["place of the largest displacement [m]"] = {most[1],
+                                                       most[2],
+                                                       most[3]};
+    report["largest displacement x, y, z [m]"] = {most[4], most[5], most[6]};
+    if (weights)
+      {
+        const auto values = weights->value(displacement);
+        for (unsigned int p = 0; p < points.size(); ++p)
+          report["points"][points[p].name] = {
+            {"position [m]", to_json(points[p].position)},
+            {"displacement x [m]", values[p][0]},
+            {"displacement y [m]", values[p][1]},
+            {"displacement z [m]", values[p][2]}};
+      }
+    if (contact != nullptr)
+      describe_interfaces(*contact, communicator, report["interfaces"]);
+  }
+} // namespace Voussoir

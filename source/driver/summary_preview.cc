@@ -1,0 +1,102 @@
+#include <voussoir/base/error.h>
+#include <voussoir/base/text.h>
+#include <voussoir/driver/summary_preview.h>
+#include <voussoir/driver/verdict_tables.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+
+namespace Voussoir
+{
+  using namespace dealii;
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    /** Paths of all numbers of a summary. */
+    void
+    add_paths(const nlohmann::json     &part,
+              const std::string        &path,
+              std::vector<std::string> &paths)
+    {
+      if (!part.is_structured())
+        paths.push_back(path);
+      else
+        for (const auto &[name, child] : part.items())
+          add_paths(child, path.empty() ? name : path + "/" + name, paths);
+    }
+
+
+    /** The summary of a run, as far as a look at its beginning gives it. */
+    nlohmann::json
+    preview(Run &run)
+    {
+      const MPI_Comm communicator = run.log.communicator();
+      ObservedRun    observed     = run.observed;
+      const auto     name =
+        fs::temp_directory_path() /
+        ("voussoir-preview-" +
+         std::to_string(Utilities::MPI::broadcast(communicator, getpid())));
+      observed.folder = name.string();
+      std::error_code ignored; // ranks may share it or not
+      fs::create_directories(name, ignored);
+      MPI_Barrier(communicator);
+      RunSummary summary = summary_of(run);
+      for (const auto &observer : run.setup->plan.observers)
+        {
+          observer.second->begin(observed);
+          observer.second->observe(run.state);
+          observer.second->finish(run.state, summary.observers);
+        }
+      run.log.write_growing_files();
+      MPI_Barrier(communicator);
+      fs::remove_all(name, ignored);
+      summary.checks = numerical_checks(run);
+      summary.judge(run.model.parameters.acceptance);
+      return summary;
+    }
+  } // namespace
+
+
+  void
+  check_summary_paths(Run &run)
+  {
+    const Case &parameters = run.model.parameters;
+
+    // paths and the entries that name them
+    std::vector<std::pair<SummaryNumber, std::string>> wanted;
+    for (const AcceptanceCriterion &criterion :
+         parameters.acceptance.of_the_run())
+      wanted.emplace_back(SummaryNumber(criterion.quantity),
+                          "\"Quantity\" in section \"Acceptance/" +
+                            criterion.name + "\"");
+    if (!parameters.study.quantities.empty())
+      for (const SummaryNumber &number : parameters.study.numbers())
+        wanted.emplace_back(number, "\"Quantities\" in section \"Study\"");
+    for (const Criterion &criterion : parameters.study.criteria())
+      if (criterion.about() != nullptr)
+        wanted.emplace_back(*criterion.about(),
+                            "\"Criterion\" in section \"Study/Limit\"");
+    if (wanted.empty())
+      return;
+
+    const nlohmann::json     summary = preview(run);
+    std::vector<std::string> known;
+    add_paths(summary, "", known);
+    for (const auto &[number, entry] : wanted)
+      {
+        const std::string first = number.path.substr(0, number.path.find('/'));
+        if (number.is_in(summary) || first == "static state" ||
+            first == "modes")
+          continue;
+        const std::string closest = closest_match(number.path, known);
+        throw UserError(
+          entry + " names \"" + number.path +
+          "\", which the summary of this case will not have" +
+          (closest.empty() ? "" : " (did you mean \"" + closest + "\"?)") +
+          "; take a number that it has, or add the observer that "
+          "gives it.");
+      }
+  }
+} // namespace Voussoir

@@ -23,10 +23,12 @@ namespace Voussoir
     // and write, for a second.
     if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr)
       prctl(PR_SET_PDEATHSIG, SIGKILL);
-    // Shared file pointers are not used. Open MPI's component for them keeps a
-    // file in the session's folder, which two programs without mpirun at the
-    // same time take from each other, and complains on every file opened then.
-    setenv("OMPI_MCA_sharedfp", "^sm", 0);
+    // Shared file pointers are not used. Of Open MPI's components for them "sm"
+    // keeps a file in the session's folder, which two programs without mpirun
+    // at the same time take from each other, and "lockedfile" one beside each
+    // file that is opened: on a full disk the first rank gives up and the
+    // others wait for it.
+    setenv("OMPI_MCA_sharedfp", "individual", 0);
     // Libraries get the program's name alone: PETSc would take arguments for
     // its options and complain that it does not use them.
     int just_the_name = 1;

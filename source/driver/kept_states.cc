@@ -35,7 +35,12 @@ namespace Voussoir
              file,
              ", where a run with the same mesh, materials, interfaces, "
              "boundaries and static loads has kept it");
-    return read_rest(model, file);
+    RestState rest = read_rest(model, file);
+    if (const auto warnings = rest.summary.find("warnings");
+        warnings != rest.summary.end())
+      for (const nlohmann::json &warning : *warnings)
+        log.warn(warning.get<std::string>());
+    return rest;
   }
 
 

@@ -15,6 +15,7 @@ namespace Voussoir
   {
     RestState   rest(model);
     const Case &parameters = model.parameters;
+    const auto  n_before   = log.warnings().size();
     if (!parameters.static_state.stage_names().empty())
       rest.initial =
         find_static_state({model.solid,
@@ -25,6 +26,10 @@ namespace Voussoir
                           model.load_list(),
                           log,
                           rest.summary);
+    // they hold for all runs that begin with it
+    if (const auto &all = log.warnings(); all.size() > n_before)
+      rest.summary["warnings"] =
+        std::vector<std::string>(all.begin() + n_before, all.end());
     return rest;
   }
 

@@ -1,5 +1,7 @@
 #include <voussoir/fem/internal_force.h>
 
+#include <numeric>
+
 namespace Voussoir
 {
   using namespace dealii;
@@ -140,6 +142,61 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    /** Largest entry of a rank's own, or @p enough if it is not below that. */
+    double
+    largest_entry(const Vector &vector, const double enough)
+    {
+      constexpr unsigned int at_once = 1024;
+      const unsigned int     size    = vector.locally_owned_size();
+      double                 largest = 0.;
+      for (unsigned int first = 0; first < size && largest < enough;
+           first += at_once)
+        for (unsigned int i = first; i < std::min(first + at_once, size); ++i)
+          largest = std::max(largest, std::abs(vector.local_element(i)));
+      return std::min(largest, enough);
+    }
+  } // namespace
+
+
+  double
+  InternalForce::limit_of_sweep(const SweepInput &input) const
+  {
+    // beyond it linear kinematics mean nothing
+    constexpr double largest_strain = 1. / 16.;
+    const double     limit          = limit_of_forces(largest_strain);
+    if (input.bound == nullptr)
+      return limit;
+
+    // quanta of a strained cell are too large for a motion without strain
+    const double enough =
+      std::ldexp(largest_strain * discretization.longest_edge, -20);
+    const auto         &parts = input.bound->parts;
+    std::vector<double> largest(parts.size());
+    double              motion = 0.;
+    for (unsigned int i = 0; i < parts.size() && motion < enough; ++i)
+      if (const auto [vector, factor] = parts[i]; factor > 0.)
+        {
+          largest[i] = factor * largest_entry(*vector, enough / factor);
+          motion += largest[i];
+        }
+    // one by one: the sum of a rank depends on what it owns
+    Utilities::MPI::max(largest, discretization.grid.communicator(), largest);
+    motion = std::accumulate(largest.begin(), largest.end(), 0.);
+    if (motion >= enough)
+      return limit;
+    double s = 1.;
+    for (const CellKernel *kernel : kernels)
+      s = std::max(s, kernel->damping_factor());
+    // |u_e| <= sqrt(24) max |u| ; nodes that are held have no mass, but are
+    // like the others
+    const double stiffness = 100. * input.bound->mass.linfty_norm() /
+                             (input.bound->time_step * input.bound->time_step);
+    return std::min(limit, stiffness * s * motion);
+  }
+
+
   bool
   InternalForce::sweep(Vector           &force,
                        const SweepInput &input,
@@ -157,10 +214,8 @@ namespace Voussoir
       else
         kernels[material]->add_force(cells, input, dst);
     };
-    // beyond it linear kinematics mean nothing
-    constexpr double largest_strain = 1. / 16.;
-    Rounding         rounding(limit_of_forces(largest_strain));
-    const CellLoop   loop =
+    Rounding rounding(discretization.reproducible ? limit_of_sweep(input) : 0.);
+    const CellLoop loop =
       on_runs(discretization,
               factors,
               run,
@@ -170,18 +225,8 @@ namespace Voussoir
     const auto begin_sums = [&](const unsigned int begin,
                                 const unsigned int end) {
       before(begin, end);
-      if (!discretization.reproducible)
-        return;
-      double *f = force.begin();
-      for (unsigned int first = begin; first < end; first += Lanes::size())
-        {
-          const unsigned int n =
-            std::min<unsigned int>(Lanes::size(), end - first);
-          Lanes parts = 0.;
-          std::copy_n(f + first, n, parts.begin());
-          rounding(&parts, 1);
-          std::copy_n(parts.begin(), n, f + first);
-        }
+      if (discretization.reproducible)
+        rounding(force.begin() + begin, force.begin() + end);
     };
 
     // The library overlaps the exchange of one source vector with the cell

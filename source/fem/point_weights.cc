@@ -85,9 +85,10 @@ namespace Voussoir
                   mine      = key;
                 }
             }
-        // MPI_MIN of std::uint64_t was seen to be wrong under Open MPI 4.1
-        const auto all = Utilities::MPI::all_gather(communicator, mine);
-        const std::uint64_t first = *std::min_element(all.begin(), all.end());
+        // not the library's minimum, which is one of MPI_UNSIGNED_LONG: Open
+        // MPI 4.1 takes those from 2^63 on, and so `nowhere`, for negative
+        std::uint64_t first;
+        MPI_Allreduce(&mine, &first, 1, MPI_UINT64_T, MPI_MIN, communicator);
         if (first == nowhere)
           {
             std::ostringstream position;

@@ -237,13 +237,18 @@ namespace Voussoir
     // waves that pass through the rock are a thousand times what stays; neither
     // they nor the static energy may be known better than to their round-off
     const double net = terms.input - terms.boundary;
-    came_in          = std::max({came_in,
-                                 std::abs(net),
-                                 std::abs(net + terms.constraints),
-                                 1e-6 * terms.boundary,
-                                 initial,
-                                 1e-12 * static_work});
-    largest_error    = std::max(largest_error, relative_error());
+    // which each step adds to, as it does to the last digits of exact sums
+    const double of_step =
+      std::numeric_limits<double>::epsilon() * static_work +
+      (is_exact ? 0x1p-62 * equation.discretization.owned_dofs.size() : 0.);
+    came_in       = std::max({came_in,
+                              std::abs(net),
+                              std::abs(net + terms.constraints),
+                              1e-6 * terms.boundary,
+                              initial,
+                              1e-12 * static_work,
+                              100. * of_step * (state.step + 1.)});
+    largest_error = std::max(largest_error, relative_error());
     if (!lines.due(state.step) && !end)
       return terms_now;
     table.write(state.time,

@@ -157,13 +157,15 @@ namespace Voussoir
 
     // one sweep: w_n of damping, f(u_n + s w_n) - F_0, and
     // v+ = v- - dt M^-1 (f - F_0), u_(n+1) = u_n + dt v+
-    const bool is_reproducible = equation.internal_force.sweep(
+    const std::optional<MotionBound> bound = bound_of_motion(state);
+    const bool is_reproducible             = equation.internal_force.sweep(
       force,
       {state.displacement,
-       effective,
+                   effective,
        uniform ? SweepInput::Damping::common : SweepInput::Damping::by_material,
-       &memory,
-       point_step},
+                   &memory,
+                   point_step,
+       bound ? &*bound : nullptr},
       state.material_memory,
       [&](const unsigned int begin, const unsigned int end) {
         update_memory(state, begin, end);
@@ -183,6 +185,28 @@ namespace Voussoir
 
     for (NodalLoad *load : equation.loads)
       load->end_step(state);
+  }
+
+
+  std::optional<MotionBound>
+  CentralDifference::bound_of_motion(const State &state) const
+  {
+    // the force begins with that of the state at rest, whatever the motion
+    if (!equation.discretization.reproducible ||
+        equation.initial.force.size() > 0)
+      return {};
+    MotionBound bound{{{&state.displacement, 1.}},
+                      equation.mass.mass,
+                      time_step};
+    double      of_velocity =
+      equation.damping.mesh_viscosity + stiffness_coefficient;
+    for (unsigned int i = 0; i < state.memory.size(); ++i)
+      {
+        bound.parts.emplace_back(&state.memory[i], maxwell.decay[i]);
+        of_velocity += maxwell.gain[i];
+      }
+    bound.parts.emplace_back(&state.velocity, of_velocity);
+    return bound;
   }
 
 

@@ -93,6 +93,10 @@ namespace Voussoir
         verdicts.is_true("  and is the same bit for bit",
                          same(again.second->run.state.displacement,
                               one.second->run.state.displacement));
+        verdicts.is_true("  with the warnings of the search for it",
+                         one.second->rest.summary.contains("warnings") &&
+                           again.second->log.warnings() ==
+                             one.second->log.warnings());
         on_first(communicator, [&] {
           verdicts.is_true("one rank alone takes it",
                            seconds(marched("alone", {}, MPI_COMM_SELF)) ==

@@ -8,7 +8,8 @@ usage: abuse.py {checkpoints,disks,nonsense} PROGRAM [--case CASE.prm] [--ranks 
                 [--number N] [--seed N] [--first N] [--folder SCRATCH]
 
 Number N of a seed is the same whatever comes before it. Full disks are small ones of
-tmpfs, for which root is needed.
+tmpfs, for which root is needed; else it ends with 77. Damaged results are given to the
+report by tests/report/damage_results.py.
 """
 
 import argparse
@@ -191,6 +192,9 @@ def main():
     parser.add_argument("--end", type=float, default=0.4, help="end time of the case [s]")
     parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("abuse"))
     options = parser.parse_args()
+    if options.kind == "disks" and os.geteuid() != 0:
+        print("skipped: only root can mount a small disk")
+        sys.exit(77)
     options.program = options.program.resolve()
     options.case = options.case.resolve()
     options.folder = options.folder.resolve()

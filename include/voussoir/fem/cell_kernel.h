@@ -31,6 +31,19 @@ namespace Voussoir
   };
 
 
+  /** What bounds the forces of cells in a step that is stable: with the force
+   *  K_e u_e of a cell, K_e <= K <= 4 M / dt^2 . */
+  struct MotionBound
+  {
+    /** Vectors with factors [m]: no entry of the displacement or, with s = 1,
+     * of x + s w of SweepInput is above the sum of their largest ones. */
+    std::vector<std::pair<const Vector *, double>> parts;
+
+    const Vector &mass;      // M [kg]
+    double        time_step; // dt [s]
+  };
+
+
   /**
    * What a sweep over the cells reads. With the damping memory w, which filters
    * follow the displacement u, the strain of elastic points is
@@ -48,11 +61,12 @@ namespace Voussoir
       by_material // in w, and each material has its own s
     };
 
-    const Vector &displacement; // u [m]
-    const Vector &filtered;     // x [m]
-    Damping       damping;
-    const Vector *damping_memory = nullptr; // w [m], if `by_material`
-    PointStep     step           = {};      // of points with memory
+    const Vector      &displacement; // u [m]
+    const Vector      &filtered;     // x [m]
+    Damping            damping;
+    const Vector      *damping_memory = nullptr; // w [m], if `by_material`
+    PointStep          step           = {};      // of points with memory
+    const MotionBound *bound          = nullptr; // null: none is known
 
     /** Strain of the displacement alone, which laws follow at once. */
     static SweepInput

@@ -147,6 +147,11 @@ namespace Voussoir
     double
     limit_of_forces(const double strain) const;
 
+    /** The same for a sweep [N]. It depends on the motion alone, not on the
+     *  ranks. */
+    double
+    limit_of_sweep(const SweepInput &input) const;
+
     /** Calls work(kernel, cells, history) for the cells of all materials with
      *  a memory. */
     template <typename Work>

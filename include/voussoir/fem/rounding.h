@@ -29,11 +29,33 @@ namespace Voussoir
     void
     operator()(Lanes *parts, const unsigned int n)
     {
+      // in registers: for all that the compiler knows, parts may be members
+      const Lanes by   = shift;
+      Lanes       most = largest;
       for (unsigned int i = 0; i < n; ++i)
         {
-          largest  = std::max(largest, std::abs(parts[i]));
-          parts[i] = (parts[i] + shift) - shift;
+          most     = std::max(most, std::abs(parts[i]));
+          parts[i] = (parts[i] + by) - by;
         }
+      largest = most;
+    }
+
+    /** The same for entries of a vector. */
+    void
+    operator()(double *begin, double *end)
+    {
+      constexpr std::ptrdiff_t at_once = Lanes::size();
+      for (; end - begin >= at_once; begin += at_once)
+        {
+          Lanes parts;
+          parts.load(begin);
+          (*this)(&parts, 1);
+          parts.store(begin);
+        }
+      Lanes rest = 0.;
+      std::copy(begin, end, rest.begin());
+      (*this)(&rest, 1);
+      std::copy_n(rest.begin(), end - begin, begin);
     }
 
     /** Whether a part of this rank was above the limit, so that sums may have

@@ -183,9 +183,11 @@ namespace Voussoir
           const Lanes largest_energy =
             std::abs(now.stress * response.elastic_strain) +
             std::numeric_limits<double>::min();
+          // less what is known to be lost, however little
           const Lanes switched =
             0.5 * (last.stress * response.elastic_strain -
-                   now.stress * (last.seen - last.plastic));
+                   now.stress * (last.seen - last.plastic)) -
+            lost;
           closing +=
             dealii::compare_and_apply_mask<dealii::SIMDComparison::less_than>(
               change_of_memory(last, now) + std::abs(lost) / largest_energy,

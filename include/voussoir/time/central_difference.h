@@ -67,6 +67,11 @@ namespace Voussoir
     void
     tell_projections();
 
+    /** Of the force of the step from a state; none if it is not asked for, or
+     *  does not go by the motion. */
+    std::optional<MotionBound>
+    bound_of_motion(const State &state) const;
+
     void
     update_memory(State             &state,
                   const unsigned int begin,

@@ -12,7 +12,6 @@ ARG JOBS=2
 RUN cmake --preset release -DVOUSSOIR_NATIVE=OFF -DCMAKE_CXX_FLAGS=-march=${MARCH} && \
     cmake --build --preset release --target voussoir -j ${JOBS} && \
     cmake --install build --prefix /opt/voussoir && \
-    cp -r prm /opt/voussoir/share/voussoir/ && \
     dpkg-query -W -f '${Package}\n' 'libdeal.ii-[0-9]*' 'libfftw3-double3*' >/opt/voussoir/packages
 
 FROM debian:${DEBIAN}

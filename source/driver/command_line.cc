@@ -3,6 +3,7 @@
 #include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/command_line.h>
+#include <voussoir/driver/shipped_cases.h>
 #include <voussoir/driver/simulation.h>
 #include <voussoir/driver/study.h>
 #include <voussoir/driver/summary_preview.h>
@@ -49,6 +50,7 @@ namespace Voussoir
     lists()
     {
       static const std::map<std::string, void (*)(std::ostream &)> all{
+        {"cases", list_shipped_cases},
         {"materials", list<Material>},
         {"loads", list<Load>},
         {"constraints", list<Projection>},
@@ -355,7 +357,7 @@ namespace Voussoir
                        join(keys(default_formats()), ", "));
       app.add_option("--list",
                      arguments.what,
-                     "Print the classes of one kind: " +
+                     "Print the classes of one kind, or the shipped cases: " +
                        join(keys(lists()), ", "));
       app.add_option("--material-test",
                      arguments.test_file,
@@ -411,7 +413,12 @@ namespace Voussoir
             print_all_entries(std::cout, style);
           return;
         }
-      Case parameters(ParameterFile(arguments.case_file, arguments.changes));
+      const std::string file = find_case(arguments.case_file);
+      if (first && file != arguments.case_file)
+        std::cerr << "There is no file \"" << arguments.case_file
+                  << "\" here; the shipped case is taken: " << file
+                  << std::endl;
+      Case parameters(ParameterFile(file, arguments.changes));
       if (!arguments.defaults.empty())
         {
           if (first)

@@ -153,9 +153,11 @@ def scene_program(sections):
 def vtk_js():
     """The browser's VTK, or None where it is not installed."""
     own = os.environ.get("VOUSSOIR_VTK_JS")
-    tree = pathlib.Path(__file__).resolve().parents[3]
+    here = pathlib.Path(__file__).resolve()
+    # in the sources, as installed, or by a package of its own
     places = [pathlib.Path(own)] if own else [
-        tree / "build" / "vtk.js" / "package" / "vtk.js",
+        here.parents[3] / "build" / "vtk.js" / "package" / "vtk.js",
+        here.parents[1] / "vtk.js" / "vtk.js",
         *(pathlib.Path(prefix) / "vtk.js" / "vtk.js" for prefix in (
             "/usr/share/nodejs", "/usr/local/lib/node_modules", "/usr/lib/node_modules"))]
     return next((file for file in places if file.is_file()), None)

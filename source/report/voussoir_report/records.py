@@ -21,8 +21,10 @@ def found(run, name):
     """A file that the parameter file names relative to its own folder, which the
     results do not have; None where it is not found."""
     here = pathlib.Path.cwd()
+    own = pathlib.Path(__file__).resolve().parents
+    # last those of the shipped cases, in the sources or as installed
     for folder in (*CASE_FOLDERS, here, here / "prm", *run.folder.resolve().parents,
-                   pathlib.Path(__file__).resolve().parents[3] / "prm"):
+                   own[3] / "prm", own[1] / "prm"):
         if (file := pathlib.Path(folder) / name).is_file():
             return file
     return None

@@ -1,6 +1,8 @@
+#include <voussoir/base/error.h>
 #include <voussoir/driver/acceptance.h>
 #include <voussoir/driver/run.h>
 #include <voussoir/driver/verdict_tables.h>
+#include <voussoir/materials/point_test.h>
 #include <voussoir/output/material_memory.h>
 #include <voussoir/signals/fourier.h>
 
@@ -21,31 +23,36 @@ namespace Voussoir
     constexpr double visible = 0.1, at_rest = 1.;
 
 
-    /** Largest stress of this sign that a point bears on a uniaxial path, which
-     *  goes to some times its elastic limit [Pa]; 0 without such a limit. */
+    /** Largest stress of this sign in a uniaxial test up to some times the
+     *  elastic limit [Pa]; 0 without such a limit. */
     double
     strength_of(const Material &material, const double band, const double sign)
     {
-      constexpr double         sample = 1e6, short_band = 1e-3; // [Pa], [m]
-      constexpr unsigned int   n_steps = 600, n_at_limit = 100;
-      const ElasticConstants   c = material.elastic_constants();
+      constexpr double       sample = 1e6, short_band = 1e-3; // [Pa], [m]
+      constexpr unsigned int n_steps = 300, n_at_limit = 50;
+      const double modulus = material.elastic_constants().young_modulus;
       SymmetricTensor3<double> stress;
       stress[2][2]       = sign * sample;
       const double level = material.load_level(stress, short_band);
       if (!(material.load_level(2. * stress, short_band) > 1.9 * level))
         return 0.;
-      std::vector<double> memory(material.n_history(), 0.);
-      double              most = 0.;
-      for (unsigned int i = 1; i <= n_steps; ++i)
+      PointTest           test(material, band, 1.);
+      PointTest::Controls controls; // stresses of zero
+      controls[2].is_strain = true;
+      double most           = 0.;
+      try
         {
-          const double strain = sign * sample / level / c.young_modulus *
-                                double(i) / double(n_at_limit);
-          SymmetricTensor3<double> path;
-          path[2][2] = strain;
-          path[0][0] = path[1][1] = -c.poisson_ratio * strain;
-          const auto response =
-            material.respond(path, memory.data(), {band, 1.});
-          most = std::max(most, sign * response.stress[2][2]);
+          for (unsigned int i = 1; i <= n_steps; ++i)
+            {
+              controls[2].value = sign * sample / level / modulus * double(i) /
+                                  double(n_at_limit);
+              test.advance(controls);
+              most = std::max(most, sign * test.stress[2][2]);
+            }
+        }
+      catch (const UserError &)
+        {
+          // it has no strength left
         }
       return most;
     }

@@ -75,7 +75,7 @@ namespace Voussoir
         });
         {
           const auto bad = make_case(
-            file.with({"Output/Folder=results", "Output/fields/Times=99"}));
+            file.with({"Output/Folder=results", "Boundaries/Fixed=nowhere"}));
           std::string message = "accepted";
           try
             {

@@ -44,7 +44,7 @@ namespace Voussoir
       {
         CoarseMesh         mesh     = dam->generate();
         const Tensor<2, 3> rotation = turned_by(angle);
-        mesh.chart = {};
+        mesh.chart                  = {};
         for (Point<3> &vertex : mesh.vertices)
           vertex = Point<3>(rotation * vertex);
         return mesh;

@@ -234,10 +234,11 @@ namespace Voussoir
     summary.warnings = json.value("warnings", summary.warnings);
     summary.missing_files =
       json.value("files not written", summary.missing_files);
-    for (const auto &[name, table] :
-         {std::make_pair("numerical checks", &summary.checks),
-          std::make_pair("engineering results", &summary.results),
-          std::make_pair("acceptance table", &summary.acceptance)})
+    const std::array<std::pair<const char *, nlohmann::json *>, 3> tables{
+      {{"numerical checks", &summary.checks},
+       {"engineering results", &summary.results},
+       {"acceptance table", &summary.acceptance}}};
+    for (const auto &[name, table] : tables)
       if (json.contains(name))
         {
           *table = json.at(name);
@@ -448,10 +449,11 @@ namespace Voussoir
       text << "Contact: " << 100. * summary.march->contact_share.value_or(0.)
            << " % of the loop, " << run.contact->effort().paths
            << " clusters by path following\n";
-    for (const auto &[title, table] :
-         {std::make_pair("Numerical checks", &summary.checks),
-          std::make_pair("Engineering results", &summary.results),
-          std::make_pair("Acceptance table", &summary.acceptance)})
+    const std::array<std::pair<const char *, const nlohmann::json *>, 3> tables{
+      {{"Numerical checks", &summary.checks},
+       {"Engineering results", &summary.results},
+       {"Acceptance table", &summary.acceptance}}};
+    for (const auto &[title, table] : tables)
       text << description(title, *table);
     text << "Verdict: " << summary.verdict() << '\n';
     for (const std::string &warning : summary.warnings)

@@ -60,6 +60,7 @@ namespace Voussoir
         {Usual::density, {500., 10000.}},
         {Usual::expansion, {1e-6, 1e-4, true}},
         {Usual::tensile_strength, {1e4, 1e8}},
+        {Usual::tensile_strength_or_none, {1e4, 1e8, true}},
         {Usual::compressive_strength, {1e5, 1e9}},
         {Usual::fracture_energy, {1., 1e5}},
         {Usual::crushing_energy, {100., 1e6}},

@@ -36,8 +36,9 @@ namespace Voussoir
                           tensile_strength,
                           "Static tensile strength, which the observer "
                           "over-stress compares with the stress [Pa]; the law "
-                          "itself bears any. 0: not given.",
-                          Patterns::Double(0., 1e8));
+                          "itself bears any. 0: not given." +
+                            usually(Usual::tensile_strength_or_none),
+                          Patterns::Double(0.));
       }
     };
 

@@ -171,8 +171,9 @@ namespace Voussoir
           strengths,
           "Static tensile strength of the concrete, one for all faces or one "
           "for each [Pa]; 0 for that of the materials. The demand-capacity ratio "
-          "is the tension over it.",
-          Patterns::List(Patterns::Double(0., 1e8), 1));
+          "is the tension over it." +
+            usually(Usual::tensile_strength_or_none),
+          Patterns::List(Patterns::Double(0.), 1));
         prm.add_parameter(
           "Strengths of materials",
           of_materials,

@@ -15,6 +15,7 @@ namespace Voussoir
     density,
     expansion,
     tensile_strength,
+    tensile_strength_or_none,
     compressive_strength,
     fracture_energy,
     crushing_energy,

@@ -11,6 +11,35 @@
 
 namespace Voussoir
 {
+  namespace
+  {
+    /**
+     * Without mpirun, Open MPI 4 starts a daemon for each program, in a folder
+     * that all programs of a user share and that each removes at its end: one
+     * that starts at that moment fails (orte/util/session_dir.c). A folder of
+     * its own, and no daemon, which takes half of the start. Empty where
+     * mpirun or Slurm starts the ranks, where the user has named a folder, and
+     * where none can be made.
+     */
+    std::filesystem::path
+    own_session_folder()
+    {
+      for (const char *set_by_others : {"OMPI_COMM_WORLD_SIZE",
+                                        "PMIX_NAMESPACE",
+                                        "OMPI_MCA_orte_tmpdir_base"})
+        if (std::getenv(set_by_others) != nullptr)
+          return {};
+      std::error_code error;
+      std::string     name =
+        std::filesystem::temp_directory_path(error) / "voussoir-XXXXXX";
+      if (error || mkdtemp(name.data()) == nullptr)
+        return {};
+      setenv("OMPI_MCA_orte_tmpdir_base", name.c_str(), 1);
+      setenv("OMPI_MCA_ess_singleton_isolated", "1", 1);
+      return name;
+    }
+  } // namespace
+
   ParallelSession::ParallelSession(int &, char **&argv)
   {
 #if defined(__SSE__)
@@ -29,6 +58,7 @@ namespace Voussoir
     // file that is opened: on a full disk the first rank gives up and the
     // others wait for it.
     setenv("OMPI_MCA_sharedfp", "individual", 0);
+    session_folder = own_session_folder();
     // Libraries get the program's name alone: PETSc would take arguments for
     // its options and complain that it does not use them.
     int just_the_name = 1;
@@ -36,5 +66,18 @@ namespace Voussoir
       std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(just_the_name,
                                                                  argv,
                                                                  1);
+    // runs that this one starts have their own
+    if (!session_folder.empty())
+      for (const char *ours :
+           {"OMPI_MCA_orte_tmpdir_base", "OMPI_MCA_ess_singleton_isolated"})
+        unsetenv(ours);
+  }
+
+  ParallelSession::~ParallelSession()
+  {
+    mpi.reset();
+    std::error_code ignored;
+    if (!session_folder.empty())
+      std::filesystem::remove_all(session_folder, ignored);
   }
 } // namespace Voussoir

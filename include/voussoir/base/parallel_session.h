@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <filesystem>
 #include <memory>
 
 namespace Voussoir
@@ -17,8 +18,11 @@ namespace Voussoir
   {
   public:
     ParallelSession(int &argc, char **&argv);
+    ~ParallelSession();
 
   private:
+    /** Of a run without mpirun: its own, for what Open MPI keeps meanwhile. */
+    std::filesystem::path                                     session_folder;
     std::unique_ptr<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
   };
 } // namespace Voussoir

@@ -2,6 +2,7 @@
 #include <voussoir/analysis/modal_system.h>
 #include <voussoir/analysis/modes.h>
 #include <voussoir/base/error.h>
+#include <voussoir/base/json_entries.h>
 #include <voussoir/base/text.h>
 #include <voussoir/fem/nodal_values.h>
 
@@ -109,12 +110,6 @@ namespace Voussoir
       return text.str();
     }
 
-
-    nlohmann::json
-    to_json(const Tensor<1, 3> &values)
-    {
-      return {values[0], values[1], values[2]};
-    }
   } // namespace
 
 

@@ -1,4 +1,5 @@
 #include <voussoir/analysis/stage_results.h>
+#include <voussoir/base/json_entries.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/fem/nodal_values.h>
 
@@ -11,13 +12,6 @@ namespace Voussoir
   namespace
   {
     const std::string place = "\"Points\" in section \"Static state\"";
-
-
-    nlohmann::json
-    to_json(const Tensor<1, 3> &vector)
-    {
-      return {vector[0], vector[1], vector[2]};
-    }
 
 
     /** Vertices of the upstream face at its top, of all ranks. */
@@ -37,14 +31,16 @@ namespace Voussoir
                                bottom = std::min(bottom, at[2]);
                              }
                          });
-      top    = Utilities::MPI::max(top, grid.communicator());
-      bottom = Utilities::MPI::min(bottom, grid.communicator());
-      std::vector<std::array<double, 3>> result;
-      for (const auto &list :
-           Utilities::MPI::all_gather(grid.communicator(), mine))
-        for (const auto &at : list)
-          if (at[2] > top - 1e-6 * (top - bottom))
-            result.push_back(at);
+      top                = Utilities::MPI::max(top, grid.communicator());
+      bottom             = Utilities::MPI::min(bottom, grid.communicator());
+      const double level = top - 1e-6 * (top - bottom);
+      mine.erase(std::remove_if(mine.begin(),
+                                mine.end(),
+                                [level](const auto &at) {
+                                  return at[2] <= level;
+                                }),
+                 mine.end());
+      auto result = join_over_ranks(mine, grid.communicator());
       std::sort(result.begin(), result.end());
       return result;
     }

@@ -3,6 +3,7 @@
 #include <voussoir/analysis/relaxation.h>
 #include <voussoir/analysis/stage_results.h>
 #include <voussoir/analysis/static_state.h>
+#include <voussoir/base/json_entries.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/text.h>
 #include <voussoir/fem/nodal_values.h>
@@ -24,13 +25,6 @@ namespace Voussoir
       text << std::setprecision(5) << "(" << 1e-6 * force[0] << ", "
            << 1e-6 * force[1] << ", " << 1e-6 * force[2] << ") MN";
       return text.str();
-    }
-
-
-    nlohmann::json
-    to_json(const Tensor<1, 3> &force)
-    {
-      return {force[0], force[1], force[2]};
     }
 
 

@@ -14,12 +14,11 @@ namespace Voussoir
   namespace
   {
     nlohmann::json
-    line(const double value, const char *sense, const double limit)
+    line(const double value, const bool is_upper, const double limit)
     {
-      const bool at_most = std::string(sense) == "at most";
       return {{"value", std::isfinite(value) ? nlohmann::json(value) : nullptr},
-              {sense, limit},
-              {"met", at_most ? value <= limit : value >= limit}};
+              {is_upper ? "at most" : "at least", limit},
+              {"met", is_upper ? value <= limit : value >= limit}};
     }
 
 
@@ -38,14 +37,14 @@ namespace Voussoir
   nlohmann::json
   at_most(const double value, const double limit)
   {
-    return line(value, "at most", limit);
+    return line(value, true, limit);
   }
 
 
   nlohmann::json
   at_least(const double value, const double limit)
   {
-    return line(value, "at least", limit);
+    return line(value, false, limit);
   }
 
 
@@ -186,7 +185,8 @@ namespace Voussoir
         if (!found)
           continue;
         line["demand"] = found->value;
-        line["met"] = is_upper ? found->value <= limit : found->value >= limit;
+        line["met"] =
+          (is_upper ? at_most : at_least)(found->value, limit)["met"];
         if (criterion.quantity.find('*') != std::string::npos)
           line["of"] = join(found->names, "/");
         if (!found->time.is_null())

@@ -143,6 +143,18 @@ namespace Voussoir
     constexpr char stopped[] = "stopped: ", failed[] = "failed: ";
 
 
+    /** The tables of the verdict and their names. */
+    template <typename Summary>
+    auto
+    tables_of(Summary &summary)
+    {
+      using Table = std::pair<const char *, decltype(&summary.checks)>;
+      return std::array<Table, 3>{{{"numerical checks", &summary.checks},
+                                   {"engineering results", &summary.results},
+                                   {"acceptance table", &summary.acceptance}}};
+    }
+
+
     /** Takes a part that a summary has if it has this name, and its names out
      *  of those that are left. */
     template <typename Part>
@@ -170,11 +182,11 @@ namespace Voussoir
     if (end == RunEnd::failed)
       return failed + reason;
     std::vector<std::string> bad, open;
-    for (const nlohmann::json *table : {&checks, &results, &acceptance})
+    for (const auto &item : tables_of(*this))
       {
-        for (const std::string &name : not_met(*table))
+        for (const std::string &name : not_met(*item.second))
           bad.push_back(name);
-        for (const std::string &name : not_judged(*table))
+        for (const std::string &name : not_judged(*item.second))
           open.push_back(name);
       }
     if (!bad.empty())
@@ -204,9 +216,8 @@ namespace Voussoir
       write_entries(json, *summary.step);
     if (summary.march)
       write_entries(json, *summary.march);
-    write_entry(json, "numerical checks", summary.checks);
-    write_entry(json, "engineering results", summary.results);
-    write_entry(json, "acceptance table", summary.acceptance);
+    for (const auto &[name, table] : tables_of(summary))
+      write_entry(json, name, *table);
     json["verdict"] = summary.verdict();
     if (summary.model)
       json["warnings"] = summary.warnings;
@@ -234,11 +245,7 @@ namespace Voussoir
     summary.warnings = json.value("warnings", summary.warnings);
     summary.missing_files =
       json.value("files not written", summary.missing_files);
-    const std::array<std::pair<const char *, nlohmann::json *>, 3> tables{
-      {{"numerical checks", &summary.checks},
-       {"engineering results", &summary.results},
-       {"acceptance table", &summary.acceptance}}};
-    for (const auto &[name, table] : tables)
+    for (const auto &[name, table] : tables_of(summary))
       if (json.contains(name))
         {
           *table = json.at(name);
@@ -449,12 +456,8 @@ namespace Voussoir
       text << "Contact: " << 100. * summary.march->contact_share.value_or(0.)
            << " % of the loop, " << run.contact->effort().paths
            << " clusters by path following\n";
-    const std::array<std::pair<const char *, const nlohmann::json *>, 3> tables{
-      {{"Numerical checks", &summary.checks},
-       {"Engineering results", &summary.results},
-       {"Acceptance table", &summary.acceptance}}};
-    for (const auto &[title, table] : tables)
-      text << description(title, *table);
+    for (const auto &[name, table] : tables_of(summary))
+      text << description(name, *table);
     text << "Verdict: " << summary.verdict() << '\n';
     for (const std::string &warning : summary.warnings)
       text << "Warning: " << warning << '\n';

@@ -366,7 +366,7 @@ namespace Voussoir
   {
     std::ostringstream text;
     if (!table.empty())
-      text << title << ":\n";
+      text << char(std::toupper(title[0])) << title.substr(1) << ":\n";
     for (const auto &[name, line] : table.items())
       {
         const nlohmann::json &met   = line.at("met"),

@@ -80,6 +80,35 @@ namespace Voussoir
       return degree == 2 ? quadrature.weight(0) + quadrature.weight(1) :
                            1. / degree;
     }
+
+
+    // The library's geometry of the cells, to be changed.
+    internal::MatrixFreeFunctions::MappingInfo<3, double, Lanes> &
+    geometry_of(Discretization::MatrixFree &matrix_free)
+    {
+      return const_cast<
+        internal::MatrixFreeFunctions::MappingInfo<3, double, Lanes> &>(
+        matrix_free.get_mapping_info());
+    }
+
+
+    // Corners of the cells of a batch; lanes without cell have those of the
+    // last one.
+    std::array<Point<3, Lanes>, 8>
+    corners_of(const Discretization::MatrixFree &matrix_free,
+               const unsigned int                batch)
+    {
+      std::array<Point<3, Lanes>, 8> corners;
+      const unsigned int             n_cells =
+        matrix_free.n_active_entries_per_cell_batch(batch);
+      for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+        for (unsigned int v = 0; v < 8; ++v)
+          for (unsigned int d = 0; d < 3; ++d)
+            corners[v][d][lane] =
+              matrix_free.get_cell_iterator(batch, std::min(lane, n_cells - 1))
+                ->vertex(v)[d];
+      return corners;
+    }
   } // namespace
 
 
@@ -200,8 +229,7 @@ namespace Voussoir
   Discretization::use_own_geometry()
   {
     using namespace internal::MatrixFreeFunctions;
-    auto &geometry = const_cast<MappingInfo<3, double, Lanes> &>(
-      matrix_free.get_mapping_info());
+    auto              &geometry  = geometry_of(matrix_free);
     const unsigned int n_batches = matrix_free.n_cell_batches();
     std::fill(geometry.cell_type.begin(), geometry.cell_type.end(), general);
     for (auto &data : geometry.cell_data)
@@ -218,16 +246,8 @@ namespace Voussoir
             data.data_index_offsets[batch] = n * batch;
             if (has_points)
               data.quadrature_point_offsets[batch] = n * batch;
-            std::array<Point<3, Lanes>, 8> corners;
-            const unsigned int             n_cells =
-              matrix_free.n_active_entries_per_cell_batch(batch);
-            for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-              for (unsigned int v = 0; v < 8; ++v)
-                for (unsigned int d = 0; d < 3; ++d)
-                  corners[v][d][lane] =
-                    matrix_free
-                      .get_cell_iterator(batch, std::min(lane, n_cells - 1))
-                      ->vertex(v)[d];
+            const std::array<Point<3, Lanes>, 8> corners =
+              corners_of(matrix_free, batch);
             for (unsigned int q = 0; q < n; ++q)
               {
                 const Point<3>     &unit = quadrature.point(q);
@@ -263,11 +283,7 @@ namespace Voussoir
   {
     const unsigned int n_batches = matrix_free.n_cell_batches();
     matrix_free.corners.resize(n_batches);
-    auto &geometry =
-      const_cast<
-        internal::MatrixFreeFunctions::MappingInfo<3, double, Lanes> &>(
-        matrix_free.get_mapping_info())
-        .cell_data[0];
+    auto &geometry = geometry_of(matrix_free).cell_data[0];
     // blocks of the batches, which may share them, begin at these offsets
     auto                  &offsets = geometry.data_index_offsets;
     std::set<unsigned int> begins(offsets.begin(), offsets.end());
@@ -278,15 +294,7 @@ namespace Voussoir
     for (unsigned int batch = 0; batch < n_batches; ++batch)
       if (has_one_point(material_of_batch[batch]))
         {
-          const unsigned int n_cells =
-            matrix_free.n_active_entries_per_cell_batch(batch);
-          for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-            for (unsigned int v = 0; v < 8; ++v)
-              for (unsigned int d = 0; d < 3; ++d)
-                matrix_free.corners[batch][v][d][lane] =
-                  matrix_free
-                    .get_cell_iterator(batch, std::min(lane, n_cells - 1))
-                    ->vertex(v)[d];
+          matrix_free.corners[batch] = corners_of(matrix_free, batch);
           offsets[batch] = 0; // FEEvaluation::reinit takes the address
         }
       else

@@ -500,7 +500,9 @@ namespace Voussoir
         const std::vector<bool> tagged = tags_in({item.set});
         for (unsigned int level = 0; level < item.levels; ++level)
           {
-            const auto places = positions(triangulation, chart);
+            const auto places = item.set.empty() ?
+                                  positions(triangulation, chart) :
+                                  std::vector<Point<3>>();
             for (const auto &cell : triangulation.active_cell_iterators())
               if (cell->is_locally_owned())
                 {

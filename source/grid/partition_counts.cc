@@ -4,8 +4,6 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/tria.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
-#include <deal.II/lac/sparsity_tools.h>
 
 #include <algorithm>
 #include <iomanip>
@@ -20,64 +18,32 @@ namespace Voussoir
 
   namespace
   {
-    // Place of each coarse cell among the trees of p4est, which deal.II numbers
-    // by the neighbours of the cells.
-    std::vector<types::global_dof_index>
-    tree_of_coarse_cell(const Grid::Triangulation &triangulation)
-    {
-      const unsigned int                     n = triangulation.n_cells(0);
-      std::vector<std::vector<unsigned int>> at_vertex(
-        triangulation.n_vertices());
-      for (const auto &cell : triangulation.cell_iterators_on_level(0))
-        for (const unsigned int v : cell->vertex_indices())
-          at_vertex[cell->vertex_index(v)].push_back(cell->index());
-      DynamicSparsityPattern neighbours(n, n);
-      for (const auto &cells : at_vertex)
-        for (const unsigned int cell : cells)
-          neighbours.add_entries(cell, cells.begin(), cells.end());
-      std::vector<types::global_dof_index> tree(n);
-      SparsityTools::reorder_hierarchical(neighbours, tree);
-      return tree;
-    }
-
-
     // The rank that each cell is dealt to, owned ones and ghosts.
     std::vector<unsigned int>
     deal_cells(const Grid                                      &grid,
                const std::function<double(const Grid::Cell &)> &cost,
                const unsigned int                               n_ranks)
     {
-      const auto                            &mesh = grid.triangulation();
-      const auto                             tree = tree_of_coarse_cell(mesh);
-      std::vector<Grid::ActiveCell>          cells;
-      std::vector<std::vector<unsigned int>> path(mesh.n_active_cells());
+      const auto &mesh = grid.triangulation();
+      // a CellId goes by the trees of p4est and the children in them
+      std::vector<std::pair<CellId, Grid::ActiveCell>> cells;
       for (const auto &cell : mesh.active_cell_iterators())
         if (cell->is_locally_owned())
-          {
-            auto      &own   = path[cell->active_cell_index()];
-            Grid::Cell child = cell;
-            for (; child->level() > 0; child = child->parent())
-              for (unsigned int i = 0; i < 8; ++i)
-                if (child->parent()->child(i) == child)
-                  own.push_back(i);
-            own.push_back(tree[child->index()]);
-            std::reverse(own.begin(), own.end());
-            cells.push_back(cell);
-          }
-      std::sort(cells.begin(), cells.end(), [&](const auto &a, const auto &b) {
-        return path[a->active_cell_index()] < path[b->active_cell_index()];
+          cells.emplace_back(cell->id(), cell);
+      std::sort(cells.begin(), cells.end(), [](const auto &a, const auto &b) {
+        return a.first < b.first;
       });
 
       double mine = 0.;
-      for (const auto &cell : cells)
-        mine += cost(cell);
+      for (const auto &item : cells)
+        mine += cost(item.second);
       double before = 0., total = 0.;
       for (const double of_rank :
            Utilities::MPI::all_gather(grid.communicator(), mine))
         total += of_rank;
       MPI_Exscan(&mine, &before, 1, MPI_DOUBLE, MPI_SUM, grid.communicator());
       std::vector<unsigned int> rank(mesh.n_active_cells());
-      for (const auto &cell : cells)
+      for (const auto &[id, cell] : cells)
         {
           const double own = cost(cell);
           rank[cell->active_cell_index()] =

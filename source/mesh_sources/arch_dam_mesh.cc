@@ -147,15 +147,28 @@ namespace Voussoir
 
 
       // Rock may be cut away before a wedge; there is no face then.
+      template <typename Visitor>
+      void
+      visit_face(const unsigned int quad,
+                 const unsigned int layer,
+                 const unsigned int face,
+                 const Visitor     &visit) const
+      {
+        if (const unsigned int cell = cell_number[quad * n_layers + layer];
+            cell != none)
+          visit(CoarseMesh::Face{cell, face});
+      }
+
+
       void
       name_face(const std::string &name,
                 const unsigned int quad,
                 const unsigned int layer,
                 const unsigned int face)
       {
-        if (const unsigned int cell = cell_number[quad * n_layers + layer];
-            cell != none)
-          mesh.face_sets[name].push_back({cell, face});
+        visit_face(quad, layer, face, [&](const CoarseMesh::Face &item) {
+          mesh.face_sets[name].push_back(item);
+        });
       }
 
 
@@ -208,10 +221,7 @@ namespace Voussoir
       {
         constexpr std::array<unsigned int, 4> face_of_edge{{4, 1, 5, 0}};
         for (unsigned int layer = begin; layer < end; ++layer)
-          if (const unsigned int cell =
-                cell_number[side.quad * n_layers + layer];
-              cell != none)
-            visit(CoarseMesh::Face{cell, face_of_edge[side.edge]});
+          visit_face(side.quad, layer, face_of_edge[side.edge], visit);
       }
 
 

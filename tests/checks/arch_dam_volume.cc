@@ -4,6 +4,7 @@
 #include <deal.II/grid/reference_cell.h>
 
 #include "check.h"
+#include "cylinder_dam.h"
 
 namespace Voussoir
 {
@@ -172,24 +173,16 @@ namespace Voussoir
       };
 
 
-      /** R = 120, T = 10, H = 100; half widths 100 and 80 above, 20 below. */
       void
       run_cylinder(const ParameterFile &file, Verdicts &verdicts) const
       {
-        const auto flank = [](const double w) {
-          return w * std::asin(w / 120.) + std::sqrt(120. * 120. - w * w);
-        };
-        Expected expected{0., 0.};
-        for (const double w : {100., 80.})
-          {
-            expected.volume +=
-              10. * 120. * 100. / (w - 20.) * (flank(w) - flank(20.));
-            expected.crest_length += 120. * std::asin(w / 120.);
-          }
+        Expected expected{CylinderDam::volume(), 0.};
+        for (const double w : CylinderDam::crest_half_width)
+          expected.crest_length +=
+            CylinderDam::radius * std::asin(w / CylinderDam::radius);
         const CoarseMesh  mesh = compare("cylinder", file, expected, verdicts);
         const MeasuredDam dam(mesh);
-        // y = 0 upstream
-        const auto radii = dam.radii(-125.);
+        const auto        radii = dam.radii(CylinderDam::centre);
         verdicts.near("cylinder: radius downstream", radii[0], 115., 1e-9, "m");
         verdicts.near("cylinder: radius upstream", radii[1], 125., 1e-9, "m");
       }

@@ -1,6 +1,8 @@
 #ifndef voussoir_base_json_entries_h
 #define voussoir_base_json_entries_h
 
+#include <deal.II/base/tensor.h>
+
 #include <nlohmann/json.hpp>
 
 #include <limits>
@@ -55,6 +57,13 @@ namespace Voussoir
   read_entry(const nlohmann::json &json, T &value)
   {
     json.get_to(value);
+  }
+
+  /** The components in a list. */
+  inline nlohmann::json
+  to_json(const dealii::Tensor<1, 3> &vector)
+  {
+    return {vector[0], vector[1], vector[2]};
   }
 
   /** JSON has neither NaN nor infinity. */

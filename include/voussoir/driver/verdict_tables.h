@@ -31,7 +31,7 @@ namespace Voussoir
   nlohmann::json
   engineering_results(const nlohmann::json &summary);
 
-  /** A table in lines of text; empty if there is none. */
+  /** A table in lines of text, under its name; empty if there is none. */
   std::string
   description(const std::string &title, const nlohmann::json &table);
 

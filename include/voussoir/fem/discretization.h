@@ -264,59 +264,40 @@ namespace Voussoir
       dealii::types::global_dof_index node;
       Record                          record;
     };
-    std::vector<Item>                         own;
     std::map<unsigned int, std::vector<char>> outgoing;
     const unsigned int                        rank =
       dealii::Utilities::MPI::this_mpi_process(grid.communicator());
-    own.reserve(records.size());
+    outgoing[rank].reserve(records.size() * sizeof(Item)); // most of them
     for (const auto &[node, record] : records)
       {
         Item item{node, record};
         __builtin_clear_padding(&item); // records are ordered by their bytes
-        const unsigned int to = owner(node);
-        if (to == rank)
-          {
-            own.push_back(item);
-            continue;
-          }
-        auto      &buffer = outgoing[to];
+        auto      &buffer = outgoing[owner(node)];
         const auto bytes  = reinterpret_cast<const char *>(&item);
         buffer.insert(buffer.end(), bytes, bytes + sizeof(Item));
       }
-    // ordered by rank, this one among them
+    // a map ordered by rank; what stays here is not copied
+    auto own = outgoing.extract(rank);
     auto incoming =
       dealii::Utilities::MPI::some_to_some(grid.communicator(), outgoing);
-    incoming[rank];
+    incoming.insert(std::move(own));
+    std::vector<const char *> items;
+    for (const auto &buffer : incoming)
+      for (std::size_t i = 0; i < buffer.second.size(); i += sizeof(Item))
+        items.push_back(buffer.second.data() + i);
+    // the records of one node by themselves
+    if (reproducible)
+      std::sort(items.begin(), items.end(), [](const char *a, const char *b) {
+        return std::memcmp(a, b, sizeof(Item)) < 0;
+      });
     std::vector<std::pair<unsigned int, Record>> arrived;
-    const auto                                   add = [&](const Item &item) {
-      arrived.emplace_back(owned_node(item.node), item.record);
-    };
-    const auto for_each_item = [](const std::vector<char> &buffer,
-                                  const auto              &visit) {
-      for (std::size_t i = 0; i < buffer.size(); i += sizeof(Item))
-        {
-          Item item;
-          std::memcpy(&item, buffer.data() + i, sizeof(Item));
-          visit(item);
-        }
-    };
-    arrived.reserve(own.size());
-    if (reproducible) // the records of one node by themselves
+    arrived.reserve(items.size());
+    for (const char *const bytes : items)
       {
-        for (const auto &buffer : incoming)
-          for_each_item(buffer.second,
-                        [&](const Item &item) { own.push_back(item); });
-        std::sort(own.begin(), own.end(), [](const Item &a, const Item &b) {
-          return std::memcmp(&a, &b, sizeof(Item)) < 0;
-        });
-        std::for_each(own.begin(), own.end(), add);
+        Item item;
+        std::memcpy(&item, bytes, sizeof(Item));
+        arrived.emplace_back(owned_node(item.node), item.record);
       }
-    else
-      for (const auto &[from, buffer] : incoming)
-        if (from == rank)
-          std::for_each(own.begin(), own.end(), add);
-        else
-          for_each_item(buffer, add);
     return arrived;
   }
 } // namespace Voussoir

@@ -86,6 +86,15 @@ namespace Voussoir
   }
 
 
+  Tensor<1, 3>
+  force_on_block(const SlidingBlock::Plane &plane, const double *sums)
+  {
+    const double *sum = sums + n_quantities * plane.surface;
+    return plane.side *
+           Tensor<1, 3>({sum[force_x], sum[force_y], sum[force_z]});
+  }
+
+
   double
   safety_from_sums(const SlidingBlock        &block,
                    const double              *sums,
@@ -101,8 +110,7 @@ namespace Voussoir
         // it cannot slide as long as keys hold it
         if (sum[locked_area] > 0.)
           return std::numeric_limits<double>::infinity();
-        for (unsigned int d = 0; d < 3; ++d)
-          force[d] += plane.side * sum[force_x + d];
+        force += force_on_block(plane, sums);
         const double closed_area = area - sum[open_area];
         if (closed_area > 1e-9 * area)
           closed.push_back(

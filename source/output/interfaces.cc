@@ -164,6 +164,10 @@ namespace Voussoir
              std::vector<std::vector<double>>(
                blocks.size(),
                std::vector<double>(n_of_window + n_quantities * n_surfaces)));
+        std::vector<std::vector<double>> no_forces;
+        for (const SlidingBlock &block : blocks)
+          no_forces.emplace_back(3 * (block.planes.size() + 1));
+        keep("block forces", forces_at_smallest, no_forces);
         keep("largest open area",
              largest_open,
              std::vector<std::array<double, 2>>(n_surfaces, {{0., 0.}}));
@@ -193,6 +197,7 @@ namespace Voussoir
             block["largest slip [mm]"]       = 1e3 * now[largest_slip];
             block["slip rate at the end [mm/s]"] = 1e3 * now[rate_now];
             block["mass [kg]"]                   = blocks[b].mass;
+            describe_forces(b, block["forces at the smallest safety [N]"]);
             block["id"] = number_of(blocks[b].name, run().names.cell_sets);
           }
         for (const NearestContactPoint &point : points)
@@ -303,9 +308,10 @@ namespace Voussoir
                        now[elapsed];
         const double safety = safety_from_sums(block, means, areas, inertia),
                      of_contact = safety_from_sums(block, means, areas, {});
-        safety_of_blocks[b].add(time - 0.5 * now[elapsed],
-                                now[elapsed],
-                                safety);
+        if (safety_of_blocks[b].add(time - 0.5 * now[elapsed],
+                                    now[elapsed],
+                                    safety))
+          keep_forces(b, means, inertia);
         now[safety_now]     = json_number(safety);
         now[mobilised_now]  = of_contact > 0. ? 1. / of_contact : 0.;
         now[most_mobilised] = std::max(now[most_mobilised], now[mobilised_now]);
@@ -313,6 +319,37 @@ namespace Voussoir
           now[velocity_before + d] = velocity[d];
         now[elapsed] = 0.;
         std::fill_n(means, n_sums, 0.);
+      }
+
+      /** Keeps the contact forces of the planes of a block, and what drives it:
+       *  D - M (a - a_s) , see safety_from_sums. */
+      void
+      keep_forces(const unsigned int  b,
+                  const double       *sums,
+                  const Tensor<1, 3> &inertia)
+      {
+        Tensor<1, 3> driving = inertia;
+        auto         kept    = forces_at_smallest[b].begin();
+        for (const SlidingBlock::Plane &plane : blocks[b].planes)
+          {
+            const Tensor<1, 3> force = force_on_block(plane, sums);
+            driving -= force;
+            kept = std::copy_n(force.begin_raw(), 3, kept);
+          }
+        std::copy_n(driving.begin_raw(), 3, kept);
+      }
+
+      void
+      describe_forces(const unsigned int b, nlohmann::json &result) const
+      {
+        auto       kept = forces_at_smallest[b].begin();
+        const auto next = [&kept] {
+          kept += 3;
+          return nlohmann::json{kept[-3], kept[-2], kept[-1]};
+        };
+        for (const SlidingBlock::Plane &plane : blocks[b].planes)
+          result["contact"][contact().surface_names()[plane.surface]] = next();
+        result["driving, with inertia"] = next();
       }
 
       void
@@ -327,7 +364,7 @@ namespace Voussoir
             of_surface[0] = std::max(of_surface[0], extremes[k][0]);
             of_surface[1] = std::max(of_surface[1], extremes[k][1]);
             of_surface[2] = std::max(of_surface[2], slip_of(point));
-            if (point.status != ContactStatus::sticking)
+            if (point.status == ContactStatus::sliding)
               of_surface[3] =
                 std::max(of_surface[3],
                          std::hypot(point.velocity[1], point.velocity[2]));
@@ -401,6 +438,9 @@ namespace Voussoir
 
       std::vector<SlidingBlock>  blocks;
       std::vector<SafetyHistory> safety_of_blocks;
+
+      // of each block: contact forces of its planes, and what drives it [N]
+      std::vector<std::vector<double>> forces_at_smallest;
 
       // largest open area [m2] and opening [m] of each surface, and when [s]
       std::vector<std::array<double, 2>> largest_open, largest_opening;

@@ -160,14 +160,15 @@ namespace Voussoir
   }
 
 
-  void
+  bool
   SafetyHistory::add(const double time,
                      const double interval,
                      const double safety)
   {
     if (std::isnan(at_start))
       at_start = safety;
-    if (safety < smallest)
+    const bool is_smallest = safety < smallest;
+    if (is_smallest)
       {
         smallest         = safety;
         time_of_smallest = time;
@@ -175,6 +176,7 @@ namespace Voussoir
     // what slides is at its limit, up to the waves inside
     if (safety < 1. + 1e-3)
       time_at_one += interval;
+    return is_smallest;
   }
 
 

@@ -61,6 +61,17 @@ namespace Voussoir
                       block.at("smallest safety"),
                       least,
                       0.02);
+        const auto &driving = block.at("forces at the smallest safety [N]")
+                                .at("driving, with inertia");
+        constexpr double mass = 4000.;
+        verdicts.near("  then driven along the plane by [N]",
+                      driving.at(0),
+                      -mass * A,
+                      0.02);
+        verdicts.near("  and upwards [N]",
+                      driving.at(2),
+                      -mass * (g + rise * A),
+                      0.02);
         const CsvTable table(parameters->output.folder + "/interfaces.csv");
         const auto     times = table.numbers("time [s]");
         std::vector<double> safety; // an empty cell is infinite

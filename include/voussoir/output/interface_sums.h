@@ -72,6 +72,11 @@ namespace Voussoir
   std::array<double, n_surface_columns>
   surface_values(const double *sums, const double *largest, const double area);
 
+  /** Contact force of a plane on its block [N].
+   *  @param sums over all ranks, of all surfaces one after the other */
+  dealii::Tensor<1, 3>
+  force_on_block(const SlidingBlock::Plane &plane, const double *sums);
+
   /**
    * Safety of a block: what its planes can bear over what drives it. Its
    * balance is M a = D + R with the contact forces R and all others D: weight,

@@ -66,8 +66,9 @@ namespace Voussoir
   class SafetyHistory
   {
   public:
-    /** @param interval since the look before [s] */
-    void
+    /** @param interval since the look before [s]
+     *  @return whether it is the smallest so far */
+    bool
     add(const double time, const double interval, const double safety);
 
     /** Infinite ones are null. */

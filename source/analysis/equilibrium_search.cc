@@ -24,6 +24,7 @@ namespace Voussoir
                                        const Vector        &force,
                                        const double         tolerance,
                                        const unsigned int   patience,
+                                       SecantSteps         &secants,
                                        Log                 &log)
     : solver(solver)
     , contact(solver.tangent_contact())
@@ -32,6 +33,7 @@ namespace Voussoir
     , force(force)
     , tolerance(tolerance)
     , patience(patience)
+    , secants(secants)
     , log(log)
     , residual(force)
     , change(force)
@@ -68,6 +70,7 @@ namespace Voussoir
     if (!effort.found)
       {
         *displacement = start;
+        secants.clear();
         if (memory != nullptr)
           *memory = memory_before;
         if (contact != nullptr)
@@ -118,7 +121,7 @@ namespace Voussoir
             last_gain       = effort.steps;
           }
         if (since_report.wall_time() > report_interval)
-          say_progress();
+          report_progress();
       }
   }
 
@@ -134,7 +137,7 @@ namespace Voussoir
     const double linear_tolerance = memory == nullptr ? 0.05 : 0.3;
 
     if (contact != nullptr)
-      contact->stiffen(effort.steps == 0 ? 1. : tied_share);
+      contact->stiffen(effort.steps == 0 && secants.empty() ? 1. : tied_share);
     ++effort.steps;
     secants.find(change, residual, [&](Vector &step, const Vector &part) {
       step = 0.;
@@ -212,26 +215,18 @@ namespace Voussoir
   }
 
 
-  double
-  EquilibriumSearch::share_done() const
-  {
-    const double left = imbalance() / tolerance;
-    return 1. - std::log(std::max(left, 1.)) / -std::log(tolerance);
-  }
-
-
   void
-  EquilibriumSearch::say_progress()
+  EquilibriumSearch::report_progress()
   {
-    const double       done = std::max(share_done(), 1e-3);
     std::ostringstream text;
     text << std::setprecision(2) << "    after " << effort.iterations
-         << " iterations: equilibrium to " << effort.residual
-         << ", forces of contact to " << effort.contact.force << " ("
-         << effort.contact.open << " of " << effort.contact.all
-         << " points are open, " << effort.contact.slide
-         << " slide), time left "
-         << duration_text(since_start.wall_time() * (1. - done) / done);
+         << " iterations: equilibrium to " << effort.residual << " of "
+         << tolerance;
+    if (contact != nullptr)
+      text << ", forces of contact to " << effort.contact.force << " of "
+           << 10. * tolerance << " (" << effort.contact.open << " of "
+           << effort.contact.all << " points are open, " << effort.contact.slide
+           << " slide)";
     log.line(text.str());
     since_report.restart();
   }

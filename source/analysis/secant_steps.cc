@@ -37,4 +37,18 @@ namespace Voussoir
       pairs.pop_front();
     pairs.push_back({step, taken, work});
   }
+
+
+  bool
+  SecantSteps::empty() const
+  {
+    return pairs.empty();
+  }
+
+
+  void
+  SecantSteps::clear()
+  {
+    pairs.clear();
+  }
 } // namespace Voussoir

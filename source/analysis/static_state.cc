@@ -104,8 +104,7 @@ namespace Voussoir
       find_equilibrium(const LoadState &load_state, const bool is_trial);
 
       /** Difference of the forces of the materials at the end of an increment
-       *  between one step of the laws and two, over the loads; or a twentieth
-       *  of that of their losses, over these.
+       *  between one step of the laws and two, over the loads.
        *  @param before displacement, @p memory before the increment
        *  @param middle, @p end of the increment */
       double
@@ -113,6 +112,17 @@ namespace Voussoir
                               MaterialMemory   memory,
                               const LoadState &middle,
                               const LoadState &end) const;
+
+      /** Counts what the materials have lost in an increment in as many steps
+       *  of the laws as that takes: under stress in several directions the
+       *  energy of a crack is that of the end of its step.
+       *  @param before displacement, @p memory before the increment
+       *  @param begin, @p end of the increment */
+      void
+      count_losses(const Vector         &before,
+                   const MaterialMemory &memory,
+                   const LoadState      &begin,
+                   const LoadState      &end);
 
       /** Equilibrium of elastic materials. */
       unsigned int
@@ -161,6 +171,7 @@ namespace Voussoir
       const AffineConstraints<double>     constraints;
       std::unique_ptr<ElasticSolver>      solver;
       std::unique_ptr<Relaxation>         relaxation; // with contact or memory
+      SecantSteps                         secants;    // along this stage
       const StageResults                  results;
       Vector                              loads;  // so far [N]
       std::vector<std::string>            stage;  // names of its loads
@@ -240,6 +251,7 @@ namespace Voussoir
       nlohmann::json report;
       by_multigrid = true;
       damped_steps = increments = 0;
+      secants.clear();
       if (!solver)
         make_solver();
       const LoadState start = load_state();
@@ -321,40 +333,57 @@ namespace Voussoir
     unsigned int
     StaticStages::follow_path(const LoadState &start, const LoadState &end)
     {
-      constexpr double tolerance = 1e-3, least_step = 1. / 64.;
+      constexpr double tolerance = 1e-2, least_step = 1. / 64.;
 
       // at once, unless materials crack or yield
       const double largest_step = 1. / parameters.increments;
       double       step = 1., largest_error = 0.;
       unsigned int iterations = 0, n_jumps = 0;
+      Vector       rate; // of the displacement over the share, once they crack
+      Timer        clock;
       for (double share = 0.; share < 1.;)
         {
-          const double    next = share + step > 1. - 1e-9 ? 1. : share + step;
-          const LoadState goal = start.grown_to(end, next);
-          const Vector    displacement_before = state.displacement;
-          const auto      memory_before       = state.material_memory;
-          const auto      points_before       = contact_points();
-          is_last                             = next == 1.;
-          const bool is_trial                 = step > largest_step;
-          may_be_halved                       = !is_trial && step > least_step;
-          is_found                            = true;
+          const double    next  = share + step > 1. - 1e-9 ? 1. : share + step;
+          const LoadState begin = start.grown_to(end, share),
+                          goal  = start.grown_to(end, next);
+          const Vector displacement_before = state.displacement;
+          const auto   memory_before       = state.material_memory;
+          const auto   points_before       = contact_points();
+          if (rate.size() > 0 && !secants.empty())
+            state.displacement.add(next - share, rate);
+          is_last             = next == 1.;
+          const bool is_trial = step > largest_step;
+          may_be_halved       = !is_trial && step > least_step;
+          is_found            = true;
           iterations += find_equilibrium(goal, is_trial);
 
+          const bool has_dissipated =
+            is_found &&
+            dissipated(state.material_memory, memory_before.losses().material);
           double error = 0.;
-          if (!is_found)
+          if (!is_found || (has_dissipated && is_trial))
             error = 1.;
-          else if (dissipated(state.material_memory,
-                              memory_before.losses().material))
-            error =
-              is_trial ?
-                1. :
-                error_of_return_mapping(displacement_before,
-                                        memory_before,
-                                        start.grown_to(end,
-                                                       0.5 * (share + next)),
-                                        goal);
+          else if (has_dissipated)
+            error = error_of_return_mapping(displacement_before,
+                                            memory_before,
+                                            begin.grown_to(goal, 0.5),
+                                            goal);
           if (error <= tolerance || (!is_trial && step <= least_step))
             {
+              if (has_dissipated)
+                count_losses(displacement_before, memory_before, begin, goal);
+              if (!is_trial)
+                {
+                  rate = state.displacement;
+                  rate -= displacement_before;
+                  rate /= next - share;
+                  if (next < 1.)
+                    log.line("    ",
+                             100. * next,
+                             " % of the loads of the stage, the rest in about ",
+                             duration_text(clock.wall_time() * (1. - next) /
+                                           next));
+                }
               share = next;
               ++increments;
               n_jumps += error > tolerance;
@@ -364,6 +393,8 @@ namespace Voussoir
                 step = std::min(2. * step, largest_step);
               continue;
             }
+          if (is_trial)
+            clock.restart();
           step                  = is_trial ? largest_step : 0.5 * step;
           state.displacement    = displacement_before;
           state.material_memory = memory_before;
@@ -371,19 +402,18 @@ namespace Voussoir
             model.contact->set_points(points_before);
         }
       if (n_jumps > 0)
-        log.warn("in the stage \"",
-                 join(stage, ", "),
-                 "\" ",
-                 counted(n_jumps, "load increment", "load increments"),
-                 " of ",
-                 100. * least_step,
-                 " % change the forces of the materials by up to ",
-                 100. * largest_error,
-                 " % of the loads, or their losses by up to ",
-                 2000. * largest_error,
-                 " %, against two of half the size, as where a crack runs at "
-                 "once; take more stages, or more \"Load increments\" in "
-                 "section \"Static state\"");
+        log.warn(
+          "in the stage \"",
+          join(stage, ", "),
+          "\" ",
+          counted(n_jumps, "load increment", "load increments"),
+          " of ",
+          100. * least_step,
+          " % change the forces of the materials by up to ",
+          100. * largest_error,
+          " % of the loads against two of half the size, as where a crack runs at "
+          "once; take more stages, or more \"Load increments\" in "
+          "section \"Static state\"");
       return iterations;
     }
 
@@ -429,29 +459,57 @@ namespace Voussoir
                                           const LoadState &middle,
                                           const LoadState &end) const
     {
-      const double lost_before  = memory.losses().material;
-      Vector       displacement = before;
+      Vector displacement = before;
       displacement.sadd(0.5, 0.5, state.displacement);
       Vector in_two(displacement), at_once(displacement);
       internal_force.set_thermal_strain(middle.temperature, memory);
       internal_force.respond(in_two, displacement, memory);
       internal_force.set_thermal_strain(end.temperature, memory);
       internal_force.respond(in_two, state.displacement, memory);
-      const std::vector<double> losses = sum_over_ranks(
-        std::vector<double>{memory.losses().material - lost_before,
-                            state.material_memory.losses().material -
-                              lost_before},
-        model.solid.grid().communicator());
-      const double of_losses =
-        std::abs(losses[1] - losses[0]) / std::max(losses[0], losses[1]);
 
       memory = state.material_memory;
       internal_force.respond(at_once, state.displacement, memory);
       in_two -= at_once;
       constraints.set_zero(in_two);
       const double size = total_force(end).l2_norm();
-      return std::max(size > 0. ? in_two.l2_norm() / size : 0.,
-                      0.05 * of_losses);
+      return size > 0. ? in_two.l2_norm() / size : 0.;
+    }
+
+
+    void
+    StaticStages::count_losses(const Vector         &before,
+                               const MaterialMemory &memory,
+                               const LoadState      &begin,
+                               const LoadState      &end)
+    {
+      constexpr double       tolerance = 0.01;
+      constexpr unsigned int max_steps = 64;
+      const auto             material  = [&](const MaterialMemory &of) {
+        return Utilities::MPI::sum<double>(of.losses().material,
+                                           model.solid.grid().communicator());
+      };
+      const double lost_before = material(memory);
+      double       lost        = material(state.material_memory) - lost_before;
+      Vector       force(before), displacement(before);
+      for (unsigned int n = 2; n <= max_steps; n *= 2)
+        {
+          MaterialMemory in_steps = memory;
+          for (unsigned int i = 1; i <= n; ++i)
+            {
+              const double share = double(i) / n;
+              displacement       = before;
+              displacement.sadd(1. - share, share, state.displacement);
+              internal_force.set_thermal_strain(
+                begin.grown_to(end, share).temperature, in_steps);
+              internal_force.respond(force, displacement, in_steps);
+            }
+          state.material_memory.set_losses(in_steps.losses());
+          const double now  = material(in_steps) - lost_before,
+                       more = std::abs(now - lost);
+          lost              = now;
+          if (more <= tolerance * lost)
+            break;
+        }
     }
 
 
@@ -546,6 +604,7 @@ namespace Voussoir
                           force,
                           tolerance,
                           patience,
+                          secants,
                           log)
           .find(state.displacement, memory);
       std::ostringstream text;

@@ -41,6 +41,8 @@ namespace Voussoir
      *   of the forces of contact over all of them
      * @param patience  number of steps in which what is missing to the
      *   equilibrium has to halve
+     * @param secants   of the searches before on the same path, kept for the
+     *   next: with such, interfaces are near their equilibrium from the start
      */
     EquilibriumSearch(ElasticSolver       &solver,
                       const InternalForce &internal_force,
@@ -48,6 +50,7 @@ namespace Voussoir
                       const Vector        &force,
                       const double         tolerance,
                       const unsigned int   patience,
+                      SecantSteps         &secants,
                       Log                 &log);
 
     /**
@@ -85,12 +88,8 @@ namespace Voussoir
     bool
     is_worth_it() const;
 
-    /** Of the way from forces that nothing bears, in powers of ten. */
-    double
-    share_done() const;
-
     void
-    say_progress();
+    report_progress();
 
     ElasticSolver       &solver;
     StaticContact       *contact; // null without interfaces
@@ -99,18 +98,18 @@ namespace Voussoir
     const Vector        &force;
     const double         tolerance;
     const unsigned int   patience;
+    SecantSteps         &secants;
     Log                 &log;
     double               size; // of the force on what is free
 
     Vector         *displacement = nullptr;
     MaterialMemory *memory       = nullptr;
     MaterialMemory  memory_before;
-    SecantSteps     secants;
     Vector          residual, change, taken;
     Effort          effort;
     double          least_imbalance = std::numeric_limits<double>::max();
     unsigned int    last_gain       = 0; // the step of it
-    dealii::Timer   since_start, since_report;
+    dealii::Timer   since_report;
   };
 } // namespace Voussoir
 

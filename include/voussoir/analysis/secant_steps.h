@@ -28,6 +28,14 @@ namespace Voussoir
     void
     add(const Vector &step, const Vector &taken);
 
+    /** Whether no step has been taken in. */
+    bool
+    empty() const;
+
+    /** Forgets all steps. */
+    void
+    clear();
+
   private:
     struct Pair
     {

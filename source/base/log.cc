@@ -230,7 +230,7 @@ namespace Voussoir
 
 
   void
-  Log::look_for_lost_files()
+  Log::check_for_lost_files()
   {
     const auto written = sizes; // warnings change that of log.txt
     for (const auto &[file, size] : written)

@@ -189,7 +189,7 @@ namespace Voussoir
     double s = 1.;
     for (const CellKernel *kernel : kernels)
       s = std::max(s, kernel->damping_factor());
-    // |u_e| <= sqrt(24) max |u| ; nodes that are held have no mass, but are
+    // |u_e| <= sqrt(24) max |u| ; nodes that are fixed have no mass, but are
     // like the others
     const double stiffness = 100. * input.bound->mass.linfty_norm() /
                              (input.bound->time_step * input.bound->time_step);

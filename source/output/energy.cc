@@ -135,7 +135,7 @@ namespace Voussoir
       n == 0 ? known_loss :
                      known_loss + 0.5 * ((n + 1.) * next_loss + (n - 1.) * next) +
                  0.5 * ((n - 1.) * last_loss + (n + 1.) * last);
-    // looks beside the schedule leave it as it is
+    // evaluations beside the schedule leave it as it is
     if (!first && (n == 0 || !is_due(step)))
       return loss;
 

@@ -36,28 +36,28 @@ namespace Voussoir
         verdicts.is_true("without keys the block slides",
                          !stands(keyed.with({"Interfaces/plane/Key depth=0"}),
                                  communicator));
-        const Observed held = observe(keyed, communicator);
+        const Observed observed = observe(keyed, communicator);
         verdicts.near("with keys: shear over what friction could bear",
-                      held.shear / (friction * held.pressure),
+                      observed.shear / (friction * observed.pressure),
                       slopes[0],
                       1e-3);
         verdicts.near("normal force over the block's",
-                      held.pressure,
+                      observed.pressure,
                       weight * std::cos(std::atan(slopes[0] * friction)),
                       1e-3,
                       "N");
         verdicts.is_true("no safety of the surface in interfaces.csv",
-                         held.safety.empty());
-        verdicts.is_true("none of the block", held.block_safety.empty());
-        verdicts.is_true("none in the summary, and none below one",
-                         held.surface.at("smallest sliding safety").is_null() &&
-                           held.surface.at("time at safety one or below [s]") ==
-                             0.);
+                         observed.safety.empty());
+        verdicts.is_true("none of the block", observed.block_safety.empty());
+        verdicts.is_true(
+          "none in the summary, and none below one",
+          observed.surface.at("smallest sliding safety").is_null() &&
+            observed.surface.at("time at safety one or below [s]") == 0.);
         verdicts.is_true("none of the block in the summary",
-                         held.block.at("safety at the start").is_null() &&
-                           held.block.at("smallest safety").is_null() &&
-                           held.block.at("time at safety one or below [s]") ==
-                             0.);
+                         observed.block.at("safety at the start").is_null() &&
+                           observed.block.at("smallest safety").is_null() &&
+                           observed.block.at(
+                             "time at safety one or below [s]") == 0.);
 
         const Observed bare = observe(
           on_slope(file, slopes[1]).with({"Interfaces/plane/Key depth=0"}),

@@ -67,8 +67,9 @@ namespace Voussoir
             continue;
           const double m = simulation.model.solid.mass.mass.local_element(i);
           double motion  = simulation.run.state.displacement.local_element(i);
-          if (simulation.rest.initial.displacement.size() > 0)
-            motion -= simulation.rest.initial.displacement.local_element(i);
+          if (simulation.static_state.initial.displacement.size() > 0)
+            motion -=
+              simulation.static_state.initial.displacement.local_element(i);
           sums[d] += m * motion;
           sums[3] += m / 3.;
         }

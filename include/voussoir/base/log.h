@@ -108,10 +108,9 @@ namespace Voussoir
     std::map<std::string, std::uint64_t>
     sizes_of_growing_files() const;
 
-    /** Takes note of files that were written and are not there any more, or
-     *  not as they were. */
+    /** Records which files that were written are missing or changed. */
     void
-    look_for_lost_files();
+    check_for_lost_files();
 
     MPI_Comm
     communicator() const;

@@ -170,8 +170,8 @@ namespace Voussoir
     std::vector<dealii::Tensor<1, 3>> displacement, force;
 
     // at the owned nodes
-    std::vector<double>               flexibility; // -1: full
-    std::vector<dealii::Tensor<2, 3>> full_flexibility;
+    std::vector<double>               compliance; // [m/N], -1: full
+    std::vector<dealii::Tensor<2, 3>> full_compliance;
     std::vector<dealii::Tensor<1, 3>> applied, last_velocity;
 
     ContactSolver::Effort total;

@@ -43,7 +43,7 @@ namespace Voussoir
     {}
 
     /** Inverse of the mass that the update divides by, of an owned node: a
-     *  momentum p changes its velocity by H p; zero where held, and for others
+     *  momentum p changes its velocity by H p; zero where fixed, and for others
      *  than those that prescribe it where the motion is prescribed. */
     using InverseMass =
       std::function<dealii::Tensor<2, 3>(const unsigned int node)>;

@@ -101,7 +101,7 @@ namespace Voussoir
     seek_limit(const StudyValues &values);
 
     void
-    say(const std::string &text) const;
+    report(const std::string &text) const;
 
     /** Brings the outcomes of all groups together on each rank. */
     void

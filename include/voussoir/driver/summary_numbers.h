@@ -81,7 +81,7 @@ namespace Voussoir
      *  run that was stopped meets what happened before. Throws UserError if a
      *  run that went to its end does not have the number. */
     std::pair<std::optional<double>, bool>
-    look(const RunSummary &summary) const;
+    evaluate(const RunSummary &summary) const;
 
     const std::string text;
 

@@ -24,8 +24,8 @@ namespace Voussoir
 
   /**
    * What a run says of the dam by what its summary has, whether or not the case
-   * has criteria of its own: demand over strength, whether the dam is open from
-   * face to face or a piece of it loose, slips and their rate at the end,
+   * has criteria of its own: demand over strength, whether a crack goes through
+   * or a block is detached, slips and their rate at the end,
    * safety of blocks. A table of lines as at_most() makes them.
    */
   nlohmann::json

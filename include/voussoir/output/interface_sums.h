@@ -5,7 +5,7 @@
 
 namespace Voussoir
 {
-  /** What is summed over the points of a surface at a look. */
+  /** Sums over the points of a surface in a sample. */
   namespace InterfaceSum
   {
     enum Quantity
@@ -49,7 +49,7 @@ namespace Voussoir
   void
   add_to_sums(const ContactPoint &point, Number *sums);
 
-  /** What interfaces.csv says of a surface at a look. */
+  /** Values of a surface in interfaces.csv. */
   constexpr unsigned int                                n_surface_columns = 9;
   constexpr std::array<const char *, n_surface_columns> surface_columns{
     {"largest opening [mm]",

@@ -42,7 +42,7 @@ namespace Voussoir
     /** Takes note of results that cannot be written. */
     Log &log;
 
-    /** Between two looks that miss no more than 1.2 % of an extreme of what
+    /** Between two samples that miss no more than 1.2 % of an extreme of what
      *  oscillates as fast as the mesh carries [s]: 20 in a period. */
     double
     resolving_interval() const
@@ -50,18 +50,19 @@ namespace Voussoir
       return 0.05 / carried_frequency;
     }
 
-    /** Between two looks for extremes of what is written at this interval
+    /** Between two samples for extremes of what is written at this interval
      *  [s]. */
     double
-    looking_interval(const double interval) const
+    sampling_interval(const double interval) const
     {
       return std::min(interval, resolving_interval());
     }
 
-    /** Warns of extremes that are looked for at an interval which the entry at
+    /** Warns of extremes that are sampled at an interval which the entry at
      *  @p place sets coarser than that [s]. */
     void
-    warn_of_coarse_looks(const double interval, const std::string &place) const;
+    warn_of_coarse_sampling(const double       interval,
+                            const std::string &place) const;
   };
 
   /** What they may see of its run besides the state. */

@@ -66,7 +66,7 @@ namespace Voussoir
   class SafetyHistory
   {
   public:
-    /** @param interval since the look before [s] */
+    /** @param interval since the sample before [s] */
     void
     add(const double time, const double interval, const double safety);
 

@@ -41,9 +41,9 @@ namespace Voussoir
     CentralDifference(const EquationOfMotion &equation,
                       const LeapFrog         &leap_frog);
 
-    /** The static state, at rest. */
+    /** The static state, without motion. */
     State
-    state_at_rest() const;
+    initial_state() const;
 
     /** Advances the state by one step. */
     void
@@ -51,7 +51,7 @@ namespace Voussoir
 
     /** What supports and prescribed motions brought at an owned node at the
      *  beginning of the last step, beyond the static state: besides what
-     *  accelerates the mass of a held node itself, which is not known here
+     *  accelerates the mass of a fixed node itself, which is not known here
      *  [N]. */
     dealii::Tensor<1, 3>
     support_force(const State &state, const unsigned int node) const;
@@ -60,12 +60,12 @@ namespace Voussoir
 
   private:
     /** What a change of velocity of an owned node takes, divided by that [kg];
-     *  zero where held. */
+     *  zero where fixed. */
     dealii::Tensor<2, 3>
     mass_at(const unsigned int node) const;
 
     void
-    tell_projections();
+    initialize_projections();
 
     /** Of the force of the step from a state; none if it is not asked for, or
      *  does not go by the motion. */

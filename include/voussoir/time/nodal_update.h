@@ -27,11 +27,11 @@ namespace Voussoir
                 const LeapFrog   &leap_frog);
 
     /** What the update divides by at an owned node [kg], without rows and
-     *  columns where held, or null if it has no terms. */
+     *  columns where fixed, or null if it has no terms. */
     std::optional<dealii::Tensor<2, 3>>
     mass_at(const unsigned int node) const;
 
-    /** What must act on the held components of a node, besides what the cells
+    /** What must act on the fixed components of a node, besides what the cells
      *  need, so that they stay as they are in the step that ends with the
      *  velocity @p next [N]. */
     dealii::Tensor<1, 3>

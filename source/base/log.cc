@@ -18,7 +18,7 @@ namespace Voussoir
     const char *const waits_in_memory =
       "; what it lacks waits in memory until that is possible";
 
-    /** Whether what is said comes to a terminal that can overwrite a line. */
+    /** Whether messages go to a terminal that can overwrite a line. */
     bool
     is_watched()
     {

@@ -11,7 +11,7 @@ namespace Voussoir
 
   namespace
   {
-    /** A log that has said who speaks. */
+    /** A log that begins with the program and its version. */
     Log
     opened_log(const Case       &parameters,
                const RunOptions &options,

@@ -107,7 +107,7 @@ namespace Voussoir
   {
     const ActivePoint          &point  = active_point(place.batch, q);
     const SymmetricTensor<2, 3> stress = lane_of(point.stress, place.lane);
-    return lane_of(point.seen, place.lane) -
+    return lane_of(point.law_strain, place.lane) -
            1. / young_modulus *
              ((1. + poisson_ratio) * stress -
               poisson_ratio * trace(stress) * unit_symmetric_tensor<3>());
@@ -144,7 +144,7 @@ namespace Voussoir
       for (unsigned int d = 0; d < 3; ++d)
         visit_one(point.normal[d]);
       for (SymmetricTensor3<Lanes> *tensor : {&point.strain,
-                                              &point.seen,
+                                              &point.law_strain,
                                               &point.plastic,
                                               &point.stress,
                                               &point.filter})

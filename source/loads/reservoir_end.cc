@@ -16,7 +16,7 @@ namespace Voussoir
     // 280 m of water in a canyon above 20 Hz.
     constexpr unsigned int most_modes = 64;
 
-    // Sine of the angle at which it is said that an end leans.
+    // Sine of the slope of an end from which on the log has a note.
     constexpr double largest_slope = 0.1;
 
 

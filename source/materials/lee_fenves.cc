@@ -27,10 +27,10 @@ namespace Voussoir
      * where b_t and b_c make the plastic work over the cell's length that of
      * the fracture and the crushing energy. The stress is
      *   sigma = (1 - D_c) [(1 - D_t) s + w D_t s_c] ,
-     * where s_c is what a material that bears no tension keeps of s: w of the
-     * stiffness comes back when a crack closes. Lee and Fenves put
-     * (1 - D_c) (1 - D_t + w (1 - r) D_t) s, which has no potential: a block
-     * that rocks and slides on its crack gains energy at every turn.
+     * where s_c is the part of s of a material without tensile strength: w of
+     * the stiffness comes back when a crack closes. Lee and Fenves put (1 -
+     * D_c) (1 - D_t + w (1 - r) D_t) s, which has no potential: a block that
+     * rocks and slides on its crack gains energy at every turn.
      *
      * In the return mapping the deviator of s keeps its direction and its trace
      * falls in proportion, which leaves one equation. Beyond the apex the
@@ -149,7 +149,7 @@ namespace Voussoir
                 const double crushing,
                 const double length) const
       {
-        // what is wide open bears nothing, and its effective strength is finite
+        // a wide crack has no tensile strength, and a finite effective one
         const double t = std::max(1e-10,
                                   std::exp(-tensile_strength * length *
                                            opening / fracture_energy));
@@ -195,7 +195,7 @@ namespace Voussoir
 
       template <typename Number>
       Number
-      load_level(const SymmetricTensor3<Number> &stress, const Number &) const
+      yield_ratio(const SymmetricTensor3<Number> &stress, const Number &) const
       {
         const auto [first, second] = invariants(stress);
         return severity(first,

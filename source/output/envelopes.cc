@@ -593,7 +593,8 @@ namespace Voussoir
           }
       }
 
-      /** A law without strength bears any tension, concrete and rock do not. */
+      /** A law without strength has no limit of tension, concrete and rock
+       * have. */
       void
       check_tension(const unsigned int material, const nlohmann::json &found)
       {
@@ -607,7 +608,7 @@ namespace Voussoir
                          "\" has more than ",
                          tension,
                          " MPa of tension at some time, which neither concrete "
-                         "nor rock bears, but its law has no strength; look at "
+                         "nor rock resists, but its law has no strength; check "
                          "the units of loads and motion, or choose a law with "
                          "strength");
       }

@@ -40,18 +40,19 @@ namespace Voussoir
           blocks_text,
           "Blocks of rock whose safety against sliding as a whole is watched: "
           "\"cell set: surface, surface\", separated by \";\", with all "
-          "surfaces of contact that hold the block, one for each plane. It is "
-          "that of limit equilibrium under what drives the block, weight, "
+          "surfaces of contact of the block, one for each plane. It is "
+          "that of limit equilibrium under the driving forces, weight, "
           "water, uplift, thrust of the dam, and its inertia as if it went with "
           "its base: along one plane or along the line where two of them meet, "
-          "zero if the block lifts off, infinite if nothing drives it or other "
-          "planes block its way. The mobilised ratio is how much of what the "
-          "planes bear the contact forces take, at most one. Both are means "
+          "zero if the block lifts off, infinite without a driving force or if "
+          "other planes prevent the slip. The mobilised ratio is the shear of "
+          "the contact forces over the resistance of the planes, at most one. "
+          "Both are means "
           "over 0.443 of the shortest period that the mesh carries.");
         declare_interval(prm,
                          "Time between two lines of interfaces.csv [s]. In it "
                          "the sliding safety of a surface is (c A + f N) / T, "
-                         "what friction and cohesion could bear over the "
+                         "the resistance by friction and cohesion over the "
                          "resultant of the shear, both where no keys hold. "
                          "Extremes in summary.json are those of all steps.");
       }

@@ -136,7 +136,7 @@ namespace Voussoir
         return accelerations[point * directions.size() + direction];
       }
 
-      /** What the summary says of a spectrum. */
+      /** A spectrum in the summary. */
       void
       describe(const unsigned int         point,
                const unsigned int         direction,

@@ -147,7 +147,7 @@ namespace Voussoir
       return line.text.substr(0, 200);
     }
 
-    /** What the header of an AT2 file says. */
+    /** Header of an AT2 file. */
     struct Header
     {
       std::size_t n_points  = 0;

@@ -292,7 +292,7 @@ namespace Voussoir
             keep_smallest(smallest, now.bars);
             if (at_half_yield == 0. && now.opening > 0.5 * strength / slope)
               at_half_yield = now.bars;
-            // what the bars bear stretches the layer
+            // the force of the bars stretches the layer
             const double base =
               0.5 * way * (1. - std::cos(2. * numbers::PI * now.time / end));
             if (now.pressure == 0.)

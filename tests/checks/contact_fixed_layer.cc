@@ -10,10 +10,10 @@ namespace Voussoir
   {
     /**
      * A thin layer fixed at its top, with its foot on a plane, and shear
-     * tractions at the foot in static stages: what the plane does not bear of
-     * the shear t the layer does, t = R + k s with k = G / H. It is at rest
-     * while |R| is below c + f p, then slides until it is at that limit, or at
-     * that of the broken bond, which stays broken; p = rho g H / 2.
+     * tractions at the foot in static stages: the plane resists R of the
+     * shear t and the layer the rest, t = R + k s with k = G / H. The foot
+     * sticks while |R| is below c + f p, then slides until it is at that limit,
+     * or at that of the broken bond, which stays broken; p = rho g H / 2.
      */
     class FixedLayer : public Check
     {

@@ -11,8 +11,8 @@ namespace Voussoir
   {
     /**
      * Keys hold a block on an incline on which it would slide: the interface
-     * bears more shear than friction could, and has no sliding safety. Without
-     * keys it has one, on a slope that it stands on.
+     * resists more shear than friction could, and has no sliding safety.
+     * Without keys it has one, on a slope that it stands on.
      */
     class KeyedSafety : public Check
     {
@@ -37,7 +37,7 @@ namespace Voussoir
                          !stands(keyed.with({"Interfaces/plane/Key depth=0"}),
                                  communicator));
         const Observed observed = observe(keyed, communicator);
-        verdicts.near("with keys: shear over what friction could bear",
+        verdicts.near("with keys: shear over the resistance of friction",
                       observed.shear / (friction * observed.pressure),
                       slopes[0],
                       1e-3);
@@ -77,7 +77,7 @@ namespace Voussoir
       }
 
     private:
-      /** What the observer says of the block at rest. */
+      /** Results of the observer for the block without motion. */
       struct Observed
       {
         double         pressure, shear;      // [N]

@@ -145,7 +145,7 @@ namespace Voussoir
             {
               worse(positive_part(-g[0]));
               worse((F[0] + s.tension * point.area) / force_size);
-              // what a bond without an end still bears
+              // strength of a bond without an end
               worse(positive_part(shear - s.bond * point.area) / force_size);
               continue;
             }

@@ -13,7 +13,7 @@ namespace Voussoir
   namespace
   {
     /** A law with memory that has of LawDefaults all that it may: above all, no
-     *  load_level. The energy norm of its stress stays at a limit. */
+     *  yield_ratio. The energy norm of its stress stays at a limit. */
     struct Plain : IsotropicElasticity
     {
       static constexpr unsigned int n_history = 1; // largest norm so far [Pa]

@@ -6,7 +6,7 @@ namespace Voussoir
 
   namespace
   {
-    /** The largest stress on the way to a strain along z [Pa]. */
+    /** The largest stress up to a strain along z [Pa]. */
     double
     peak(const Material    &material,
          const double       confinement,

@@ -43,7 +43,7 @@ namespace Voussoir
     }
 
 
-    /** A law that answers no numbers while the strain is large, and numbers
+    /** A law that returns no numbers while the strain is large, and numbers
      *  again when it becomes smaller. */
     struct NotANumber : IsotropicElasticity
     {
@@ -52,7 +52,7 @@ namespace Voussoir
 
       template <typename Number>
       Number
-      load_level(const SymmetricTensor3<Number> &stress, const Number &) const
+      yield_ratio(const SymmetricTensor3<Number> &stress, const Number &) const
       {
         return strain(stress).norm() / limit;
       }

@@ -14,7 +14,7 @@ namespace Voussoir
   {
     /**
      * Bodies whose temperature changes by dT0 everywhere or by dT0 in a linear
-     * way from the back to the front face, at rest on planes of symmetry:
+     * way from the back to the front face, supported by planes of symmetry:
      *
      * - free bar: u = alpha dT0 x, no stress
      * - clamped bar: no displacement along it, sigma_xx = -E alpha dT0

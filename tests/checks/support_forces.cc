@@ -198,7 +198,7 @@ namespace Voussoir
      * Forces of all supports of a damped block on a rigid base, with weight,
      * against the change of its momentum,
      *   R + W = d/dt sum m (v + v_base) ,
-     * and those at rest against its weight.
+     * and those of the static state against its weight.
      */
     class MomentumBalance : public Check
     {

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Parts of a report against what is known of made-up results: a wall of two blocks
-with a joint that gapes more upstream, and summaries of which the verdict is plain.
+with a joint that is open wider upstream, and summaries of which the verdict is plain.
 
 usage: check_parts.py FOLDER_OF_THE_REPORT
 """

@@ -97,7 +97,7 @@ namespace Voussoir
     void
     set_up_multigrid();
 
-    /** `apply` without a look whether to stop. */
+    /** `apply` without polling for a request to stop. */
     void
     multiply(Vector &force, const Vector &displacement) const;
 

@@ -14,7 +14,7 @@ namespace Voussoir
    *
    * deal.II's ParameterHandler wants every entry declared before it parses, but
    * which sections a case has depends on the names the user lists in it
-   * (materials, loads). So the file is read once here, `given()` answers what
+   * (materials, loads). So the file is read once here, `given()` returns what
    * must be known to declare, and `parse()` then hands all of it to the
    * ParameterHandler, strictly.
    */

@@ -31,7 +31,7 @@ namespace Voussoir
   };
 
   /** A section "Interfaces/NAME": surfaces along which the mesh is split and
-   *  what they bear. */
+   *  their strength. */
   struct InterfaceParameters
   {
     std::string                   name;

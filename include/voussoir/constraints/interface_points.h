@@ -13,7 +13,7 @@ namespace Voussoir
    * The contact points of all interfaces of a case on this rank: where in the
    * mesh they are, the exchange with the ranks of their nodes, and what the
    * static stages do to them. Contact finds their forces in a step of time,
-   * StaticContact at rest.
+   * StaticContact in the static state.
    */
   class InterfacePoints : public ContactPoints
   {

@@ -6,7 +6,7 @@
 namespace Voussoir
 {
   /** Watches whether a run goes well: warns of what its results must not be
-   *  read without, each once, and says why it must stop. */
+   *  read without, each once, and reports why it must stop. */
   class Supervision
   {
   public:

@@ -73,13 +73,13 @@ namespace Voussoir
   surface_values(const double *sums, const double *largest, const double area);
 
   /**
-   * Safety of a block: what its planes can bear over what drives it. Its
+   * Safety of a block: resistance of its planes over the driving force. Its
    * balance is M a = D + R with the contact forces R and all others D: weight,
    * water, uplift, thrust of the dam. If it went with its base it would lack
    * the acceleration a_s of its slip, so that limit equilibrium is that of D -
    * M (a - a_s) = -(R - M a_s) . As long as nothing slides this is -R; while it
    * slides, when friction caps R, it shows by how much the driving forces
-   * exceed what the planes bear.
+   * exceed the resistance of the planes.
    *
    * @param sums    over all ranks, of all surfaces one after the other
    * @param areas   of all surfaces [m2]

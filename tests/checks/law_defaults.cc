@@ -59,7 +59,7 @@ namespace Voussoir
         entries.clear();
         // under the name that is the default of every material
         entries["linear elastic"] = {
-          "A law without load level.",
+          "A law without yield ratio.",
           [] { return std::make_unique<MaterialOf<Plain>>(); }};
         Registry<Check>::create("materials", "")
           ->run(file, verdicts, communicator);

@@ -7,7 +7,7 @@ mesh and ground motion, which it takes from a run's fields and ground_motion.csv
     C = a (M + M_w) + b K, of each material its own b; a, b from the ratio at two frequencies
     water: mass 7/8 rho sqrt(H h) n n^T per area (Westergaard), H the depth below
            the level, of the column of faces, h that of the node
-    rigid base: the forces - (M + M_w) a of what is no light rock
+    rigid base: the forces - (M + M_w) a of all but massless rock
     boundary: springs and dashpots per area; K u + C v + sigma n of the free field,
            which is a column of linear elements under Newmark, too
 

@@ -60,8 +60,8 @@ namespace Voussoir
     drive(const ParameterFile                             &file,
           const Tensor<1, 3>                              &way,
           const MPI_Comm                                   communicator,
-          std::vector<std::string>                         changes = {},
-          const std::function<void(const ContactPoint &)> &look    = {})
+          std::vector<std::string>                         changes  = {},
+          const std::function<void(const ContactPoint &)> &callback = {})
     {
       changes.push_back(vector_entry("Constraints/base/Displacement", way));
       const auto parameters = make_case(file.with(changes));
@@ -81,9 +81,9 @@ namespace Voussoir
                                  -sums.given / area,
                                  sums.opening,
                                  sums.slip});
-          if (look)
+          if (callback)
             for (const ContactPoint &point : simulation->run.contact->points())
-              look(point);
+              callback(point);
         }
       const ContactEnergy &lost = simulation->run.contact->surfaces()[0].energy;
       const auto           sum =

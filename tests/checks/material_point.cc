@@ -50,7 +50,7 @@ namespace Voussoir
       }
 
       void
-      look_at(const Material &material, Verdicts &verdicts) const override
+      evaluate(const Material &material, Verdicts &verdicts) const override
       {
         const double modulus = material.elastic_constants().young_modulus;
         const double limit   = strength_in_tension / modulus;

@@ -56,8 +56,8 @@ namespace Voussoir
       "Frequency of the free vibration for which the materials' "
       "moduli hold under Maxwell damping [Hz]; in slower motion "
       "they are smaller, in faster motion larger. \"first mode\": the lowest natural frequency "
-      "where section \"Modes\" computes some, else 3; 0 for at "
-      "rest.");
+      "where section \"Modes\" computes some, else 3; 0: the "
+      "relaxed moduli.");
     prm.add_parameter(
       "Mesh viscosity",
       mesh_viscosity,

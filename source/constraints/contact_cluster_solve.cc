@@ -20,11 +20,11 @@ namespace Voussoir
     // points by less than this part of the displacement, which is round-off.
     constexpr double accuracy = 1e-12, round_off = 1e-13;
 
-    // Sweeps before another way is tried.
+    // Sweeps before another method is tried.
     constexpr unsigned int max_sweeps = 100;
 
     // Forces that would move a point this many times as far as the widest gap
-    // have run away: the nodes are jammed.
+    // diverge: the nodes are jammed.
     constexpr double too_large = 1e4;
 
     // Share of a point's own Delassus operator by which Newton's iteration

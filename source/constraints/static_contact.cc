@@ -329,7 +329,7 @@ namespace Voussoir
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
         ContactPoint &point = interfaces.points[k];
-        // of what was tried on the way here only this happened
+        // the history of the last iterate, without those before it
         point.history = history_at(k);
         if (point.status != ContactStatus::sticking && !point.limits.locked)
           {

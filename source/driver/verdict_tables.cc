@@ -231,7 +231,7 @@ namespace Voussoir
           if (const nlohmann::json &safety = block.at("smallest safety");
               safety.is_number())
             {
-              // below one it slid: by how much tells what that means
+              // below one it slid: its slip is to be judged
               nlohmann::json &line = results[name + ": safety against sliding"];
               line                 = at_least(safety, 1.);
               if (safety < 1.)

@@ -632,8 +632,8 @@ namespace Voussoir
           reasons.push_back("the demand-capacity ratio of the " + face.name +
                             " is " + number(face.largest_at_rest) +
                             " in the static state");
-        // where the curve is furthest above its limit; how long the static
-        // state lasts says nothing
+        // where the curve is furthest above its limit; the
+        // duration of the static state does not count
         unsigned int worst  = 0;
         double       excess = 0.;
         for (unsigned int r = 0; r < ratios.size(); ++r)

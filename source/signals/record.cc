@@ -140,7 +140,7 @@ namespace Voussoir
       return result;
     }
 
-    /** Enough of a line for what a header says. */
+    /** The beginning of a line, long enough for a header. */
     std::string
     beginning(const Line &line)
     {

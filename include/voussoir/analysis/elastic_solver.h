@@ -39,7 +39,7 @@ namespace Voussoir
       const NodalTerms *springs = nullptr;
 
       /** Contact between parts of the model, which hold together where they
-       *  touch at this displacement until `tangent_contact` says otherwise. */
+       *  touch at this displacement until `tangent_contact` changes that. */
       Contact      *contact      = nullptr;
       const Vector *displacement = nullptr;
 

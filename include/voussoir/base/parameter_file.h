@@ -70,8 +70,9 @@ namespace Voussoir
       std::string place; // "case.prm, line 12" or "--set"
     };
 
-    /** What a file says goes before what those say that it includes, which all
-     *  see names of files from the folder of the first one. */
+    /** Entries of a file take precedence over those of the files that it
+     *  includes; all resolve names of files from the folder of the first one.
+     */
     void
     read(const std::string &filename, std::vector<std::string> includers);
 

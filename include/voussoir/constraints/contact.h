@@ -79,17 +79,18 @@ namespace Voussoir
     void
     resume();
 
-    /** From here on the points swing on their way to a static state. */
+    /** Begins the dynamic relaxation of a static stage, in which points
+     * oscillate. */
     void
     begin_approach();
 
-    /** Takes those swings out of the history, which opened joints that end
-     *  closed: what stays is that from before and the way from there to where
-     *  the points are now. */
+    /** Removes these oscillations, which opened joints that end closed, from
+     * the history: it is that before the relaxation and of the monotonic change
+     * to the present gap and slip. */
     void
     forget_approach();
 
-    /** Lets the water into the interfaces whose uplift comes with one of these
+    /** Applies the uplift of the interfaces whose water comes with one of these
      *  loads. */
     void
     let_water_in(const std::vector<std::string> &loads);

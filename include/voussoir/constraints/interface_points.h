@@ -29,7 +29,7 @@ namespace Voussoir
     set_delay(const Discretization                            &discretization,
               const std::function<double(const Grid::Cell &)> &wave_speed);
 
-    /** Lets the water into the interfaces whose uplift comes with one of these
+    /** Applies the uplift of the interfaces whose water comes with one of these
      *  loads. */
     void
     let_water_in(const std::vector<std::string> &loads);

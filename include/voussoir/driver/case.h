@@ -221,7 +221,7 @@ namespace Voussoir
     declare_unused_observers(const std::vector<std::string> &used);
 
     /** Lets the uplift of interfaces come with the first load of water, where
-     *  the file does not say with which. */
+     *  the file does not name one. */
     void
     find_water_of_uplift();
 

@@ -31,7 +31,7 @@ namespace Voussoir
     double followed_to = 0.;
   };
 
-  /** The earthquake of a run, in the one way or the other that it enters the
+  /** The earthquake of a run: motion of a rigid base, or waves that enter the
    *  model. */
   struct Earthquake
   {

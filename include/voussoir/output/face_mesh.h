@@ -123,7 +123,7 @@ namespace Voussoir
 
     using NodeNumbers = std::map<SetAndNode, unsigned int>;
 
-    /** What is gathered on the way over the faces. */
+    /** Nodes and positions gathered in a loop over the faces. */
     struct Places
     {
       NodeNumbers nodes;

@@ -183,7 +183,7 @@ namespace Voussoir
         [&value](const nlohmann::json &saved) { saved.get_to(value); });
     }
 
-    /** The same of what has its own way to be saved and loaded. */
+    /** The same of a value with functions of its own that save and load it. */
     void
     keep(const std::string                                 &name,
          const std::function<nlohmann::json()>             &save,

@@ -128,7 +128,7 @@ namespace Voussoir
       {
         const auto full =
           std::min<std::size_t>(std::lround(length * share_done), length);
-        // what is too long for the terminal is cut off instead of wrapped
+        // a line too long for the terminal is cut off instead of wrapped
         show("\033[?7l[" + std::string(full, '#') +
              std::string(length - full, '-') + "] " + line.str() + "\033[?7h");
         shows_bar = true;

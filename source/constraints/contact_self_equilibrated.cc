@@ -309,7 +309,7 @@ namespace Voussoir
         if (part == 1.)
           break;
       }
-    double largest = 0.; // before: what is left of it has its round-off
+    double largest = 0.; // before: the remainder has its round-off
     for (unsigned int k = 0; k < cluster.n_points; ++k)
       largest = std::max(largest, points[cluster.first_point + k].force.norm());
     if (!std::all_of(forces.begin(), forces.end(), [&](const FreeForce &force) {

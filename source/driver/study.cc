@@ -32,7 +32,7 @@ namespace Voussoir
     }
 
 
-    /** The same without what is awkward in the name of a folder. */
+    /** The same without characters that the name of a folder cannot have. */
     std::string
     folder_name(const StudyValues &values)
     {

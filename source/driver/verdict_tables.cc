@@ -115,7 +115,7 @@ namespace Voussoir
     }
 
 
-    /** A line with what it is of. */
+    /** A line with the name of its object. */
     nlohmann::json
     of(nlohmann::json line, const std::string &what)
     {

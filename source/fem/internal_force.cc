@@ -181,7 +181,7 @@ namespace Voussoir
           largest[i] = factor * largest_entry(*vector, enough / factor);
           motion += largest[i];
         }
-    // one by one: the sum of a rank depends on what it owns
+    // one by one: the sum of a rank depends on its cells
     Utilities::MPI::max(largest, discretization.grid.communicator(), largest);
     motion = std::accumulate(largest.begin(), largest.end(), 0.);
     if (motion >= enough)

@@ -529,7 +529,7 @@ namespace Voussoir
       }
 
       std::vector<int>         n_to, n_from;
-      std::vector<std::size_t> order; // of what is sent
+      std::vector<std::size_t> order; // of the sent rows
     };
 
 

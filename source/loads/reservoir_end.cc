@@ -12,7 +12,7 @@ namespace Voussoir
 
   namespace
   {
-    // What is above the frequencies of so many modes leaves as a plane wave: in
+    // Motion above the frequencies of so many modes leaves as a plane wave: in
     // 280 m of water in a canyon above 20 Hz.
     constexpr unsigned int most_modes = 64;
 

@@ -359,7 +359,7 @@ namespace Voussoir
 
 
     // How many vertices lie where a vertex of lower number is already. The bins
-    // are much wider than the tolerance, so most vertices look into one only.
+    // are much wider than the tolerance, so most vertices search one only.
     unsigned int
     n_coincident_vertices(const CoarseMesh &mesh, const double shortest_edge)
     {

@@ -406,7 +406,7 @@ namespace Voussoir
       // largest open area [m2] and opening [m] of each surface, and when [s]
       std::vector<std::array<double, 2>> largest_open, largest_opening;
 
-      // of each block what is known of it now, then sums times their time since
+      // of each block its present values, then sums times their time since
       // the last mean
       enum OfWindow
       {

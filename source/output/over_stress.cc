@@ -323,7 +323,7 @@ namespace Voussoir
         write_fields(state.time);
       }
 
-      /** What is found of a face set. */
+      /** Results of a face set. */
       struct Face
       {
         std::string name;

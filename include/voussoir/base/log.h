@@ -48,7 +48,7 @@ namespace Voussoir
     bool
     progress_is_due() const;
 
-    /** Says how far a long task is, with what it is about: a bar in the last
+    /** Reports how far a long task is, with its subject: a bar in the last
      * line of a terminal, which the next message overwrites; elsewhere and
      * in log.txt a line, not more often than every five seconds. */
     void

@@ -27,7 +27,7 @@ namespace Voussoir
             const InterfacesParameters &parameters,
             const InterfaceSurfaces    &surfaces);
 
-    /** The points, for those who find the same forces in another way. */
+    /** The points, for another solver of the same forces. */
     InterfacePoints &
     points_of_interfaces();
 

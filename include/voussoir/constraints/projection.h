@@ -11,7 +11,7 @@ namespace Voussoir
   /**
    * A constraint that corrects the predicted motion at the end of each step
    * (contact, prescribed motion): it gets displacement and velocity as they
-   * would be without it and returns what it did, as momentum and energy.
+   * would be without it and returns its momentum and energy.
    */
   class Projection
   {

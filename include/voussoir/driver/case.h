@@ -176,7 +176,7 @@ namespace Voussoir
     StudyParameters                study;
     NamedObjects<Observer>         observers;
 
-    /** Observers that the file does not name, which look at strengths that it
+    /** Observers that the file does not name, which evaluate strengths that it
      *  gives: over-stress, and cracks that go through. One that does not fit
      *  the mesh is left out. */
     std::vector<std::string> added_observers;

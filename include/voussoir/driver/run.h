@@ -26,7 +26,7 @@ namespace Voussoir
         const ResultFolder &folder,
         Log                &log);
 
-    /** With what was made before. */
+    /** With a setup that was made before. */
     Run(const StaticState        &static_state,
         const Modes              &modes,
         const ResultFolder       &folder,
@@ -46,7 +46,8 @@ namespace Voussoir
     void
     step();
 
-    /** Writes what is left. Throws UserError if results could not be written.
+    /** Writes the remaining results. Throws UserError if results could not be
+     * written.
      */
     RunSummary
     end();

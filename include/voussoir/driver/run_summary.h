@@ -88,7 +88,7 @@ namespace Voussoir
     failed   // by a mistake in its file, or its results are not written
   };
 
-  /** What is known of a run at its end. */
+  /** Results of a run at its end. */
   struct RunSummary
   {
     RunEnd      end = RunEnd::complete;
@@ -136,7 +136,7 @@ namespace Voussoir
   void
   write_summary(const std::string &folder, RunSummary &summary, Log &log);
 
-  /** A run that was stopped, with what is known of it. */
+  /** A run that was stopped, with its results until then. */
   class StoppedRun : public RunStopped
   {
   public:

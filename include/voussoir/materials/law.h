@@ -14,9 +14,8 @@ namespace Voussoir
   struct PointResponse;
 
   /**
-   * The contract of a stress law: all that somebody who adds one must know. A
-   * law is a struct without mesh, clock and ranks, in one file of its own with
-   * the line
+   * The contract of a stress law, for whoever adds one. A law is a struct
+   * without mesh, clock and ranks, in one file of its own with the line
    *
    *   const Registry<Material>::Add<MaterialOf<Law>>
    *     registered("name", "One sentence.");

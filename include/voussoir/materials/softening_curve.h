@@ -58,7 +58,7 @@ namespace Voussoir
       double displacement; // inelastic, of the band [m]
     };
 
-    /** What has become of a point at its largest equivalent strain. */
+    /** State of a point at its largest equivalent strain. */
     struct Point
     {
       double stress;       // [Pa]

@@ -27,8 +27,8 @@ namespace Voussoir
       force_y,
       force_z,
       cohesion, // with the bond [N]
-      friction, // coefficient of what is closed, times area [m2]
-      moving_x, // velocity of the second side of what is closed against the
+      friction, // coefficient of closed points, times area [m2]
+      moving_x, // velocity of the second side of closed points against the
       moving_y, // first, in global directions, times area [m3/s]
       moving_z,
       n_quantities
@@ -91,8 +91,8 @@ namespace Voussoir
                    const std::vector<double>  &areas,
                    const dealii::Tensor<1, 3> &inertia);
 
-  /** Mean velocity of a block's slip, over what is closed of its planes; zero
-   *  if nothing is [m/s]. */
+  /** Mean velocity of a block's slip, over the closed points of its planes;
+   * zero if nothing is [m/s]. */
   dealii::Tensor<1, 3>
   slip_velocity(const SlidingBlock        &block,
                 const double              *sums,

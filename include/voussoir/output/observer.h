@@ -123,7 +123,7 @@ namespace Voussoir
     virtual void
     observe(const State &state) = 0;
 
-    /** Writes what is left and adds to the summary. */
+    /** Writes the remaining results and adds to the summary. */
     void
     finish(const State &state, nlohmann::json &summary);
 
@@ -143,11 +143,11 @@ namespace Voussoir
     checkpoint_values();
 
   protected:
-    /** Makes what the run needs, and keeps what is remembered. */
+    /** Initializes the observer for a run, and keeps its state. */
     virtual void
     prepare() = 0;
 
-    /** Brings what waits in memory into what is kept and into the files; called
+    /** Flushes samples that wait in memory into the state and the files; called
      *  on all ranks, before a checkpoint and at the end. */
     virtual void
     flush()

@@ -102,7 +102,7 @@ namespace Voussoir
     for (unsigned int i = 0; i < 3 * discretization.n_owned_nodes(); ++i)
       if (constraints.is_constrained(
             discretization.owned_dofs.nth_index_in_set(i)))
-        held.push_back(i);
+        constrained.push_back(i);
     assemble(materials, additions.contact);
     if (additions.contact != nullptr)
       tie(*additions.contact, *additions.displacement);
@@ -180,20 +180,20 @@ namespace Voussoir
 
     const auto add = [&](const auto          first,
                          const auto          second,
-                         const auto         &first_held,
-                         const auto         &second_held,
+                         const auto         &first_fixed,
+                         const auto         &second_fixed,
                          const Tensor<2, 3> &values) {
       for (unsigned int d = 0; d < 3; ++d)
         for (unsigned int e = 0; e < 3; ++e)
-          if (!first_held[d] && !second_held[e])
+          if (!first_fixed[d] && !second_fixed[e])
             matrix.add(3 * first + d, 3 * second + e, values[d][e]);
     };
     for (const StaticContact::Pair &p : static_contact->pairs())
       {
-        add(p.first, p.first, p.first_held, p.first_held, p.tangent);
-        add(p.second, p.second, p.second_held, p.second_held, p.tangent);
-        add(p.first, p.second, p.first_held, p.second_held, -p.tangent);
-        add(p.second, p.first, p.second_held, p.first_held, -p.tangent);
+        add(p.first, p.first, p.first_fixed, p.first_fixed, p.tangent);
+        add(p.second, p.second, p.second_fixed, p.second_fixed, p.tangent);
+        add(p.first, p.second, p.first_fixed, p.second_fixed, -p.tangent);
+        add(p.second, p.first, p.second_fixed, p.first_fixed, -p.tangent);
       }
     matrix.compress(VectorOperation::add);
   }
@@ -231,7 +231,7 @@ namespace Voussoir
       },
       matrix,
       diagonal(),
-      held,
+      constrained,
       3,
       rigid_modes);
   }
@@ -251,7 +251,7 @@ namespace Voussoir
   void
   ElasticSolver::clear_held(Vector &vector) const
   {
-    for (const unsigned int i : held)
+    for (const unsigned int i : constrained)
       vector.local_element(i) = 0.;
   }
 
@@ -340,7 +340,7 @@ namespace Voussoir
       {
         throw NotSolved(
           "The static equations do not converge within 1000 iterations. Either "
-          "a part of the model can move freely: hold it with \"Fixed\" or "
+          "a part of the model can move freely: fix it with \"Fixed\" or "
           "\"Roller\" in section \"Boundaries\"; or its cells are very flat: "
           "make them no more than about five times as long as thick.");
       }

@@ -61,24 +61,25 @@ namespace Voussoir
 
     /** The surfaces on which nothing sticks any more. */
     std::vector<std::string>
-    loose_surfaces(const Contact &contact, const MPI_Comm communicator)
+    non_sticking_surfaces(const Contact &contact, const MPI_Comm communicator)
     {
       const unsigned int        n = contact.surface_names().size();
-      std::vector<unsigned int> held(n);
+      std::vector<unsigned int> sticking(n);
       std::vector<double>       opening(n), slip(n);
       for (const ContactPoint &point : contact.points())
         {
           const unsigned int s = point.surface;
-          held[s] += !point.joined || point.status == ContactStatus::sticking;
+          sticking[s] +=
+            !point.joined || point.status == ContactStatus::sticking;
           opening[s] = std::max(opening[s], point.gap[0]);
           slip[s] = std::max(slip[s], std::hypot(point.gap[1], point.gap[2]));
         }
-      held = sum_over_ranks(held, communicator);
+      sticking = sum_over_ranks(sticking, communicator);
       Utilities::MPI::max(opening, communicator, opening);
       Utilities::MPI::max(slip, communicator, slip);
       std::vector<std::string> result;
       for (unsigned int s = 0; s < n; ++s)
-        if (held[s] == 0)
+        if (sticking[s] == 0)
           {
             std::ostringstream text;
             text << std::setprecision(3) << '"' << contact.surface_names()[s]
@@ -107,17 +108,17 @@ namespace Voussoir
                         const Vector         &moved,
                         const bool            cracks)
   {
-    Vector way = moved;
-    way -= before;
+    Vector change = moved;
+    change -= before;
     std::ostringstream text;
     text << std::setprecision(3) << "the point at "
-         << place_of_largest(discretization, way) << " has moved by "
-         << largest_amount(way) << " m";
+         << place_of_largest(discretization, change) << " has moved by "
+         << largest_amount(change) << " m";
     if (contact != nullptr)
-      if (const auto loose =
-            loose_surfaces(*contact, discretization.grid.communicator());
-          !loose.empty())
-        text << ", nothing sticks on " << join(loose, ", ");
+      if (const auto sliding =
+            non_sticking_surfaces(*contact, discretization.grid.communicator());
+          !sliding.empty())
+        text << ", nothing sticks on " << join(sliding, ", ");
     if (cracks)
       text << ", materials crack or yield";
     return text.str();

@@ -14,11 +14,11 @@ namespace Voussoir
     prm.add_parameter("Number",
                       number,
                       "How many of the lowest natural modes to compute; 0: "
-                      "none. Absorbing faces are held in them, and the moduli "
+                      "none. Absorbing faces are fixed in them, and the moduli "
                       "are those given.",
                       Patterns::Integer(0, 1000));
     prm.add_parameter("Held materials",
-                      held_materials,
+                      fixed_materials,
                       "Materials that do not move in the modes, separated by "
                       "commas: rigid rock.");
     prm.add_parameter("Massless materials",
@@ -77,11 +77,12 @@ namespace Voussoir
                           "\"Materials\"" +
                           known_names(name, materials) + ".");
     };
-    check_names("Held materials", held_materials);
+    check_names("Held materials", fixed_materials);
     check_names("Massless materials", massless_materials);
-    if (split_list(held_materials).empty() && boundaries.empty())
-      throw UserError("Section \"Modes\" asks for modes of a model that "
-                      "nothing holds; name faces in section \"Boundaries\", or "
-                      "\"Held materials\" in section \"Modes\".");
+    if (split_list(fixed_materials).empty() && boundaries.empty())
+      throw UserError(
+        "Section \"Modes\" asks for modes of a model "
+        "without supports; name faces in section \"Boundaries\", or "
+        "\"Held materials\" in section \"Modes\".");
   }
 } // namespace Voussoir

@@ -29,7 +29,7 @@ namespace Voussoir
     {
       return model.solid.discretization.make_constraints(
         model.boundaries.supports_with_absorbing(false),
-        among(model.material_names, parameters.held_materials));
+        among(model.material_names, parameters.fixed_materials));
     }
 
 

@@ -35,8 +35,8 @@ namespace Voussoir
     }
 
 
-    /** b = (M + M_a) r of unit motions r of all, of what is held as well, in
-     *  x, y and z. */
+    /** b = (M + M_a) r of unit motions r of all nodes, fixed ones too, in x,
+     *  y and z. */
     using Momenta = std::array<ModalSystem::Motion, 3>;
 
 
@@ -167,7 +167,7 @@ namespace Voussoir
   namespace
   {
     void
-    say_what_is_tied(const ModalSystem &system, Log &log)
+    report_ties(const ModalSystem &system, Log &log)
     {
       const ModalSystem::TiedPoints &points = system.tied_points();
       if (points.all == 0)
@@ -186,12 +186,12 @@ namespace Voussoir
 
     /** Residuals fall by about the same factor in each iteration. */
     void
-    say_progress(const unsigned int    iterations,
-                 const unsigned int    found,
-                 const double          residual,
-                 const ModeParameters &parameters,
-                 const double          seconds,
-                 Log                  &log)
+    report_progress(const unsigned int    iterations,
+                    const unsigned int    found,
+                    const double          residual,
+                    const ModeParameters &parameters,
+                    const double          seconds,
+                    Log                  &log)
     {
       if (!log.progress_is_due())
         return;
@@ -216,7 +216,7 @@ namespace Voussoir
   {
     const Timer clock;
     ModalSystem system(model, parameters);
-    say_what_is_tied(system, log);
+    report_ties(system, log);
     system.set_up();
     auto         start = system.start(block_size(system, parameters.number));
     const Vector orientation = system.solid_part(start[0]);
@@ -235,12 +235,12 @@ namespace Voussoir
                    [&](const unsigned int iterations,
                        const unsigned int found,
                        const double       residual) {
-                     say_progress(iterations,
-                                  found,
-                                  residual,
-                                  parameters,
-                                  clock.wall_time(),
-                                  log);
+                     report_progress(iterations,
+                                     found,
+                                     residual,
+                                     parameters,
+                                     clock.wall_time(),
+                                     log);
                    }},
                   std::move(start),
                   parameters.number,

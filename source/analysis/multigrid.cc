@@ -20,11 +20,11 @@ namespace Voussoir
   Multigrid::Multigrid(const Operator                  &apply,
                        TrilinosWrappers::SparseMatrix  &matrix,
                        const Vector                    &diagonal,
-                       const std::vector<unsigned int> &held,
+                       const std::vector<unsigned int> &constrained,
                        const unsigned int               n_components,
                        const Epetra_MultiVector        &near_kernel)
     : finest(apply, diagonal.size())
-    , held(held)
+    , constrained(constrained)
     , residual(diagonal)
     , change(diagonal)
   {
@@ -69,7 +69,7 @@ namespace Voussoir
     Vector inverse_diagonal  = diagonal;
     for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
       inverse_diagonal.local_element(i) = 1. / diagonal.local_element(i);
-    for (const unsigned int i : held)
+    for (const unsigned int i : constrained)
       inverse_diagonal.local_element(i) = 0.;
     data.preconditioner =
       std::make_shared<DiagonalMatrix<Vector>>(inverse_diagonal);
@@ -115,7 +115,7 @@ namespace Voussoir
                 levels);
     ML_Operator_Apply(
       &prolongation, n_coarse, coarse_change.data(), n, change.begin());
-    for (const unsigned int i : held)
+    for (const unsigned int i : constrained)
       change.local_element(i) = 0.;
     dst += change;
   }

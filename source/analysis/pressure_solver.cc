@@ -12,9 +12,9 @@ namespace Voussoir
   using namespace dealii;
 
   PressureSolver::PressureSolver(const AcousticSpace             &space,
-                                 const std::vector<unsigned int> &held)
+                                 const std::vector<unsigned int> &constrained)
     : space(space)
-    , held(held)
+    , constrained(constrained)
   {
     assemble();
     Vector diagonal = space.create_vector();
@@ -28,7 +28,7 @@ namespace Voussoir
                              const Vector &pressure) { apply(flux, pressure); },
                       matrix,
                       diagonal,
-                      this->held,
+                      this->constrained,
                       1,
                       constant);
   }
@@ -37,13 +37,13 @@ namespace Voussoir
   AffineConstraints<double>
   PressureSolver::make_constraints() const
   {
-    Vector is_held = space.create_ghosted_vector();
-    for (const unsigned int i : held)
-      is_held.local_element(i) = 1.;
-    is_held.update_ghost_values();
+    Vector is_constrained = space.create_ghosted_vector();
+    for (const unsigned int i : constrained)
+      is_constrained.local_element(i) = 1.;
+    is_constrained.update_ghost_values();
     AffineConstraints<double> constraints(space.relevant_dofs);
     for (const auto dof : space.relevant_dofs)
-      if (is_held(dof) > 0.)
+      if (is_constrained(dof) > 0.)
         constraints.add_line(dof);
     constraints.close();
     return constraints;
@@ -104,7 +104,7 @@ namespace Voussoir
   {
     flux = 0.;
     space.sweep(flux, pressure, {}, {});
-    for (const unsigned int i : held)
+    for (const unsigned int i : constrained)
       flux.local_element(i) = 0.;
   }
 

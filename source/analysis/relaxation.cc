@@ -12,8 +12,8 @@ namespace Voussoir
   {
     constexpr unsigned int max_steps = 50000;
 
-    // how often rest is looked for, in steps
-    constexpr unsigned int look_interval = 20;
+    // steps between two checks of convergence
+    constexpr unsigned int check_interval = 20;
 
 
     Damping
@@ -25,7 +25,7 @@ namespace Voussoir
     }
 
 
-    /** Of the box around the model [m]. */
+    /** Diagonal of the bounding box of the model [m]. */
     double
     diagonal_of(const Discretization &discretization)
     {
@@ -138,10 +138,10 @@ namespace Voussoir
     loaded.displacement = displacement;
     loaded.force        = force;
 
-    // from rest, undamped until the first look
+    // from rest, undamped until the first check
     double frequency = 0., mass_coefficient = 0.;
     auto   scheme         = make_scheme(0.);
-    State  state          = scheme->state_at_rest();
+    State  state          = scheme->initial_state();
     state.material_memory = std::move(memory);
     if (contact != nullptr)
       {
@@ -154,19 +154,19 @@ namespace Voussoir
       {
         scheme->step(state);
         const unsigned int steps = ++result.steps;
-        const unsigned int to_look =
-          (look_interval - steps % look_interval) % look_interval;
-        if (to_look < 3)
-          velocity[2 - to_look] = state.velocity;
-        if (to_look > 0)
+        const unsigned int to_check =
+          (check_interval - steps % check_interval) % check_interval;
+        if (to_check < 3)
+          velocity[2 - to_check] = state.velocity;
+        if (to_check > 0)
           continue;
 
         stop_if_requested(discretization.grid.communicator());
         const double speed = largest_amount(state.velocity);
         if (!std::isfinite(speed) || too_far(state.displacement))
           break;
-        // friction and joints that open may seem to push the motion on: then
-        // the last one holds
+        // friction and opening joints may give a negative quotient: the last
+        // frequency then stays
         const double measured = natural_frequency(velocity, mass_coefficient);
         if (measured > 0.)
           frequency = frequency == 0. ?
@@ -176,7 +176,7 @@ namespace Voussoir
         const double moving = speed == 0. ? 0. : speed * period;
         result.at_rest =
           moving <= tolerance * largest_amount(state.displacement);
-        if (steps % (100 * look_interval) == 0)
+        if (steps % (100 * check_interval) == 0)
           log.line("    after ",
                    steps,
                    " steps: motion of ",

@@ -23,9 +23,9 @@ namespace Voussoir
       prm,
       "Supports",
       supports,
-      "How the absorbing faces stand in the static stage: fixed, held at right "
-      "angles to themselves (roller), or on the springs of the boundary. Their "
-      "reactions stay when the faces begin to absorb.");
+      "Supports of the absorbing faces in the static stage: fixed, fixed at "
+      "right angles to themselves (roller), or on the springs of the boundary. "
+      "Their reactions stay when the faces begin to absorb.");
     prm.add_parameter(
       "Load increments",
       increments,
@@ -41,7 +41,8 @@ namespace Voussoir
     prm.add_parameter("Rest tolerance",
                       rest,
                       "With interfaces: motion in a natural period over the "
-                      "largest displacement at which the state is at rest.",
+                      "largest displacement at which dynamic relaxation has "
+                      "converged.",
                       Patterns::Double(1e-12, 1e-2));
     prm.add_parameter(
       "Points",

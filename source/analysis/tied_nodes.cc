@@ -76,12 +76,12 @@ namespace Voussoir
   AffineConstraints<double>
   TiedNodes::added_to(const AffineConstraints<double> &constraints) const
   {
-    // what any node of a group is held in
+    // components in which any node of a group is constrained
     const IndexSet                      &owned = discretization.owned_dofs;
-    std::set<types::global_dof_index>    held;
+    std::set<types::global_dof_index>    constrained;
     std::vector<types::global_dof_index> mine;
-    const auto look = [&](const types::global_dof_index node,
-                          const types::global_dof_index leader) {
+    const auto collect = [&](const types::global_dof_index node,
+                             const types::global_dof_index leader) {
       for (unsigned int d = 0; d < 3; ++d)
         if (owned.is_element(3 * node) &&
             constraints.is_constrained(3 * node + d))
@@ -89,12 +89,12 @@ namespace Voussoir
     };
     for (const auto &[follower, leader] : leader_of)
       {
-        look(follower, leader);
-        look(leader, leader);
+        collect(follower, leader);
+        collect(leader, leader);
       }
     for (const auto dof :
          join_over_ranks(mine, discretization.grid.communicator()))
-      held.insert(dof);
+      constrained.insert(dof);
 
     IndexSet lines = discretization.relevant_dofs;
     for (const auto &[follower, leader] : leader_of)
@@ -112,10 +112,10 @@ namespace Voussoir
         if (lines.is_element(3 * follower))
           {
             result.add_line(3 * follower + d);
-            if (held.count(3 * leader + d) == 0)
+            if (constrained.count(3 * leader + d) == 0)
               result.add_entry(3 * follower + d, 3 * leader + d, 1.);
           }
-    for (const auto dof : held)
+    for (const auto dof : constrained)
       if (lines.is_element(dof) && !result.is_constrained(dof))
         result.add_line(dof);
     result.close();

@@ -66,7 +66,7 @@ namespace Voussoir
         return true;
       }
 
-      /** Makes room for so many bytes, where the file system can promise it. */
+      /** Reserves space for so many bytes, where the file system can. */
       bool
       reserve(const std::uintmax_t size) const
       {
@@ -74,7 +74,7 @@ namespace Voussoir
                errno == EOPNOTSUPP || errno == ENOSYS;
       }
 
-      /** Some file systems say only now that there is no room. */
+      /** Some file systems report only now that there is no space. */
       bool
       close()
       {

@@ -18,7 +18,7 @@ namespace Voussoir
     const char *const waits_in_memory =
       "; what it lacks waits in memory until that is possible";
 
-    /** Whether what is said comes to a terminal that can overwrite a line. */
+    /** Whether messages go to a terminal that can overwrite a line. */
     bool
     is_watched()
     {
@@ -128,7 +128,7 @@ namespace Voussoir
       {
         const auto full =
           std::min<std::size_t>(std::lround(length * share_done), length);
-        // what is too long for the terminal is cut off instead of wrapped
+        // a line too long for the terminal is cut off instead of wrapped
         show("\033[?7l[" + std::string(full, '#') +
              std::string(length - full, '-') + "] " + line.str() + "\033[?7h");
         shows_bar = true;
@@ -230,7 +230,7 @@ namespace Voussoir
 
 
   void
-  Log::look_for_lost_files()
+  Log::check_for_lost_files()
   {
     const auto written = sizes; // warnings change that of log.txt
     for (const auto &[file, size] : written)

@@ -141,10 +141,10 @@ namespace Voussoir
   unusual_values(const ParameterHandler &prm)
   {
     std::vector<std::string> result;
-    const auto               look_at = [&](const std::string &entry,
-                             const std::string &section,
-                             const std::string &description,
-                             const std::string &text) {
+    const auto               check = [&](const std::string &entry,
+                           const std::string &section,
+                           const std::string &description,
+                           const std::string &text) {
       const Range *range = range_of(description);
       if (range == nullptr)
         return;
@@ -170,7 +170,7 @@ namespace Voussoir
           if (child.contains("value") && child["value"].is_string())
             for (const std::string &value :
                  Utilities::split_string_list(child["value"]))
-              look_at(name, section, child["documentation"], value);
+              check(name, section, child["documentation"], value);
           else if (child.is_object())
             collect(child, section.empty() ? name : section + "/" + name);
       };

@@ -55,16 +55,16 @@ namespace Voussoir
   Contact::prepare_step(const InverseMass &inverse_mass, const double time_step)
   {
     const auto &owned = interfaces.exchange().owned_nodes();
-    flexibility.assign(owned.size(), -1.);
-    full_flexibility.resize(owned.size());
+    compliance.assign(owned.size(), -1.);
+    full_compliance.resize(owned.size());
     std::vector<Tensor<2, 3>> owned_inverse(owned.size());
     for (unsigned int i = 0; i < owned.size(); ++i)
       {
-        owned_inverse[i]    = inverse_mass(owned[i]);
-        full_flexibility[i] = time_step * time_step * owned_inverse[i];
-        if (full_flexibility[i] == full_flexibility[i][0][0] *
-                                     Tensor<2, 3>(unit_symmetric_tensor<3>()))
-          flexibility[i] = full_flexibility[i][0][0];
+        owned_inverse[i]   = inverse_mass(owned[i]);
+        full_compliance[i] = time_step * time_step * owned_inverse[i];
+        if (full_compliance[i] ==
+            full_compliance[i][0][0] * Tensor<2, 3>(unit_symmetric_tensor<3>()))
+          compliance[i] = full_compliance[i][0][0];
       }
 
     // row by row to the ranks of the clusters
@@ -131,16 +131,16 @@ namespace Voussoir
       {
         double            *u      = state.displacement.begin() + 3 * owned[i];
         double            *v      = state.velocity.begin() + 3 * owned[i];
-        const bool         simple = flexibility[i] >= 0.;
-        const Tensor<1, 3> motion = simple ? flexibility[i] * applied[i] :
-                                             full_flexibility[i] * applied[i];
+        const bool         simple = compliance[i] >= 0.;
+        const Tensor<1, 3> motion =
+          simple ? compliance[i] * applied[i] : full_compliance[i] * applied[i];
         for (unsigned int d = 0; d < 3; ++d)
           {
             const double momentum = time_step * applied[i][d];
             u[d] += motion[d];
             v[d] += motion[d] * frequency;
             // what holds a node takes the momentum on it
-            if (simple ? flexibility[i] > 0. : full_flexibility[i][d][d] > 0.)
+            if (simple ? compliance[i] > 0. : full_compliance[i][d][d] > 0.)
               {
                 result.impulse[d] += momentum;
                 result.work += momentum * 0.5 * (v[d] + last_velocity[i][d]);

@@ -1,6 +1,6 @@
 // The contact of clusters of several points.
 
-#include <voussoir/constraints/contact_path.h>
+#include <voussoir/constraints/contact_homotopy.h>
 #include <voussoir/constraints/contact_solver.h>
 
 #include <deal.II/lac/exceptions.h>
@@ -20,15 +20,16 @@ namespace Voussoir
     // points by less than this part of the displacement, which is round-off.
     constexpr double accuracy = 1e-12, round_off = 1e-13;
 
-    // Sweeps before another way is tried.
+    // Sweeps before another method is tried.
     constexpr unsigned int max_sweeps = 100;
 
     // Forces that would move a point this many times as far as the widest gap
-    // have run away: the nodes are jammed.
+    // diverge: the nodes are jammed.
     constexpr double too_large = 1e4;
 
-    // Part of a point's own flexibility by which Newton's iteration softens it:
-    // forces between more points than the nodes can tell apart stay finite.
+    // Share of a point's own Delassus operator by which Newton's iteration
+    // softens it: forces between more points than the nodes can tell apart stay
+    // finite.
     constexpr double softness = 1e-3;
 
     constexpr unsigned int max_newton_steps = 10;
@@ -39,8 +40,8 @@ namespace Voussoir
   } // namespace
 
 
-  // The pseudo-inverse of the flexibility of all points together. It is
-  // singular where nodes are held and where points form a ring; of the forces
+  // The pseudo-inverse of the Delassus operator of all points together. It is
+  // singular where nodes are fixed and where points form a ring; of the forces
   // that do the same, those with the most even stresses are taken (weights by
   // area).
   void
@@ -49,7 +50,7 @@ namespace Voussoir
     const unsigned int       n = 3 * cluster.n_points;
     LAPACKFullMatrix<double> matrix(n);
     std::vector<double>      weight(n);
-    cluster.flexibility.resize(n * n);
+    cluster.delassus.resize(n * n);
     double trace = 0.;
     for (unsigned int k = 0; k < cluster.n_points; ++k)
       for (unsigned int l = 0; l < cluster.n_points; ++l)
@@ -65,7 +66,7 @@ namespace Voussoir
           for (unsigned int d = 0; d < 3; ++d)
             for (unsigned int e = 0; e < 3; ++e)
               {
-                cluster.flexibility[(3 * k + d) * n + 3 * l + e] = block[d][e];
+                cluster.delassus[(3 * k + d) * n + 3 * l + e] = block[d][e];
                 matrix(3 * k + d, 3 * l + e) =
                   std::sqrt(a.area * b.area) * block[d][e];
                 if (k == l && d == e)
@@ -117,7 +118,7 @@ namespace Voussoir
         widest = std::max(widest, gaps[k].norm());
     for (unsigned int i = 0; i < 3 * cluster.n_points; ++i)
       softest =
-        std::max(softest, cluster.flexibility[i * (3 * cluster.n_points + 1)]);
+        std::max(softest, cluster.delassus[i * (3 * cluster.n_points + 1)]);
     Sweep      last;
     const auto found = [&] {
       return last.change <= accuracy * last.largest ||
@@ -161,16 +162,15 @@ namespace Voussoir
           gaps_to_close.push_back(gaps[k]);
           limits.push_back(points[cluster.first_point + k].limits);
         }
-    std::vector<double> flexibility;
+    std::vector<double> delassus;
     for (const unsigned int k : joined)
       for (unsigned int d = 0; d < 3; ++d)
         for (const unsigned int l : joined)
           for (unsigned int e = 0; e < 3; ++e)
-            flexibility.push_back(
-              cluster
-                .flexibility[(3 * k + d) * 3 * cluster.n_points + 3 * l + e]);
+            delassus.push_back(
+              cluster.delassus[(3 * k + d) * 3 * cluster.n_points + 3 * l + e]);
     const ContactForces found =
-      solve_contact(flexibility,
+      solve_contact(delassus,
                     gaps_to_close,
                     limits,
                     10. * round_off * size); // of several sweeps
@@ -346,7 +346,7 @@ namespace Voussoir
     {
       const unsigned int        k;
       const ContactPoint       &point;
-      const double             *W; // rows of the flexibility of all points
+      const double             *W; // rows of the Delassus operator
       const Tensor<1, 3>        gap;
       const double              r; // stiffness
       LAPACKFullMatrix<double> &system;
@@ -424,7 +424,7 @@ namespace Voussoir
     Vector<double>           change(n);
     for (unsigned int k = 0; k < cluster.n_points; ++k)
       {
-        const double *W   = &cluster.flexibility[3 * k * n];
+        const double *W   = &cluster.delassus[3 * k * n];
         double        D   = 0.;
         Tensor<1, 3>  gap = gaps[k];
         for (unsigned int d = 0; d < 3; ++d)
@@ -435,7 +435,7 @@ namespace Voussoir
                 W[d * n + j] * points[cluster.first_point + j / 3].force[j % 3];
             system(3 * k + d, 3 * k + d) = 1.;
           }
-        // both nodes are held, or nothing is between them yet
+        // both nodes are fixed, or nothing is between them yet
         if (D == 0. || !points[cluster.first_point + k].joined)
           continue;
         const NewtonPoint rows{

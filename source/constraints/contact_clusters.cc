@@ -160,7 +160,7 @@ namespace Voussoir
     }
 
 
-    /** What is wrong on this rank; the same is thrown on all. */
+    /** Error of this rank; the same is thrown on all. */
     class Problems
     {
     public:

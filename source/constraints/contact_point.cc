@@ -15,29 +15,30 @@ namespace Voussoir
 
   namespace
   {
-    // Parts of a motion: that is none, and that a singular flexibility leaves.
+    // Shares of a motion: one that counts as none, and one that a singular
+    // Delassus operator leaves.
     constexpr double round_off = 1e-14, left_over = 1e-9;
 
 
     /** The normal force if the gap without it is @p gap. */
     double
     normal_force(const double         gap,
-                 const double         flexibility,
+                 const double         delassus,
                  const ContactLimits &limits,
                  bool                &open)
     {
-      if (flexibility == 0.) // both nodes are held
+      if (delassus == 0.) // both nodes are fixed
         {
           open = gap > 0.;
           return 0.;
         }
-      const double closing = -gap / flexibility;
+      const double closing = -gap / delassus;
       open                 = closing < limits.opening_force();
       if (!open)
         return closing;
       if (limits.opening > 0. && limits.tension > 0.)
         // an opened bond: g = gap + D F and F = -tension g / opening
-        return std::max(-gap / (limits.opening / limits.tension + flexibility),
+        return std::max(-gap / (limits.opening / limits.tension + delassus),
                         -limits.tension);
       return -limits.tension;
     }
@@ -49,19 +50,19 @@ namespace Voussoir
      * for 1 / |d(lambda)|, which is nearly linear).
      */
     Tensor<1, 2>
-    sliding_force(const Tensor<1, 2> &s,
-                  const Flexibility  &flexibility,
-                  const double        limit)
+    sliding_force(const Tensor<1, 2>     &s,
+                  const DelassusOperator &delassus,
+                  const double            limit)
     {
       if (limit == 0.)
         return Tensor<1, 2>();
       // it moves nothing, such as friction that has followed the pressure to
       // next to none
       if (const double slip = s.norm();
-          limit * flexibility.tangential[0] <= round_off * slip)
+          limit * delassus.tangential[0] <= round_off * slip)
         return -limit / slip * s;
       const std::array<double, 2> along{
-        {s * flexibility.axes[0], s * flexibility.axes[1]}};
+        {s * delassus.axes[0], s * delassus.axes[1]}};
       std::array<double, 2> d{{0., 0.}};
       double                lambda = 0.;
       for (unsigned int i = 0; i < 50; ++i)
@@ -69,8 +70,7 @@ namespace Voussoir
           double square = 0., slope = 0.;
           for (unsigned int a = 0; a < 2; ++a)
             {
-              const double stiffness =
-                lambda + limit * flexibility.tangential[a];
+              const double stiffness = lambda + limit * delassus.tangential[a];
               d[a] = stiffness > 0. ? along[a] / stiffness : 0.;
               square += d[a] * d[a];
               slope += stiffness > 0. ? d[a] * d[a] / stiffness : 0.;
@@ -82,29 +82,29 @@ namespace Voussoir
         }
       const double size = std::hypot(d[0], d[1]);
       return -limit / size *
-             (d[0] * flexibility.axes[0] + d[1] * flexibility.axes[1]);
+             (d[0] * delassus.axes[0] + d[1] * delassus.axes[1]);
     }
 
 
     /** The force with this normal part, and the shear that then resists slip
      *  up to a limit. */
     Tensor<1, 3>
-    shear_force(const Tensor<1, 3> &b,
-                const Flexibility  &flexibility,
-                const double        normal,
-                const double        limit,
-                bool               &slides)
+    shear_force(const Tensor<1, 3>     &b,
+                const DelassusOperator &delassus,
+                const double            normal,
+                const double            limit,
+                bool                   &slides)
     {
       Tensor<1, 2> s, shear;
-      s[0] = b[1] + flexibility.full[1][0] * normal;
-      s[1] = b[2] + flexibility.full[2][0] * normal;
+      s[0] = b[1] + delassus.full[1][0] * normal;
+      s[1] = b[2] + delassus.full[2][0] * normal;
       for (unsigned int a = 0; a < 2; ++a)
-        if (flexibility.tangential[a] > 0.)
-          shear -= s * flexibility.axes[a] / flexibility.tangential[a] *
-                   flexibility.axes[a];
+        if (delassus.tangential[a] > 0.)
+          shear -=
+            s * delassus.axes[a] / delassus.tangential[a] * delassus.axes[a];
       slides = shear.norm() > limit;
       if (slides)
-        shear = sliding_force(s, flexibility, limit);
+        shear = sliding_force(s, delassus, limit);
       Tensor<1, 3> force;
       force[0] = normal;
       force[1] = shear[0];
@@ -171,8 +171,8 @@ namespace Voussoir
   }
 
 
-  Flexibility::Flexibility(const Tensor<2, 3> &flexibility)
-    : full(flexibility)
+  DelassusOperator::DelassusOperator(const Tensor<2, 3> &delassus)
+    : full(delassus)
   {
     const SymmetricTensor<2, 3> symmetric = symmetrize(full);
     const auto                  system =
@@ -201,13 +201,13 @@ namespace Voussoir
     class CoupledContact
     {
     public:
-      CoupledContact(const Tensor<1, 3>  &b,
-                     const Flexibility   &flexibility,
-                     const ContactLimits &limits)
+      CoupledContact(const Tensor<1, 3>     &b,
+                     const DelassusOperator &delassus,
+                     const ContactLimits    &limits)
         : b(b)
-        , flexibility(flexibility)
+        , delassus(delassus)
         , limits(limits)
-        , D(flexibility.full)
+        , D(delassus.full)
         , lowest(limits.opening_force())
       {}
 
@@ -215,7 +215,7 @@ namespace Voussoir
       bool
       sticks()
       {
-        F             = -(flexibility.inverse * b);
+        F             = -(delassus.inverse * b);
         result.status = ContactStatus::sticking;
         return (b + D * F).norm() <= left_over * b.norm() && F[0] >= lowest &&
                std::hypot(F[1], F[2]) <= limits.shear(false, F[0]);
@@ -241,7 +241,7 @@ namespace Voussoir
 
         double above     = lowest - gap_below / D[0][0],
                gap_above = closed_gap(above);
-        // where a singular flexibility lets it stick, the gap stays zero
+        // where a singular Delassus operator lets it stick, the gap stays zero
         for (unsigned int i = 0; i < 100 && gap_above < -round_off * b.norm();
              ++i)
           {
@@ -296,7 +296,7 @@ namespace Voussoir
       gap(const double normal, const double limit)
       {
         bool slips = false;
-        F          = shear_force(b, flexibility, normal, limit, slips);
+        F          = shear_force(b, delassus, normal, limit, slips);
         result.status =
           slips ? ContactStatus::sliding : ContactStatus::sticking;
         return b[0] + D[0] * F;
@@ -315,22 +315,22 @@ namespace Voussoir
           partial, limits.bond, partial(limits.bond), all, partial(all));
       }
 
-      const Tensor<1, 3>  &b;
-      const Flexibility   &flexibility;
-      const ContactLimits &limits;
-      const Tensor<2, 3>  &D;
-      const double         lowest; // normal force [N]
-      Tensor<1, 3>        &F = result.force;
+      const Tensor<1, 3>     &b;
+      const DelassusOperator &delassus;
+      const ContactLimits    &limits;
+      const Tensor<2, 3>     &D;
+      const double            lowest; // normal force [N]
+      Tensor<1, 3>           &F = result.force;
     };
   } // namespace
 
 
   ContactForce
-  solve_contact(const Tensor<1, 3>  &b,
-                const Flexibility   &flexibility,
-                const ContactLimits &limits)
+  solve_contact(const Tensor<1, 3>     &b,
+                const DelassusOperator &delassus,
+                const ContactLimits    &limits)
   {
-    CoupledContact contact(b, flexibility, limits);
+    CoupledContact contact(b, delassus, limits);
     if (!contact.sticks() && !contact.slides())
       contact.open();
     return contact.result;
@@ -339,23 +339,23 @@ namespace Voussoir
 
   ContactForce
   solve_contact(const Tensor<1, 3>  &b,
-                const double         flexibility,
+                const double         delassus,
                 const ContactLimits &limits)
   {
     ContactForce result;
     bool         open  = false;
-    result.force[0]    = normal_force(b[0], flexibility, limits, open);
+    result.force[0]    = normal_force(b[0], delassus, limits, open);
     result.status      = open ? ContactStatus::open : ContactStatus::sticking;
     const double limit = limits.shear(open, result.force[0]);
-    if (limit == 0. || flexibility == 0.)
+    if (limit == 0. || delassus == 0.)
       {
-        if (!open && flexibility > 0.)
+        if (!open && delassus > 0.)
           result.status = ContactStatus::sliding;
         return result;
       }
     const double slip = std::sqrt(b[1] * b[1] + b[2] * b[2]);
-    double       size = 1. / flexibility;
-    if (slip > limit * flexibility)
+    double       size = 1. / delassus;
+    if (slip > limit * delassus)
       {
         size = limit / slip;
         if (!open)

@@ -13,8 +13,8 @@ namespace Voussoir
 
   namespace
   {
-    // Of the way to a limit, which is left so that no round-off leads beyond
-    // it.
+    // Share of the distance to a limit that is left, so that no round-off leads
+    // beyond it.
     constexpr double margin = 1e-6;
 
     // Of the largest force, by which a limit may be exceeded.
@@ -40,7 +40,7 @@ namespace Voussoir
         , under_pressure(force[0] >= 0.)
       {
         // closed by a part of its cohesion, which goes by the motion; or
-        // without any force that says in which direction it slides
+        // without any force that has the direction of its slip
         if (slides && (shear() < (1. - 1e-9) * limits.shear(false, force[0]) ||
                        (shear() == 0. && limits.with_pressure() > 0.)))
           fixed = true;
@@ -309,7 +309,7 @@ namespace Voussoir
         if (part == 1.)
           break;
       }
-    double largest = 0.; // before: what is left of it has its round-off
+    double largest = 0.; // before: the remainder has its round-off
     for (unsigned int k = 0; k < cluster.n_points; ++k)
       largest = std::max(largest, points[cluster.first_point + k].force.norm());
     if (!std::all_of(forces.begin(), forces.end(), [&](const FreeForce &force) {

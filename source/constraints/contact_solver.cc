@@ -30,32 +30,32 @@ namespace Voussoir
     Points            &points          = contact.points;
     AssertDimension(inverse_mass.size(), number_of_nodes);
     time_step = step;
-    node_flexibility.assign(number_of_nodes, -1.);
+    node_compliance.assign(number_of_nodes, -1.);
     node_matrix.resize(number_of_nodes);
     for (unsigned int node = 0; node < number_of_nodes; ++node)
       {
         node_matrix[node] = time_step * time_step * inverse_mass[node];
         if (is_multiple_of_identity(node_matrix[node]))
-          node_flexibility[node] = node_matrix[node][0][0];
+          node_compliance[node] = node_matrix[node][0][0];
       }
 
-    point_flexibility.assign(points.size(), -1.);
-    matrix_of_point.assign(points.size(), 0);
-    point_matrix.clear();
+    point_delassus.assign(points.size(), -1.);
+    operator_of_point.assign(points.size(), 0);
+    point_operator.clear();
     for (unsigned int k = 0; k < points.size(); ++k)
       {
         ContactPoint &point = points[k];
         point.at_once =
           point.delay > 0. ? -std::expm1(-time_step / point.delay) : 1.;
         contact.update_limits(point);
-        const double first  = node_flexibility[point.first],
-                     second = node_flexibility[point.second];
+        const double first  = node_compliance[point.first],
+                     second = node_compliance[point.second];
         if (first >= 0. && second >= 0.)
-          point_flexibility[k] = first + second;
+          point_delassus[k] = first + second;
         else
           {
-            matrix_of_point[k] = point_matrix.size();
-            point_matrix.emplace_back(
+            operator_of_point[k] = point_operator.size();
+            point_operator.emplace_back(
               point.frame *
               (node_matrix[point.first] + node_matrix[point.second]) *
               transpose(point.frame));
@@ -90,8 +90,8 @@ namespace Voussoir
   ContactSolver::motion(const unsigned int  node,
                         const Tensor<1, 3> &force) const
   {
-    return node_flexibility[node] >= 0. ? node_flexibility[node] * force :
-                                          node_matrix[node] * force;
+    return node_compliance[node] >= 0. ? node_compliance[node] * force :
+                                         node_matrix[node] * force;
   }
 
 
@@ -99,9 +99,9 @@ namespace Voussoir
   ContactSolver::relative_motion(const unsigned int  number,
                                  const Tensor<1, 3> &force) const
   {
-    return point_flexibility[number] >= 0. ?
-             point_flexibility[number] * force :
-             point_matrix[matrix_of_point[number]].full * force;
+    return point_delassus[number] >= 0. ?
+             point_delassus[number] * force :
+             point_operator[operator_of_point[number]].full * force;
   }
 
 
@@ -124,9 +124,11 @@ namespace Voussoir
     if (!point.joined)
       return;
     const ContactForce found =
-      point_flexibility[number] >= 0. ?
-        solve_contact(gap, point_flexibility[number], point.limits) :
-        solve_contact(gap, point_matrix[matrix_of_point[number]], point.limits);
+      point_delassus[number] >= 0. ?
+        solve_contact(gap, point_delassus[number], point.limits) :
+        solve_contact(gap,
+                      point_operator[operator_of_point[number]],
+                      point.limits);
     point.force  = found.force;
     point.status = found.status;
   }

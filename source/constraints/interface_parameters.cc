@@ -55,11 +55,12 @@ namespace Voussoir
     prm.add_parameter("Downstream level",
                       downstream_level,
                       "Elevation of the water at the downstream faces [m].");
-    prm.add_parameter("Drain position",
-                      drain_position,
-                      "Of a line of drains, as a part of the way from the "
-                      "upstream to the downstream faces.",
-                      Patterns::Double(0., 1.));
+    prm.add_parameter(
+      "Drain position",
+      drain_position,
+      "Of a line of drains, as a share of the distance from the "
+      "upstream to the downstream faces.",
+      Patterns::Double(0., 1.));
     prm.add_parameter(
       "Drain factor",
       drain_factor,

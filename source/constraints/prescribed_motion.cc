@@ -58,7 +58,7 @@ namespace Voussoir
                             face_nodes.insert(cell_nodes[j]);
                       });
         moved_nodes = owned_carriers(discretization, face_nodes);
-        refuse_held(discretization.grid.communicator(), place);
+        refuse_fixed(discretization.grid.communicator(), place);
       }
 
       const std::vector<unsigned int> &
@@ -163,18 +163,18 @@ namespace Voussoir
           }
       }
 
-      /** What a support holds cannot move. */
+      /** Nodes of a support cannot move. */
       void
-      refuse_held(const MPI_Comm communicator, const std::string &place) const
+      refuse_fixed(const MPI_Comm communicator, const std::string &place) const
       {
-        std::array<unsigned int, 3> held{{0, 0, 0}};
+        std::array<unsigned int, 3> fixed{{0, 0, 0}};
         for (const unsigned int node : moved_nodes)
           for (unsigned int d = 0; d < 3; ++d)
             if (displacement[d] != 0. &&
                 mass->mass.local_element(3 * node + d) == 0.)
-              held[d] = 1;
+              fixed[d] = 1;
         for (unsigned int d = 0; d < 3; ++d)
-          if (Utilities::MPI::max(held[d], communicator) > 0)
+          if (Utilities::MPI::max(fixed[d], communicator) > 0)
             throw UserError("\"Displacement\" in section \"" + place +
                             "\" moves nodes along " + "xyz"[d] +
                             " that a support of section \"Boundaries\" holds; "

@@ -10,8 +10,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * A bond that softens linearly: with w the largest opening and s the way
-     * slipped, what is left of it is
+     * A bond that softens linearly: with w the largest opening and s the
+     * accumulated slip, the share of its strength that is left is
      *   (1 - w ft / (2 GfI)) (1 - s (c - c_res) / (2 GfII)) ,
      * which spends GfI per area in pure opening and GfII in pure slip.
      */

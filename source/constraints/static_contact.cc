@@ -100,19 +100,19 @@ namespace Voussoir
     , at_nodes(interfaces.n_nodes())
     , forces(at_nodes.size())
     , at_owned(interfaces.exchange().owned_nodes().size())
-    , held(at_nodes.size())
+    , fixed(at_nodes.size())
   {
     interfaces.exchange().to_clusters(stiffness, at_nodes);
     for (unsigned int i = 0; i < at_nodes.size(); ++i)
       for (unsigned int d = 0; d < 3; ++d)
-        held[i][d] = at_nodes[i][d] == 0.;
+        fixed[i][d] = at_nodes[i][d] == 0.;
     for (unsigned int k = 0; k < multiplier.size(); ++k)
       {
         const ContactPoint &point = interfaces.points[k];
         const double first   = at_nodes[point.first].norm() / std::sqrt(3.),
                      second  = at_nodes[point.second].norm() / std::sqrt(3.);
         const double stiffer = std::max(first, second);
-        // held on both sides nothing depends on it
+        // fixed on both sides nothing depends on it
         spring.push_back(stiffer == 0.               ? 1. :
                          first == 0. || second == 0. ? stiffer :
                                                        std::min(first, second));
@@ -243,8 +243,8 @@ namespace Voussoir
         result.push_back({interfaces.cluster_nodes[point.first],
                           interfaces.cluster_nodes[point.second],
                           tangent[k],
-                          held[point.first],
-                          held[point.second]});
+                          fixed[point.first],
+                          fixed[point.second]});
       }
     return result;
   }
@@ -329,7 +329,7 @@ namespace Voussoir
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
         ContactPoint &point = interfaces.points[k];
-        // of what was tried on the way here only this happened
+        // the history of the last iterate, without those before it
         point.history = history_at(k);
         if (point.status != ContactStatus::sticking && !point.limits.locked)
           {

@@ -377,7 +377,7 @@ namespace Voussoir
         in_section(own, place, [&] {
           Registry<Observer>::entries()[name].create()->declare_parameters(own);
         });
-        // what nobody has given stays out of the file as it was run
+        // entries that are not given stay out of the file as it was run
         if (!gives_any(file, own))
           continue;
         in_section(prm, name, [&] {

@@ -137,7 +137,7 @@ namespace Voussoir
     }
 
 
-    /** What can be said of a case without computing it. */
+    /** Checks of a case without computing it. */
     struct Estimate
     {
       types::global_dof_index  unknowns  = 0;
@@ -314,8 +314,8 @@ namespace Voussoir
         message =
           std::string("Unexpected error, please report it: ") + error.what();
       }
-    // An error that all ranks see is said by the first. One rank's own error
-    // cannot be agreed upon with the others, who wait for something else.
+    // An error that all ranks see is reported by the first. One rank's own
+    // error cannot be agreed upon with the others, who wait for something else.
     const bool all = all_arrive(meeting);
     if (first || !all)
       std::cerr << "Error: " << message << std::endl;
@@ -327,7 +327,7 @@ namespace Voussoir
 
   namespace
   {
-    /** What the arguments say. */
+    /** The arguments. */
     struct Arguments
     {
       std::string              case_file, defaults, what, test_file;

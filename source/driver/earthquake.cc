@@ -58,7 +58,7 @@ namespace Voussoir
 
 
     void
-    say_fit(const SpectrumFit &fit, const SpectrumMatch &match, Log &log)
+    report_fit(const SpectrumFit &fit, const SpectrumMatch &match, Log &log)
     {
       constexpr double accepted = 0.1;
       const auto [largest, at]  = fit.largest_misfit();
@@ -264,7 +264,7 @@ namespace Voussoir
     signals = ground_motion.build(parameters.file.folder(), &fits);
     log(ground_motion.summary(signals, end_time));
     for (const SpectrumFit &fit : fits)
-      say_fit(fit, ground_motion.match, log);
+      report_fit(fit, ground_motion.match, log);
     for (unsigned int d = 0; d < 3; ++d)
       if (signals[d])
         for (std::size_t i = 0; i * sample_interval <= end_time; ++i)

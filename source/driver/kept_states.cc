@@ -1,7 +1,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/kept_states.h>
-#include <voussoir/driver/stored_rest.h>
+#include <voussoir/driver/stored_static_state.h>
 #include <voussoir/files/state_file.h>
 
 #include <filesystem>
@@ -25,7 +25,7 @@ namespace Voussoir
   }
 
 
-  std::optional<RestState>
+  std::optional<StaticState>
   KeptStates::find() const
   {
     if (file.empty() || !damage_of_state(file, log.communicator()).empty() ||
@@ -35,17 +35,17 @@ namespace Voussoir
              file,
              ", where a run with the same mesh, materials, interfaces, "
              "boundaries and static loads has kept it");
-    RestState rest = read_rest(model, file);
-    if (const auto warnings = rest.summary.find("warnings");
-        warnings != rest.summary.end())
+    StaticState static_state = read_static_state(model, file);
+    if (const auto warnings = static_state.summary.find("warnings");
+        warnings != static_state.summary.end())
       for (const nlohmann::json &warning : *warnings)
         log.warn(warning.get<std::string>());
-    return rest;
+    return static_state;
   }
 
 
   void
-  KeptStates::keep(const RestState &rest) const
+  KeptStates::keep(const StaticState &static_state) const
   {
     if (file.empty())
       return;
@@ -66,7 +66,7 @@ namespace Voussoir
       return;
     try
       {
-        store_rest(model, rest, file, identity);
+        store_static_state(model, static_state, file, identity);
         log.line("Static state kept in ", file, " for later runs");
       }
     catch (const UserError &error)

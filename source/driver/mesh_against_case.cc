@@ -51,13 +51,13 @@ namespace Voussoir
         , log(log)
         , box(mesh.vertices)
         , fixed(faces_of(mesh, parameters.boundaries.supports.fixed))
-        , held(fixed)
+        , supported(fixed)
         , absorbs(materials.size(), false)
       {
         const auto &[supports, absorbing] = parameters.boundaries;
         for (const auto &[cell, face] : faces_of(mesh, absorbing.face_sets))
           {
-            held.emplace(cell, face);
+            supported.emplace(cell, face);
             absorbs[material_of_cell[cell]] = true;
             const Tensor<1, 3> normal       = outward_area({cell, face});
             absorbs_sideways =
@@ -65,7 +65,7 @@ namespace Voussoir
           }
         for (const std::string &list :
              {supports.roller, supports.antisymmetric})
-          add_faces(held, mesh, list);
+          add_faces(supported, mesh, list);
 
         for (const std::string &surface : surfaces.names())
           for (const std::string &side : {surface, surface + other_side})
@@ -94,7 +94,7 @@ namespace Voussoir
                    "millimetres");
       }
 
-      /** What holds the model should be below it. */
+      /** The supports of the model should be below it. */
       void
       check_upward_axis() const
       {
@@ -102,7 +102,7 @@ namespace Voussoir
           return;
         Tensor<1, 3> sum; // of outward normals times areas
         double       area = 0.;
-        for (const auto &[cell, face] : held)
+        for (const auto &[cell, face] : supported)
           {
             const Tensor<1, 3> normal = outward_area({cell, face});
             sum += normal;
@@ -115,7 +115,7 @@ namespace Voussoir
                    "so that its z axis points upwards");
       }
 
-      /** Waves come back from a side that is free, and nothing holds it. */
+      /** Waves are reflected by a free side, which has no support. */
       void
       check_outer_sides() const
       {
@@ -258,7 +258,7 @@ namespace Voussoir
               side.area += area;
               if (fixed.count({cell, face}) > 0)
                 side.fixed += area;
-              if (held.count({cell, face}) + used.count({cell, face}) > 0)
+              if (supported.count({cell, face}) + used.count({cell, face}) > 0)
                 continue;
               // a dam may stand alone on an absorbing base
               const unsigned int m    = material_of_cell[cell];
@@ -287,15 +287,16 @@ namespace Voussoir
       void
       warn_of(const Side &side) const
       {
-        log.warn("the side of the model at ",
-                 "xyz"[side.axis],
-                 " = ",
-                 side.end == 0 ? box.lower_bound(side.axis) :
-                                 box.upper_bound(side.axis),
-                 " m, around (",
-                 side.place,
-                 ") m, neither absorbs waves nor is held; name its face set in "
-                 "section \"Boundaries\"");
+        log.warn(
+          "the side of the model at ",
+          "xyz"[side.axis],
+          " = ",
+          side.end == 0 ? box.lower_bound(side.axis) :
+                          box.upper_bound(side.axis),
+          " m, around (",
+          side.place,
+          ") m, neither absorbs waves nor is fixed; name its face set in "
+          "section \"Boundaries\"");
       }
 
       const Case                         &parameters;
@@ -308,7 +309,7 @@ namespace Voussoir
 
       // named by "Fixed", by any entry of "Boundaries", by interfaces, loads
       // and constraints
-      Faces             fixed, held, used;
+      Faces             fixed, supported, used;
       std::vector<bool> absorbs; // materials that have absorbing faces
       bool              absorbs_sideways = false;
     };

@@ -39,8 +39,8 @@ namespace Voussoir
     }
 
 
-    // Parts of the body that are tied to nothing were forgotten when nodes were
-    // merged; a body that is held nowhere may be free to fly.
+    // A part that shares no node with the others was forgotten when nodes were
+    // merged; a body without any support may be meant to move freely.
     void
     check_parts(const Case              &parameters,
                 const CoarseMesh        &solid,
@@ -48,39 +48,39 @@ namespace Voussoir
                 Log                     &log)
     {
       const BoundaryParameters &boundaries = parameters.boundaries;
-      std::vector<std::string>  holding;
+      std::vector<std::string>  fixed_sets;
       for (const Support &support : boundaries.supports_with_absorbing(false))
-        holding.push_back(support.set);
-      const auto parts = find_parts(solid, holding, surfaces.names());
+        fixed_sets.push_back(support.set);
+      const auto parts = find_parts(solid, fixed_sets, surfaces.names());
       if (parts.size() == 1)
         return;
-      std::vector<std::string> held, loose;
+      std::vector<std::string> fixed, detached;
       for (const MeshPart &part : parts)
-        (part.is_held ? held : loose).push_back(part.place);
-      if (!held.empty() && !loose.empty() &&
+        (part.is_fixed ? fixed : detached).push_back(part.place);
+      if (!fixed.empty() && !detached.empty() &&
           parameters.projections.objects.empty())
-        throw UserError("Nothing holds the part of the mesh around " +
-                        loose[0] +
-                        " m: it shares no node with the rest, no interface "
-                        "joins it and no entry of section \"Boundaries\" "
-                        "names its faces; merge the nodes between the parts, "
-                        "or hold it.");
-      held.insert(held.end(), loose.begin(), loose.end());
-      held.resize(std::min<std::size_t>(held.size(), 10));
+        throw UserError(
+          "The part of the mesh around " + detached[0] +
+          " m has no support: it shares no node with the rest, "
+          "no interface joins it and no entry of section \"Boundaries\" "
+          "names its faces; merge the nodes between the parts, "
+          "or fix it.");
+      fixed.insert(fixed.end(), detached.begin(), detached.end());
+      fixed.resize(std::min<std::size_t>(fixed.size(), 10));
       log.warn("The mesh falls into ",
                parts.size(),
                " parts that share neither nodes nor interfaces, around ",
-               join(held, ", "),
+               join(fixed, ", "),
                " m; waves and forces do not pass between them.");
     }
 
 
     // What acts on the faces of an interface acts on one of its sides only.
     void
-    say_sets_on_interfaces(const Case              &parameters,
-                           const CoarseMesh        &solid,
-                           const InterfaceSurfaces &surfaces,
-                           Log                     &log)
+    report_sets_on_interfaces(const Case              &parameters,
+                              const CoarseMesh        &solid,
+                              const InterfaceSurfaces &surfaces,
+                              Log                     &log)
     {
       std::set<std::pair<unsigned int, unsigned int>> sides;
       for (const std::string &surface : surfaces.names())
@@ -307,7 +307,7 @@ namespace Voussoir
     water     = take_water(parameters, solid);
     materials = parameters.material_of_coarse_cells(solid);
     check_parts(parameters, solid, surfaces, log);
-    say_sets_on_interfaces(parameters, solid, surfaces, log);
+    report_sets_on_interfaces(parameters, solid, surfaces, log);
     check_mesh_against_case(parameters, solid, surfaces, materials, log);
   }
 

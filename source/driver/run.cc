@@ -41,11 +41,11 @@ namespace Voussoir
 
 
   Run::Run(const Model        &model,
-           const RestState    &rest,
+           const StaticState  &static_state,
            const Modes        &modes,
            const ResultFolder &folder,
            Log                &log)
-    : Run(rest,
+    : Run(static_state,
           modes,
           folder,
           std::make_unique<RunSetup>(RunPlan(model, log), modes, folder, log),
@@ -53,39 +53,39 @@ namespace Voussoir
   {}
 
 
-  Run::Run(const RestState          &rest,
+  Run::Run(const StaticState        &static_state,
            const Modes              &modes,
            const ResultFolder       &folder,
            std::unique_ptr<RunSetup> made,
            Log                      &log)
     : setup(std::move(made))
     , model(setup->model)
-    , rest(rest)
+    , static_state(static_state)
     , modes(modes)
     , folder(folder)
     , log(log)
     , damping(setup->damping)
     , time_step(setup->time_step)
-    , contact(rest.contact)
+    , contact(static_state.contact)
     , loads(acting_loads(model))
     , equation{model.solid.discretization,
                setup->internal_force,
                model.solid.mass,
                model.terms,
                damping,
-               rest.initial,
+               static_state.initial,
                nodal_loads(),
                projections(),
                setup->earthquake.base.moves() ? &setup->earthquake.base :
                                                 nullptr,
                time_step.closing_viscosity}
     , scheme(equation, time_step.leap_frog())
-    , state(scheme.state_at_rest())
+    , state(scheme.initial_state())
     , observed{setup->plan.observed(log),
                setup->internal_force,
                damping,
                state.material_memory,
-               rest.initial,
+               static_state.initial,
                setup->water.get(),
                contact ? &*contact : nullptr,
                setup->earthquake.base,
@@ -154,7 +154,7 @@ namespace Voussoir
   void
   Run::open_output()
   {
-    write_static_stages(rest.summary, folder.path(), log);
+    write_static_stages(static_state.summary, folder.path(), log);
     write_modes(modes, observed);
     write_ground_motion(setup->plan.motion, folder.path(), log);
     energy.open(folder.path(), folder.start_time(), folder.restarts(), log);
@@ -215,7 +215,7 @@ namespace Voussoir
     if (folder.exists() && checkpoints.are_due(state.step))
       write_checkpoint();
     if (requests.are_due(state.step))
-      attend();
+      poll_requests();
   }
 
 
@@ -231,7 +231,7 @@ namespace Voussoir
         for (const auto &observer : setup->plan.observers)
           observer.second->finish(state, summary.observers);
         log.write_growing_files();
-        log.look_for_lost_files();
+        log.check_for_lost_files();
       }
     summary.checks = numerical_checks(*this);
     summary.judge(model.parameters.acceptance);
@@ -265,9 +265,9 @@ namespace Voussoir
 
 
   void
-  Run::attend()
+  Run::poll_requests()
   {
-    const RunRequests::Requests asked = requests.look(state.step);
+    const RunRequests::Requests asked = requests.poll(state.step);
     std::ostringstream          text;
     if (asked.report)
       {

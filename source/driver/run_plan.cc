@@ -104,7 +104,7 @@ namespace Voussoir
     const auto &added    = model.parameters.added_observers;
     for (const auto &observer : observers)
       {
-        // what looks for the verdict does not change the time step
+        // observers of the verdict alone do not change the time step
         if (std::find(added.begin(), added.end(), observer.first) !=
             added.end())
           continue;

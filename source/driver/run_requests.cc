@@ -9,9 +9,9 @@ namespace Voussoir
 
   namespace
   {
-    // Between two looks [s]: those who ask may kill a second later. And in
-    // steps, as short runs of small models take less.
-    constexpr double look_interval = 0.01, look_steps = 100.;
+    // Between two polls [s]: a batch system may kill the process a second after
+    // its signal. And in steps, as short runs of small models take less.
+    constexpr double poll_interval = 0.01, poll_steps = 100.;
   } // namespace
 
 
@@ -27,16 +27,16 @@ namespace Voussoir
   void
   RunRequests::start(const unsigned long long step)
   {
-    last_look = next_look = step;
+    last_poll = next_poll = step;
     since_checkpoint.restart();
-    since_look.restart();
+    since_poll.restart();
   }
 
 
   bool
   RunRequests::are_due(const unsigned long long step) const
   {
-    return step >= next_look;
+    return step >= next_poll;
   }
 
 
@@ -48,9 +48,9 @@ namespace Voussoir
 
 
   RunRequests::Requests
-  RunRequests::look(const unsigned long long step)
+  RunRequests::poll(const unsigned long long step)
   {
-    // the first rank looks at the clock and the folder; anybody may have got a
+    // the first rank polls the clock and the folder; any rank may have got a
     // signal
     enum
     {
@@ -78,14 +78,14 @@ namespace Voussoir
             since_stop_file.restart();
           }
         const double of_step =
-          since_look.wall_time() / std::max<double>(step - last_look, 1.);
+          since_poll.wall_time() / std::max<double>(step - last_poll, 1.);
         mine[steps] =
-          std::min(look_interval / std::max(of_step, 1e-9), look_steps);
+          std::min(poll_interval / std::max(of_step, 1e-9), poll_steps);
       }
     Utilities::MPI::max(mine, log.communicator(), wanted);
-    last_look = step;
-    next_look = step + 1 + static_cast<unsigned long long>(wanted[steps]);
-    since_look.restart();
+    last_poll = step;
+    next_poll = step + 1 + static_cast<unsigned long long>(wanted[steps]);
+    since_poll.restart();
     return {wanted[report] > 0., wanted[save] > 0., wanted[stop] > 0.};
   }
 } // namespace Voussoir

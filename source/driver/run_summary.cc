@@ -423,7 +423,7 @@ namespace Voussoir
         march.loop_time;
     march.target_spectrum = target_spectrum(run.model.parameters.ground_motion);
     march.fits            = summary_of(run.setup->plan.motion.fits);
-    march.static_state    = run.rest.summary;
+    march.static_state    = run.static_state.summary;
     if (!run.modes.list.empty())
       march.modes = run.modes.summary();
     march.reservoir = summary_of(run.setup->water.get(), communicator);

@@ -2,7 +2,7 @@
 #include <voussoir/base/version.h>
 #include <voussoir/driver/kept_states.h>
 #include <voussoir/driver/simulation.h>
-#include <voussoir/driver/stored_rest.h>
+#include <voussoir/driver/stored_static_state.h>
 #include <voussoir/output/field_writer.h>
 
 namespace Voussoir
@@ -11,7 +11,7 @@ namespace Voussoir
 
   namespace
   {
-    /** A log that has said who speaks. */
+    /** A log that begins with the program and its version. */
     Log
     opened_log(const Case       &parameters,
                const RunOptions &options,
@@ -101,23 +101,23 @@ namespace Voussoir
     }
 
 
-    RestState
+    StaticState
     kept_or_found(const Model &model, const ResultFolder &folder, Log &log)
     {
       const KeptStates kept(model, folder, log);
-      if (std::optional<RestState> rest = kept.find())
-        return std::move(*rest);
-      RestState rest = find_rest(model, log);
-      kept.keep(rest);
+      if (std::optional<StaticState> static_state = kept.find())
+        return std::move(*static_state);
+      StaticState static_state = find_static_state(model, log);
+      kept.keep(static_state);
       // as all later runs, whatever their number of ranks, have it
       if (model.solid.discretization.reproducible)
         {
-          if (std::optional<RestState> again = kept.find())
+          if (std::optional<StaticState> again = kept.find())
             return std::move(*again);
           log.warn("the static state is not kept, so that \"Sums = "
                    "reproducible\" holds for this number of ranks alone");
         }
-      return rest;
+      return static_state;
     }
 
 
@@ -154,26 +154,28 @@ namespace Voussoir
     }
 
 
-    RestState
-    rest_of(const RunPlan      &plan,
-            const RunSetup     *setup,
-            const ResultFolder &folder,
-            Log                &log)
+    StaticState
+    static_state_of(const RunPlan      &plan,
+                    const RunSetup     *setup,
+                    const ResultFolder &folder,
+                    Log                &log)
     {
       const Model &model = plan.model;
       if (model.parameters.static_state.stage_names().empty())
-        return RestState(model);
+        return StaticState(model);
       try
         {
-          return stored_or_found<RestState>(
+          return stored_or_found<StaticState>(
             model,
             folder,
             "rest.h5",
-            read_rest,
+            read_static_state,
             [&] { return kept_or_found(model, folder, log); },
             [](const Model       &model,
-               const RestState   &rest,
-               const std::string &file) { store_rest(model, rest, file); },
+               const StaticState &static_state,
+               const std::string &file) {
+              store_static_state(model, static_state, file);
+            },
             log);
         }
       catch (const LostEquilibrium &lost)
@@ -188,7 +190,7 @@ namespace Voussoir
 
     Modes
     modes_of(const Model        &model,
-             const RestState    &rest,
+             const StaticState  &static_state,
              const ResultFolder &folder,
              Log                &log)
     {
@@ -199,7 +201,7 @@ namespace Voussoir
         folder,
         "modes.h5",
         read_modes,
-        [&] { return find_modes(model, rest, log); },
+        [&] { return find_modes(model, static_state, log); },
         store_modes,
         log);
     }
@@ -214,14 +216,15 @@ namespace Voussoir
     , model(parameters, log)
     , plan(model, log)
     , early(early_setup(plan, folder, options, log))
-    , found(options.validate ? RestState(model) :
-                               rest_of(plan, early.get(), folder, log))
+    , found(options.validate ? StaticState(model) :
+                               static_state_of(plan, early.get(), folder, log))
     , modes(options.validate ? Modes() : modes_of(model, found, folder, log))
     , setup(early ?
               std::move(early) :
               std::make_unique<RunSetup>(std::move(plan), modes, folder, log))
-    , rest(handed_over(std::move(found), model, setup->internal_force, log))
-    , run(rest, modes, folder, std::move(setup), log)
+    , static_state(
+        handed_over(std::move(found), model, setup->internal_force, log))
+    , run(static_state, modes, folder, std::move(setup), log)
   {}
 
 

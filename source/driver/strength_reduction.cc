@@ -19,8 +19,7 @@ namespace Voussoir
     }
 
 
-    /** Whether an entry of a material or an interface says how much it bears
-     *  before it breaks, or on the way. */
+    /** Whether an entry of a material or an interface is a strength. */
     bool
     is_strength(const std::string &entry)
     {

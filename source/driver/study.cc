@@ -32,7 +32,7 @@ namespace Voussoir
     }
 
 
-    /** The same without what is awkward in the name of a folder. */
+    /** The same without characters that the name of a folder cannot have. */
     std::string
     folder_name(const StudyValues &values)
     {
@@ -124,7 +124,7 @@ namespace Voussoir
       for (const Criterion &criterion : criteria)
         try
           {
-            if (criterion.look(summary).second)
+            if (criterion.evaluate(summary).second)
               met.push_back(criterion.text);
           }
         catch (const UserError &)
@@ -262,17 +262,17 @@ namespace Voussoir
     const auto combinations = parameters.combinations();
     claim_folder();
     if (my_group == 0)
-      say("Study of " +
-          counted(combinations.size(), "combination", "combinations") + " in " +
-          folder +
-          (n_groups > 1 ? ", " + std::to_string(n_groups) + " side by side" :
-                          std::string()));
+      report("Study of " +
+             counted(combinations.size(), "combination", "combinations") +
+             " in " + folder +
+             (n_groups > 1 ? ", " + std::to_string(n_groups) + " side by side" :
+                             std::string()));
     if (parameters.reduces_strengths() && my_group == 0)
-      say("The " + strength_reduction + " divides " +
-          join(split_list(parameters.reduced, ';'), "; ") +
-          (strengths_kept.empty() ?
-             std::string(", all strengths that there are") :
-             "\nIt leaves as they are " + join(strengths_kept, "; ")));
+      report("The " + strength_reduction + " divides " +
+             join(split_list(parameters.reduced, ';'), "; ") +
+             (strengths_kept.empty() ?
+                std::string(", all strengths that there are") :
+                "\nIt leaves as they are " + join(strengths_kept, "; ")));
     for (std::size_t i = my_group; i < combinations.size(); i += n_groups)
       if (parameters.seeks_limit())
         seek_limit(combinations[i]);
@@ -335,7 +335,7 @@ namespace Voussoir
     if (n_stopped > 0 && !parameters.seeks_limit())
       throw IncompleteStudy(count + "; the verdicts in study.csv say why.");
     if (my_group == 0)
-      say(count);
+      report(count);
   }
 
 
@@ -378,7 +378,7 @@ namespace Voussoir
       check_same(known.at("identity"), identity, run_folder);
     const Timer clock_of_run;
     if (has_been_done)
-      say(description(values) + ": taken, " + verdict_of(summary));
+      report(description(values) + ": taken, " + verdict_of(summary));
     else
       {
         const auto write = [&](const nlohmann::json &text) {
@@ -397,13 +397,13 @@ namespace Voussoir
         ++n_done;
         seconds_of_runs += clock_of_run.wall_time();
         const std::size_t expected = n_expected(), ended = outcomes.size() + 1;
-        say(description(values) + ": " + summary.verdict() + ", " +
-            duration_text(clock_of_run.wall_time()) +
-            (ended < expected ? ", about " +
-                                  duration_text(double(expected - ended) *
-                                                seconds_of_runs / n_done) +
-                                  " left" :
-                                std::string()));
+        report(description(values) + ": " + summary.verdict() + ", " +
+               duration_text(clock_of_run.wall_time()) +
+               (ended < expected ? ", about " +
+                                     duration_text(double(expected - ended) *
+                                                   seconds_of_runs / n_done) +
+                                     " left" :
+                                   std::string()));
       }
     outcomes.emplace_back(values, run_folder, summary);
     return outcomes.back();
@@ -462,11 +462,12 @@ namespace Voussoir
                       "\"Study/Limit\"; mend that and start the study again.");
     for (const Criterion &criterion : parameters.criteria())
       {
-        const auto [number, met] = criterion.look(summary);
+        const auto [number, met] = criterion.evaluate(summary);
         if (met)
           {
-            say("  met: " + criterion.text +
-                (number ? " (" + number_text(*number) + ")" : std::string()));
+            report(
+              "  met: " + criterion.text +
+              (number ? " (" + number_text(*number) + ")" : std::string()));
             return true;
           }
       }
@@ -519,15 +520,15 @@ namespace Voussoir
         const double middle = 0.5 * (limit.fails + limit.meets);
         (is_met(values, middle) ? limit.meets : limit.fails) = middle;
       }
-    say((values.empty() ? std::string() : description(values) + ": ") +
-        "limit of " + parameters.varied_to_limit + " between " +
-        number_text(limit.fails) + " and " + number_text(limit.meets));
+    report((values.empty() ? std::string() : description(values) + ": ") +
+           "limit of " + parameters.varied_to_limit + " between " +
+           number_text(limit.fails) + " and " + number_text(limit.meets));
     limits.push_back(limit);
   }
 
 
   void
-  Study::say(const std::string &text) const
+  Study::report(const std::string &text) const
   {
     if (!options.quiet && Utilities::MPI::this_mpi_process(group) == 0)
       std::cout << text << std::endl;
@@ -588,7 +589,7 @@ namespace Voussoir
           !reason.empty())
         throw UserError("\"" + folder + name + "\" cannot be written because " +
                         reason + ".");
-    say("The study is in " + folder + "/study.csv and study.json");
+    report("The study is in " + folder + "/study.csv and study.json");
   }
 
 

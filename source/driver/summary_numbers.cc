@@ -202,7 +202,7 @@ namespace Voussoir
 
 
   std::pair<std::optional<double>, bool>
-  Criterion::look(const RunSummary &summary) const
+  Criterion::evaluate(const RunSummary &summary) const
   {
     const bool was_stopped = summary.end == RunEnd::stopped;
     if (!number)

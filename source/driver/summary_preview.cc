@@ -28,7 +28,7 @@ namespace Voussoir
     }
 
 
-    /** The summary of a run, as far as a look at its beginning gives it. */
+    /** The summary of a run, as far as its beginning gives it. */
     nlohmann::json
     preview(Run &run)
     {

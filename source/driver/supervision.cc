@@ -13,9 +13,9 @@ namespace Voussoir
 
   namespace
   {
-    // Between two looks at cracks and slips [s], and how wide one may be over
-    // its cell: at a fiftieth, what it cuts off is a block of its own.
-    constexpr double look_interval = 0.1, widest_share = 0.02;
+    // Between two checks of cracks and slips [s], and how wide a crack may be
+    // over its cell: at a fiftieth, it detaches a block.
+    constexpr double check_interval = 0.1, widest_share = 0.02;
   } // namespace
 
 
@@ -26,7 +26,7 @@ namespace Voussoir
     , energy(energy)
     , energy_limit(energy_limit)
     , has_memory(run.solid.internal_force.has_memory())
-    , looks(look_interval, run.time_step)
+    , checks(check_interval, run.time_step)
   {}
 
 
@@ -69,7 +69,7 @@ namespace Voussoir
   void
   Supervision::check_motion(const State &state, const bool at_end)
   {
-    if (!at_end && !looks.due(state.step))
+    if (!at_end && !checks.due(state.step))
       return;
     check_cracks(state.time);
     check_slips(state.time);
@@ -89,8 +89,8 @@ namespace Voussoir
     text << std::setprecision(3) << "at t = " << time
          << " s a crack is open by " << 1e3 * widest.opening << " mm, "
          << 100. * widest.share
-         << " % of its cell: what cracks have cut off is loose from now on; "
-            "that it comes loose can be relied on, how it moves then cannot";
+         << " % of its cell: cracks have detached a block from the rest; that "
+            "they do can be relied on, how the block moves then cannot";
     run.log.warn(text.str());
   }
 

@@ -123,7 +123,7 @@ namespace Voussoir
     if (!std::isfinite(limit))
       throw UserError(
         "The model cannot move, because the supports of section \"Boundaries\" "
-        "hold all of its nodes; hold fewer face sets, or refine the mesh.");
+        "fix all of its nodes; fix fewer face sets, or refine the mesh.");
     length = kept ? *kept : chosen_step(model.parameters.time, limit, interval);
     check_number_of_steps(model.parameters.time.end_time, length);
     if (cracks)

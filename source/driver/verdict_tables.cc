@@ -33,8 +33,8 @@ namespace Voussoir
       const double modulus = material.elastic_constants().young_modulus;
       SymmetricTensor3<double> stress;
       stress[2][2]       = sign * sample;
-      const double level = material.load_level(stress, short_band);
-      if (!(material.load_level(2. * stress, short_band) > 1.9 * level))
+      const double ratio = material.yield_ratio(stress, short_band);
+      if (!(material.yield_ratio(2. * stress, short_band) > 1.9 * ratio))
         return 0.;
       PointTest           test(material, band, 1.);
       PointTest::Controls controls; // stresses of zero
@@ -44,7 +44,7 @@ namespace Voussoir
         {
           for (unsigned int i = 1; i <= n_steps; ++i)
             {
-              controls[2].value = sign * sample / level / modulus * double(i) /
+              controls[2].value = sign * sample / ratio / modulus * double(i) /
                                   double(n_at_limit);
               test.advance(controls);
               most = std::max(most, sign * test.stress[2][2]);
@@ -115,7 +115,7 @@ namespace Voussoir
     }
 
 
-    /** A line with what it is of. */
+    /** A line with the name of its object. */
     nlohmann::json
     of(nlohmann::json line, const std::string &what)
     {
@@ -124,7 +124,7 @@ namespace Voussoir
     }
 
 
-    /** Adds when and where, from an object of the summary that says so. */
+    /** Adds time and place, from an object of the summary that has them. */
     nlohmann::json
     with_place(nlohmann::json line, const nlohmann::json &found)
     {
@@ -231,7 +231,7 @@ namespace Voussoir
           if (const nlohmann::json &safety = block.at("smallest safety");
               safety.is_number())
             {
-              // below one it slid: by how much tells what that means
+              // below one it slid: its slip is to be judged
               nlohmann::json &line = results[name + ": safety against sliding"];
               line                 = at_least(safety, 1.);
               if (safety < 1.)

@@ -56,8 +56,8 @@ namespace Voussoir
       "Frequency of the free vibration for which the materials' "
       "moduli hold under Maxwell damping [Hz]; in slower motion "
       "they are smaller, in faster motion larger. \"first mode\": the lowest natural frequency "
-      "where section \"Modes\" computes some, else 3; 0 for at "
-      "rest.");
+      "where section \"Modes\" computes some, else 3; 0: the "
+      "relaxed moduli.");
     prm.add_parameter(
       "Mesh viscosity",
       mesh_viscosity,
@@ -100,8 +100,8 @@ namespace Voussoir
         reference != first_mode && (!number || *number < 0.))
       throw UserError("\"Reference frequency\" in section \"Damping\" is \"" +
                       reference +
-                      "\"; give a frequency [Hz], 0 for at rest, "
-                      "or \"" +
+                      "\"; give a frequency [Hz], 0 for the relaxed "
+                      "moduli, or \"" +
                       first_mode + "\".");
     if (model != DampingModel::none && lowest_frequency >= highest_frequency)
       throw UserError("In section \"Damping\" the \"Lowest frequency\" must be "
@@ -319,7 +319,7 @@ namespace Voussoir
         << (adapted ? ", in free vibration in the first mode" :
             parameters.follows_first_mode() ? ", as no modes are known" :
                                               "")
-        << "; of them " << std::setprecision(3) << modulus(0.) << " at rest";
+        << "; of them " << std::setprecision(3) << modulus(0.) << " relaxed";
     for (const double f : {1., 3., 10.})
       out << ", " << modulus(f) << " at " << f << " Hz";
     out << '\n';

@@ -43,9 +43,9 @@ namespace Voussoir
                sums,
                "As dealt: what cells bring to a node is summed in the order in "
                "which the partition deals them, so that results on other "
-               "numbers of ranks differ by round-off, which cracks and joints "
-               "that clap multiply. Reproducible: so that they do not depend "
-               "on the number of ranks, bit for bit, at a price; "
+               "numbers of ranks differ by round-off, which pounding of cracks "
+               "and joints multiplies. Reproducible: so that results do not "
+               "depend on the number of ranks, bit for bit, at a price; "
                "doc/running.md says which results.");
   }
 
@@ -355,7 +355,7 @@ namespace Voussoir
   AffineConstraints<double>
   Discretization::make_constraints(
     const std::vector<Support> &supports,
-    const std::vector<bool>    &held_materials) const
+    const std::vector<bool>    &fixed_materials) const
   {
     AffineConstraints<double> result(relevant_dofs);
     DoFTools::make_hanging_node_constraints(dof_handler, result);
@@ -372,8 +372,8 @@ namespace Voussoir
     for (const Support &support : supports)
       for (const auto &[cell, face] : grid.faces(support.set))
         {
-          std::array<bool, 3> held{{true, true, true}};
-          if (support.held != Support::Held::all)
+          std::array<bool, 3> fixed{{true, true, true}};
+          if (support.fixed != Support::Fixed::all)
             {
               normals.reinit(cell, face);
               const Tensor<1, 3> n       = normals.normal_vector(0);
@@ -382,17 +382,17 @@ namespace Voussoir
                 {
                   const bool along = std::abs(n[d]) > 1. - 1e-6;
                   upright          = upright || along;
-                  held[d] = along == (support.held == Support::Held::normal);
+                  fixed[d] = along == (support.fixed == Support::Fixed::normal);
                 }
               if (!upright)
                 throw UserError(
-                  (support.held == Support::Held::normal ?
+                  (support.fixed == Support::Fixed::normal ?
                      "\"Roller\" in section \"Boundaries\" names \"" :
                      "\"Antisymmetric\" in section \"Boundaries\" names "
                      "\"") +
                   support.set +
                   "\", which is not perpendicular to a coordinate axis; " +
-                  (support.held == Support::Held::normal ?
+                  (support.fixed == Support::Fixed::normal ?
                      "rollers need" :
                      "planes of antisymmetry need") +
                   " faces of constant x, y or z, so use "
@@ -403,12 +403,12 @@ namespace Voussoir
                ++j)
             if (fe.base_element(0).has_support_on_face(j, face))
               for (unsigned int d = 0; d < 3; ++d)
-                if (held[d])
+                if (fixed[d])
                   hold(3 * nodes[j] + d);
         }
-    if (!held_materials.empty())
+    if (!fixed_materials.empty())
       for (const auto &cell : dof_handler.active_cell_iterators())
-        if (!cell->is_artificial() && held_materials[grid.material(cell)])
+        if (!cell->is_artificial() && fixed_materials[grid.material(cell)])
           for (const auto node : cell_nodes(cell))
             for (unsigned int d = 0; d < 3; ++d)
               hold(3 * node + d);

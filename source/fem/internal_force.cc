@@ -181,7 +181,7 @@ namespace Voussoir
           largest[i] = factor * largest_entry(*vector, enough / factor);
           motion += largest[i];
         }
-    // one by one: the sum of a rank depends on what it owns
+    // one by one: the sum of a rank depends on its cells
     Utilities::MPI::max(largest, discretization.grid.communicator(), largest);
     motion = std::accumulate(largest.begin(), largest.end(), 0.);
     if (motion >= enough)
@@ -189,7 +189,7 @@ namespace Voussoir
     double s = 1.;
     for (const CellKernel *kernel : kernels)
       s = std::max(s, kernel->damping_factor());
-    // |u_e| <= sqrt(24) max |u| ; nodes that are held have no mass, but are
+    // |u_e| <= sqrt(24) max |u| ; nodes that are fixed have no mass, but are
     // like the others
     const double stiffness = 100. * input.bound->mass.linfty_norm() /
                              (input.bound->time_step * input.bound->time_step);

@@ -28,7 +28,7 @@ namespace Voussoir
         q.local_element(i) = 0.;
     const double norm = norm_of(q);
     if (norm == 0.)
-      return 0.; // all is held
+      return 0.; // all nodes are fixed
     q /= norm;
 
     std::vector<double> alpha, beta;

@@ -107,7 +107,7 @@ namespace Voussoir
   {
     const ActivePoint          &point  = active_point(place.batch, q);
     const SymmetricTensor<2, 3> stress = lane_of(point.stress, place.lane);
-    return lane_of(point.seen, place.lane) -
+    return lane_of(point.law_strain, place.lane) -
            1. / young_modulus *
              ((1. + poisson_ratio) * stress -
               poisson_ratio * trace(stress) * unit_symmetric_tensor<3>());
@@ -127,29 +127,29 @@ namespace Voussoir
 
   namespace
   {
-    // Calls trade(Lanes &) for all that a point remembers beside the numbers of
-    // its law, and returns how many that are.
-    template <typename Trade>
+    // Calls visit(Lanes &) for each internal variable of a point beside those
+    // of its law, and returns how many that are.
+    template <typename Visitor>
     unsigned int
-    for_each_number(ActivePoint &point, const Trade &trade)
+    for_each_number(ActivePoint &point, const Visitor &visit)
     {
       unsigned int n         = 0;
-      const auto   trade_one = [&](Lanes &number) {
-        trade(number);
+      const auto   visit_one = [&](Lanes &number) {
+        visit(number);
         ++n;
       };
       for (Lanes *number :
            {&point.band, &point.share, &point.impact, &point.filter_imbalance})
-        trade_one(*number);
+        visit_one(*number);
       for (unsigned int d = 0; d < 3; ++d)
-        trade_one(point.normal[d]);
+        visit_one(point.normal[d]);
       for (SymmetricTensor3<Lanes> *tensor : {&point.strain,
-                                              &point.seen,
+                                              &point.law_strain,
                                               &point.plastic,
                                               &point.stress,
                                               &point.filter})
         for (unsigned int i = 0; i < 6; ++i)
-          trade_one(tensor->access_raw_entry(i));
+          visit_one(tensor->access_raw_entry(i));
       return n;
     }
 

@@ -20,7 +20,7 @@ namespace Voussoir
     prm.add_parameter("Antisymmetric",
                       antisymmetric,
                       "Face sets that move at right angles to themselves only, "
-                      "the two components in the plane held: planes of "
+                      "the two components in the plane fixed: planes of "
                       "symmetry of a structure whose other half moves the "
                       "opposite way; planes of constant x, y or z.");
   }
@@ -31,11 +31,11 @@ namespace Voussoir
   {
     std::vector<Support> supports;
     for (const std::string &set : split_list(fixed))
-      supports.push_back({set, Support::Held::all});
+      supports.push_back({set, Support::Fixed::all});
     for (const std::string &set : split_list(roller))
-      supports.push_back({set, Support::Held::normal});
+      supports.push_back({set, Support::Fixed::normal});
     for (const std::string &set : split_list(antisymmetric))
-      supports.push_back({set, Support::Held::tangential});
+      supports.push_back({set, Support::Fixed::tangential});
     return supports;
   }
 } // namespace Voussoir

@@ -529,7 +529,7 @@ namespace Voussoir
       }
 
       std::vector<int>         n_to, n_from;
-      std::vector<std::size_t> order; // of what is sent
+      std::vector<std::size_t> order; // of the sent rows
     };
 
 
@@ -584,7 +584,7 @@ namespace Voussoir
                ++i)
             keys.push_back(values.items[i].first);
           const Addresses     from_keeper(keys, communicator);
-          std::vector<double> answers;
+          std::vector<double> replies;
           for (const std::uint64_t key :
                exchange(ordered(keys, 1, from_keeper.order),
                         1,
@@ -594,14 +594,14 @@ namespace Voussoir
             {
               const auto found = place.find(key);
               if (found == place.end())
-                answers.insert(answers.end(), width, 0.);
+                replies.insert(replies.end(), width, 0.);
               else
-                answers.insert(answers.end(),
+                replies.insert(replies.end(),
                                kept.row(found->second),
                                kept.row(found->second) + width);
             }
           const auto numbers = exchange(
-            answers, width, from_keeper.n_from, from_keeper.n_to, communicator);
+            replies, width, from_keeper.n_from, from_keeper.n_to, communicator);
           const double *row = numbers.data();
           for (const std::size_t i : from_keeper.order)
             {
@@ -612,7 +612,7 @@ namespace Voussoir
     }
 
 
-    /** Whether the disk has room for the rows, as far as that can be known. */
+    /** Whether the disk has space for the rows, as far as that can be known. */
     void
     check_room(const std::string  &file,
                const StateContent &content,

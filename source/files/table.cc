@@ -46,7 +46,7 @@ namespace Voussoir
     for (std::size_t i = 0; i < values.size(); ++i)
       {
         line << (i > 0 ? "," : "");
-        // there is no such number, as the safety of what bears no shear
+        // there is no such number, as the safety of a surface without shear
         if (!std::isinf(values[i]))
           line << values[i];
       }

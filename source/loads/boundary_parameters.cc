@@ -54,7 +54,7 @@ namespace Voussoir
     std::vector<Support> result = supports.list();
     for (const std::string &set : split_list(absorbing.face_sets))
       result.push_back(
-        {set, roller ? Support::Held::normal : Support::Held::all});
+        {set, roller ? Support::Fixed::normal : Support::Fixed::all});
     return result;
   }
 } // namespace Voussoir

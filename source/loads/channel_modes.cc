@@ -19,7 +19,7 @@ namespace Voussoir
     constexpr double       tolerance      = 1e-10; // of omega^2
 
 
-    /** K + shift M over the nodes that are not held. */
+    /** K + shift M over the nodes below the free surface. */
     class ShiftedMatrix
     {
     public:
@@ -124,14 +124,14 @@ namespace Voussoir
   ChannelModes
   find_channel_modes(const SparseMatrix<double> &stiffness,
                      const std::vector<double>  &areas,
-                     const std::vector<bool>    &held,
+                     const std::vector<bool>    &in_surface,
                      const double                speed,
                      const unsigned int          number)
   {
     std::vector<unsigned int> nodes;
     std::vector<double>       m;
     for (unsigned int i = 0; i < areas.size(); ++i)
-      if (!held[i])
+      if (!in_surface[i])
         {
           nodes.push_back(i);
           m.push_back(areas[i]);

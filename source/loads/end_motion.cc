@@ -69,7 +69,7 @@ namespace Voussoir
     , sums(end.areas.size() + n_modes)
   {
     for (unsigned int i = 0; i < pressure.size(); ++i)
-      if (!end.held[i])
+      if (!end.in_surface[i])
         {
           const double gain = time_step * end.density *
                               Utilities::fixed_power<2>(end.speed) /
@@ -131,7 +131,7 @@ namespace Voussoir
     for (unsigned int i = 0; i < pressure.size(); ++i)
       impulse[i] += time_step * pressure[i];
     for (unsigned int i = 0; i < pressure.size(); ++i)
-      if (!end.held[i])
+      if (!end.in_surface[i])
         {
           const double next =
             keep[i] * pressure[i] -

@@ -12,11 +12,11 @@ namespace Voussoir
 
   namespace
   {
-    // What is above the frequencies of so many modes leaves as a plane wave: in
+    // Motion above the frequencies of so many modes leaves as a plane wave: in
     // 280 m of water in a canyon above 20 Hz.
     constexpr unsigned int most_modes = 64;
 
-    // Sine of the angle at which it is said that an end leans.
+    // Sine of the slope of an end from which on the log has a note.
     constexpr double largest_slope = 0.1;
 
 
@@ -96,7 +96,7 @@ namespace Voussoir
         areas.push_back(node.second[0]);
         volumes.push_back(node.second[1]);
         dashpots.push_back(node.second[2]);
-        held.push_back(node.second[3] > 0.);
+        in_surface.push_back(node.second[3] > 0.);
       }
   }
 
@@ -170,7 +170,8 @@ namespace Voussoir
   {
     // one computes, so that all have the same to the last bit
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
-      modes = find_channel_modes(stiffness, areas, held, speed, most_modes);
+      modes =
+        find_channel_modes(stiffness, areas, in_surface, speed, most_modes);
     modes.frequencies =
       Utilities::MPI::broadcast(communicator, modes.frequencies);
     modes.shapes = Utilities::MPI::broadcast(communicator, modes.shapes);
@@ -207,7 +208,7 @@ namespace Voussoir
     for (unsigned int i = 0; i < areas.size(); ++i)
       {
         start.local_element(i)   = std::sin(1. + i * i);
-        inverse.local_element(i) = held[i] ? 0. : 1. / areas[i];
+        inverse.local_element(i) = in_surface[i] ? 0. : 1. / areas[i];
       }
     std::vector<double> values(areas.size());
     const double        largest =

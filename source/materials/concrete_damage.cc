@@ -262,14 +262,14 @@ namespace Voussoir
 
       template <typename Number>
       Number
-      load_level(const SymmetricTensor3<Number> &stress,
-                 const Number                   &element_length) const
+      yield_ratio(const SymmetricTensor3<Number> &stress,
+                  const Number                   &element_length) const
       {
         const auto [smallest, largest] = principal_bounds(stress);
-        return std::max(tension.load_level(largest, element_length),
-                        compression.load_level(Number(-smallest *
-                                                      (1. / (1. - alpha))),
-                                               element_length));
+        return std::max(tension.yield_ratio(largest, element_length),
+                        compression.yield_ratio(Number(-smallest *
+                                                       (1. / (1. - alpha))),
+                                                element_length));
       }
 
       /** Uniaxial compression as severe as the principal stresses s-, largest

@@ -88,7 +88,7 @@ namespace Voussoir
 
       template <typename Number>
       Number
-      load_level(const SymmetricTensor3<Number> &stress, const Number &) const
+      yield_ratio(const SymmetricTensor3<Number> &stress, const Number &) const
       {
         const auto [first, second] = invariants(stress);
         return std::max(Number((std::sqrt(Number(second)) + slope * first) /

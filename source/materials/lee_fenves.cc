@@ -27,14 +27,14 @@ namespace Voussoir
      * where b_t and b_c make the plastic work over the cell's length that of
      * the fracture and the crushing energy. The stress is
      *   sigma = (1 - D_c) [(1 - D_t) s + w D_t s_c] ,
-     * where s_c is what a material that bears no tension keeps of s: w of the
-     * stiffness comes back when a crack closes. Lee and Fenves put
-     * (1 - D_c) (1 - D_t + w (1 - r) D_t) s, which has no potential: a block
-     * that rocks and slides on its crack gains energy at every turn.
+     * where s_c is the part of s of a material without tensile strength: w of
+     * the stiffness comes back when a crack closes. Lee and Fenves put (1 -
+     * D_c) (1 - D_t + w (1 - r) D_t) s, which has no potential: a block that
+     * rocks and slides on its crack gains energy at every turn.
      *
-     * The deviator of s keeps its direction on the way back to the surface and
-     * its trace falls in proportion, which leaves one equation. Beyond the
-     * apex, the way goes on along the axis to zero, and its end is always
+     * In the return mapping the deviator of s keeps its direction and its trace
+     * falls in proportion, which leaves one equation. Beyond the apex the
+     * return goes on along the hydrostatic axis to zero stress, which is always
      * inside: the root is bracketed for every trial stress.
      */
     struct LeeFenves : IsotropicElasticity
@@ -55,7 +55,7 @@ namespace Voussoir
       double crushing_ratio   = 1.;   // q_c
       double recovery         = 1.;   // w
 
-      double alpha = 0., hump = 0.; // a
+      double alpha = 0., hardening = 0.; // a
 
       void
       declare_parameters(ParameterHandler &prm)
@@ -134,10 +134,10 @@ namespace Voussoir
         alpha = (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
         // the largest sigma_c is fc0 (1 + a)^2 / (4 a)
         const double ratio = peak_strength / yield_strength;
-        hump = 2. * ratio - 1. + 2. * std::sqrt(ratio * (ratio - 1.));
+        hardening = 2. * ratio - 1. + 2. * std::sqrt(ratio * (ratio - 1.));
       }
 
-      /** What has become of the uniaxial curves. */
+      /** Strengths and stiffness left of the uniaxial curves. */
       struct Strengths
       {
         double tension, crushing;               // effective [Pa]
@@ -149,18 +149,18 @@ namespace Voussoir
                 const double crushing,
                 const double length) const
       {
-        // what is wide open bears nothing, and its effective strength is finite
+        // a wide crack has no tensile strength, and a finite effective one
         const double t = std::max(1e-10,
                                   std::exp(-tensile_strength * length *
                                            opening / fracture_energy));
-        const double c = std::exp(-yield_strength * (1. + 0.5 * hump) * length *
-                                  crushing / crushing_energy);
+        const double c = std::exp(-yield_strength * (1. + 0.5 * hardening) *
+                                  length * crushing / crushing_energy);
         Strengths    result;
         result.tension_intact  = std::pow(t, tension_ratio);
         result.crushing_intact = std::pow(c, crushing_ratio);
         result.tension  = tensile_strength * std::pow(t, 1. - tension_ratio);
         result.crushing = yield_strength * std::pow(c, 1. - crushing_ratio) *
-                          (1. + hump - hump * c);
+                          (1. + hardening - hardening * c);
         return result;
       }
 
@@ -195,7 +195,7 @@ namespace Voussoir
 
       template <typename Number>
       Number
-      load_level(const SymmetricTensor3<Number> &stress, const Number &) const
+      yield_ratio(const SymmetricTensor3<Number> &stress, const Number &) const
       {
         const auto [first, second] = invariants(stress);
         return severity(first,
@@ -207,8 +207,8 @@ namespace Voussoir
                yield_strength;
       }
 
-      /** One point on the way back. */
-      struct Place
+      /** Iterate of the return mapping. */
+      struct Iterate
       {
         Principal stress;
         double    opening, crushing; // k_t, k_c
@@ -216,15 +216,15 @@ namespace Voussoir
       };
 
       /**
-       * @param way 0 at the trial stress, 1 where its deviator has gone, 2 at
-       *   zero stress
+       * @param progress 0 at the trial stress, 1 where its deviator is zero, 2
+       * at zero stress
        */
-      Place
-      on_the_way(const Principal &trial,
+      Iterate
+      iterate_at(const Principal &trial,
                  const double     opening,
                  const double     crushing,
                  const double     length,
-                 const double     way) const
+                 const double     progress) const
       {
         const double mean = (trial[0] + trial[1] + trial[2]) / 3.;
         double       norm = 0.;
@@ -232,12 +232,12 @@ namespace Voussoir
           norm += (value - mean) * (value - mean);
         const double axis = mean - 3. * bulk_modulus() * dilatancy *
                                      std::sqrt(norm) / (2. * shear_modulus());
-        const double first_leg  = std::min(way, 1.),
-                     second_leg = std::max(way - 1., 0.);
+        const double first_leg  = std::min(progress, 1.),
+                     second_leg = std::max(progress - 1., 0.);
         const double new_mean =
           (mean + first_leg * (axis - mean)) * (1. - second_leg);
 
-        Place        place;
+        Iterate      iterate;
         double       largest_strain = -1e300, least_strain = 1e300;
         const double dilation = (mean - new_mean) / (3. * bulk_modulus());
         for (unsigned int i = 0; i < 3; ++i)
@@ -245,79 +245,82 @@ namespace Voussoir
             const double deviator = trial[i] - mean;
             const double strain =
               first_leg * deviator / (2. * shear_modulus()) + dilation;
-            largest_strain  = std::max(largest_strain, strain);
-            least_strain    = std::min(least_strain, strain);
-            place.stress[i] = new_mean + (1. - first_leg) * deviator;
+            largest_strain    = std::max(largest_strain, strain);
+            least_strain      = std::min(least_strain, strain);
+            iterate.stress[i] = new_mean + (1. - first_leg) * deviator;
           }
-        const double weight = tension_weight(place.stress);
-        place.opening       = opening + weight * std::max(largest_strain, 0.);
-        place.crushing = crushing - (1. - weight) * std::min(least_strain, 0.);
-        const Strengths now = strengths(place.opening, place.crushing, length);
-        const double    scale = 1. - first_leg;
-        place.excess =
-          severity(3. * new_mean,
-                   0.5 * scale * scale * norm,
-                   *std::max_element(place.stress.begin(), place.stress.end()),
-                   now.tension,
-                   now.crushing) -
-          now.crushing;
-        return place;
+        const double weight = tension_weight(iterate.stress);
+        iterate.opening     = opening + weight * std::max(largest_strain, 0.);
+        iterate.crushing =
+          crushing - (1. - weight) * std::min(least_strain, 0.);
+        const Strengths now =
+          strengths(iterate.opening, iterate.crushing, length);
+        const double scale = 1. - first_leg;
+        iterate.excess     = severity(3. * new_mean,
+                                  0.5 * scale * scale * norm,
+                                  *std::max_element(iterate.stress.begin(),
+                                                    iterate.stress.end()),
+                                  now.tension,
+                                  now.crushing) -
+                         now.crushing;
+        return iterate;
       }
 
-      /** Where the way meets the surface, by regula falsi (Illinois). */
-      Place
-      returned(const Principal &trial,
-               const double     opening,
-               const double     crushing,
-               const double     length) const
+      /** The iterate on the yield surface, by regula falsi (Illinois). */
+      Iterate
+      return_mapping(const Principal &trial,
+                     const double     opening,
+                     const double     crushing,
+                     const double     length) const
       {
-        const auto at = [&](const double way) {
-          return on_the_way(trial, opening, crushing, length, way);
+        const auto at = [&](const double progress) {
+          return iterate_at(trial, opening, crushing, length, progress);
         };
-        double left = 0., right = 1.;
-        Place  place       = at(left);
-        double left_excess = place.excess;
+        double  left = 0., right = 1.;
+        Iterate iterate     = at(left);
+        double  left_excess = iterate.excess;
         if (left_excess <= 0.)
           {
-            place.stress = trial; // without round-off
-            return place;
+            iterate.stress = trial; // without round-off
+            return iterate;
           }
-        place               = at(right);
-        double right_excess = place.excess;
+        iterate             = at(right);
+        double right_excess = iterate.excess;
         if (right_excess > 0.)
           {
             left         = right;
             left_excess  = right_excess;
             right        = 2.;
-            place        = at(right);
-            right_excess = place.excess;
+            iterate      = at(right);
+            right_excess = iterate.excess;
           }
         const double tolerance = 1e-13 * (yield_strength + left_excess);
         int          side      = 0; // of the last point
-        while (std::abs(place.excess) > tolerance &&
+        while (std::abs(iterate.excess) > tolerance &&
                right - left > 1e-15 * right)
           {
-            const double way = (left * right_excess - right * left_excess) /
-                               (right_excess - left_excess);
-            place = at(way);
-            if (place.excess > 0.)
+            const double progress =
+              (left * right_excess - right * left_excess) /
+              (right_excess - left_excess);
+            iterate = at(progress);
+            if (iterate.excess > 0.)
               {
-                left        = way;
-                left_excess = place.excess;
+                left        = progress;
+                left_excess = iterate.excess;
                 if (side > 0)
                   right_excess *= 0.5;
                 side = 1;
               }
             else
               {
-                right        = way;
-                right_excess = place.excess;
+                right        = progress;
+                right_excess = iterate.excess;
                 if (side < 0)
                   left_excess *= 0.5;
                 side = -1;
               }
           }
-        return place;
+        return iterate;
       }
 
       template <typename Number>
@@ -342,18 +345,20 @@ namespace Voussoir
             Principal s;
             for (unsigned int i = 0; i < 3; ++i)
               s[i] = lane_of(principal.values[i], lane);
-            const Place     place  = returned(s, opening, crushing, length);
+            const Iterate iterate =
+              return_mapping(s, opening, crushing, length);
             const Strengths before = strengths(opening, crushing, length),
-                            now =
-                              strengths(place.opening, place.crushing, length);
+                            now    = strengths(iterate.opening,
+                                            iterate.crushing,
+                                            length);
             lane_of(tension_before, lane)  = before.tension_intact;
             lane_of(tension_now, lane)     = now.tension_intact;
             lane_of(crushing_before, lane) = before.crushing_intact;
             lane_of(crushing_now, lane)    = now.crushing_intact;
             for (unsigned int i = 0; i < 3; ++i)
-              lane_of(excess[i], lane) = s[i] - place.stress[i];
-            opening  = place.opening;
-            crushing = place.crushing;
+              lane_of(excess[i], lane) = s[i] - iterate.stress[i];
+            opening  = iterate.opening;
+            crushing = iterate.crushing;
           }
 
         const SymmetricTensor3<Number> effective_excess =

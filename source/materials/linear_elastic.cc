@@ -36,7 +36,7 @@ namespace Voussoir
                           tensile_strength,
                           "Static tensile strength, which the observer "
                           "over-stress compares with the stress [Pa]; the law "
-                          "itself bears any. 0: not given." +
+                          "itself has no limit. 0: not given." +
                             usually(Usual::tensile_strength_or_none),
                           Patterns::Double(0.));
       }

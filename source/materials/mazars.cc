@@ -100,8 +100,8 @@ namespace Voussoir
 
       template <typename Number>
       Number
-      load_level(const SymmetricTensor3<Number> &stress,
-                 const Number                   &element_length) const
+      yield_ratio(const SymmetricTensor3<Number> &stress,
+                  const Number                   &element_length) const
       {
         // principal strains lie within mean +- 2 sqrt(J2 / 3) / (2 G)
         const auto [first, second] = invariants(stress);

@@ -112,7 +112,7 @@ namespace Voussoir
 
       template <typename Number>
       Number
-      load_level(const SymmetricTensor3<Number> &stress, const Number &) const
+      yield_ratio(const SymmetricTensor3<Number> &stress, const Number &) const
       {
         // over all Lode angles: p sin phi + sqrt(J2 (1 + sin^2 phi / 3)), and
         // principal values within p +- 2 sqrt(J2 / 3)

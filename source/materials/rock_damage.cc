@@ -77,12 +77,12 @@ namespace Voussoir
 
       template <typename Number>
       Number
-      load_level(const SymmetricTensor3<Number> &stress,
-                 const Number                   &element_length) const
+      yield_ratio(const SymmetricTensor3<Number> &stress,
+                  const Number                   &element_length) const
       {
         const auto [smallest, largest] = principal_bounds(stress);
-        return std::max(tension.load_level(largest, element_length),
-                        compression.load_level(
+        return std::max(tension.yield_ratio(largest, element_length),
+                        compression.yield_ratio(
                           Number(friction * std::min(largest, Number(0.)) -
                                  smallest),
                           element_length));

@@ -359,7 +359,7 @@ namespace Voussoir
 
 
     // How many vertices lie where a vertex of lower number is already. The bins
-    // are much wider than the tolerance, so most vertices look into one only.
+    // are much wider than the tolerance, so most vertices search one only.
     unsigned int
     n_coincident_vertices(const CoarseMesh &mesh, const double shortest_edge)
     {
@@ -547,7 +547,7 @@ namespace Voussoir
 
   std::vector<MeshPart>
   find_parts(const CoarseMesh               &mesh,
-             const std::vector<std::string> &holding_sets,
+             const std::vector<std::string> &fixed_sets,
              const std::vector<std::string> &interfaces)
   {
     boost::disjoint_sets_with_storage<> parts(mesh.vertices.size());
@@ -562,12 +562,12 @@ namespace Voussoir
           parts.union_set(mesh.cells[first[i].cell][0],
                           mesh.cells[other[i].cell][0]);
       }
-    std::set<std::size_t> held;
-    for (const std::string &set : holding_sets)
+    std::set<std::size_t> fixed;
+    for (const std::string &set : fixed_sets)
       if (const auto faces = mesh.face_sets.find(set);
           faces != mesh.face_sets.end())
         for (const CoarseMesh::Face &face : faces->second)
-          held.insert(parts.find_set(mesh.cells[face.cell][0]));
+          fixed.insert(parts.find_set(mesh.cells[face.cell][0]));
 
     std::set<std::size_t> seen;
     std::vector<MeshPart> result;
@@ -575,7 +575,7 @@ namespace Voussoir
       if (const std::size_t part = parts.find_set(mesh.cells[cell][0]);
           seen.insert(part).second)
         result.push_back(
-          {describe_point(cell_centre(mesh, cell)), held.count(part) > 0});
+          {describe_point(cell_centre(mesh, cell)), fixed.count(part) > 0});
     return result;
   }
 

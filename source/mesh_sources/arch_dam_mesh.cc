@@ -172,7 +172,7 @@ namespace Voussoir
       }
 
 
-      // Faces that look downstream or upstream.
+      // Faces towards downstream or upstream.
       void
       name_faces_across_sweep()
       {

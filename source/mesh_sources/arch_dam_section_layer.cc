@@ -8,7 +8,7 @@ namespace Voussoir
 
   namespace
   {
-    // Where a layer begins, over the way to the vertices beyond; smoothing
+    // Where a layer begins, over the distance to the vertices beyond; smoothing
     // finds its thickness.
     constexpr double first_thickness = 0.4;
   } // namespace

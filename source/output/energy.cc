@@ -135,7 +135,7 @@ namespace Voussoir
       n == 0 ? known_loss :
                      known_loss + 0.5 * ((n + 1.) * next_loss + (n - 1.) * next) +
                  0.5 * ((n - 1.) * last_loss + (n + 1.) * last);
-    // looks beside the schedule leave it as it is
+    // evaluations beside the schedule leave it as it is
     if (!first && (n == 0 || !is_due(step)))
       return loss;
 
@@ -224,7 +224,7 @@ namespace Voussoir
     terms.closing      = sums[8];
     terms.input        = sums[9];
     terms.constraints  = sums[10];
-    // of the work of contact, what its static forces do on the way
+    // less the part of its static forces in the work of contact
     if (initial_state.contact_force.size() > 0)
       terms.constraints -=
         0.5 * (product(initial_state.contact_force, moved, is_exact) +

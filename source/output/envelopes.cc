@@ -28,7 +28,7 @@ namespace Voussoir
     class StressEnvelope
     {
     public:
-      /** @param sets cell sets to look at; none for all cells */
+      /** @param sets cell sets to sample; none for all cells */
       StressEnvelope(const ObservedRun              &run,
                      const std::vector<std::string> &sets)
         : run(run)
@@ -126,7 +126,7 @@ namespace Voussoir
           }
       }
 
-      /** Of all cells those that are looked at; all ranks must call this
+      /** Of all cells those that are sampled; all ranks must call this
        *  together. */
       double
       share_of_cells() const
@@ -140,7 +140,7 @@ namespace Voussoir
                double(triangulation.n_global_active_cells());
       }
 
-      /** Visits each cell that is looked at. */
+      /** Visits each cell that is sampled. */
       void
       for_each_cell(const std::function<void(const Discretization::Cell &,
                                              StressExtremes &)> &visit)
@@ -436,28 +436,28 @@ namespace Voussoir
                           interval,
                           "Time over which the mean acceleration is taken, "
                           "which leaves out what is above 0.44 over it, and "
-                          "between two looks at that of a single step [s]. At "
-                          "displacement and velocity a look is taken each "
+                          "between two samples of that of a single step [s]. "
+                          "Displacement and velocity are sampled each "
                           "twentieth of the shortest period that the mesh "
                           "carries with eight nodes per wavelength, if that is "
                           "shorter.",
                           Patterns::Double(1e-6));
         prm.add_parameter("Stress",
                           wants_stress,
-                          "Whether to look at the principal stresses at the "
+                          "Whether to sample the principal stresses at the "
                           "nodes of each cell, the points that pictures show.");
         prm.add_parameter("Stress interval",
                           stress_interval,
-                          "Time between two looks at these [s]; 0 for a "
+                          "Time between two samples of these [s]; 0 for a "
                           "twentieth of the shortest period that the mesh "
                           "carries with eight nodes per wavelength, or so much "
-                          "more that looks cost no more than 2 % of the time "
+                          "more that samples cost no more than 2 % of the time "
                           "steps: the fewer cells, the shorter. summary.json "
                           "has it.",
                           Patterns::Double(0.));
         prm.add_parameter("Stress in",
                           stress_sets,
-                          "Cell sets whose stresses are looked at, as those of "
+                          "Cell sets whose stresses are sampled, as those of "
                           "the dam; empty for all cells.");
       }
 
@@ -473,10 +473,10 @@ namespace Voussoir
       observe(const State &state) override
       {
         const bool has_mean = schedule.due(state.step);
-        if (state.step > last_step && (has_mean || looks.due(state.step)))
-          look_at_motion(state);
+        if (state.step > last_step && (has_mean || samples.due(state.step)))
+          evaluate_motion(state);
         if (state.step > last_step && has_mean)
-          look_at_acceleration(state);
+          evaluate_acceleration(state);
         // the acceleration needs the velocity of two steps in a row
         if (schedule.due(state.step + 1))
           previous = state.velocity;
@@ -489,12 +489,12 @@ namespace Voussoir
       prepare() override
       {
         schedule = Schedule(interval, run().time_step);
-        looks    = Schedule(run().looking_interval(interval), run().time_step);
+        samples  = Schedule(run().sampling_interval(interval), run().time_step);
         // the three components of a node hold three numbers each
         keep("envelope", largest);
         keep("envelope accelerations", accelerations);
         keep("envelope velocity", previous);
-        keep("envelope velocity of the last look", last_look);
+        keep("envelope velocity of the last look", last_sample);
         keep("last step", last_step, 0);
         stress.reset();
         if (!wants_stress)
@@ -516,7 +516,7 @@ namespace Voussoir
                                  run().time_step);
         stress_schedule = Schedule(looked_at, run().time_step);
         if (stress_interval > 0.)
-          run().warn_of_coarse_looks(
+          run().warn_of_coarse_sampling(
             stress_interval,
             "\"Stress interval\" in section \"Output/envelopes\"");
       }
@@ -529,7 +529,7 @@ namespace Voussoir
         if (stress)
           {
             const auto n = run().solid.grid().triangulation().n_active_cells();
-            // cells that are not looked at
+            // cells that are not sampled
             for (auto &field : values)
               {
                 field.reinit(n);
@@ -593,7 +593,8 @@ namespace Voussoir
           }
       }
 
-      /** A law without strength bears any tension, concrete and rock do not. */
+      /** A law without strength has no limit of tension, concrete and rock
+       * have. */
       void
       check_tension(const unsigned int material, const nlohmann::json &found)
       {
@@ -607,7 +608,7 @@ namespace Voussoir
                          "\" has more than ",
                          tension,
                          " MPa of tension at some time, which neither concrete "
-                         "nor rock bears, but its law has no strength; look at "
+                         "nor rock resists, but its law has no strength; check "
                          "the units of loads and motion, or choose a law with "
                          "strength");
       }
@@ -619,7 +620,7 @@ namespace Voussoir
       }
 
       void
-      look_at_motion(const State &state)
+      evaluate_motion(const State &state)
       {
         for (unsigned int i = 0; i < largest.locally_owned_size(); i += 3)
           {
@@ -633,9 +634,9 @@ namespace Voussoir
       }
 
       void
-      look_at_acceleration(const State &state)
+      evaluate_acceleration(const State &state)
       {
-        const double looked = (state.step - last_step) * run().time_step;
+        const double sampled = (state.step - last_step) * run().time_step;
         for (unsigned int i = 0; i < largest.locally_owned_size(); i += 3)
           {
             const double *v    = state.velocity.begin() + i;
@@ -645,28 +646,29 @@ namespace Voussoir
                                      v[2] - before[2]};
               return norm(change) / time;
             };
-            const double acceleration = mean(last_look.begin() + i, looked);
+            const double acceleration = mean(last_sample.begin() + i, sampled);
             double *m = largest.begin() + i, *a = accelerations.begin() + i;
             if (acceleration > m[2])
               a[2] = state.time;
             m[2] = std::max(m[2], acceleration);
             a[0] = std::max(a[0], mean(previous.begin() + i, run().time_step));
           }
-        last_look = state.velocity;
-        last_step = state.step;
+        last_sample = state.velocity;
+        last_step   = state.step;
       }
 
-      // a look at all cells costs about a quarter of a step
+      // a sample of all cells costs about a quarter of a step
       static constexpr double steps_per_look = 12.;
 
       bool        wants_stress = true;
       double      interval = 0.01, stress_interval = 0.;
       std::string stress_sets;
 
-      Schedule schedule, looks, stress_schedule;
+      Schedule schedule, samples, stress_schedule;
       Vector   largest, accelerations;
-      Vector   previous, last_look; // velocities of a step and of a look before
-      unsigned long long              last_step = 0;  // of that look
+      Vector   previous,
+        last_sample; // velocities of a step and of a sample before
+      unsigned long long              last_step = 0;  // of that sample
       double                          looked_at = 0.; // interval of stress [s]
       std::unique_ptr<StressEnvelope> stress;         // null: not wanted
     };

@@ -50,7 +50,7 @@ namespace Voussoir
     , all_names(all_names)
   {
     if (sets.empty())
-      throw UserError(place + " is empty; name the faces to look at.");
+      throw UserError(place + " is empty; name faces.");
     Places places;
     for (unsigned int s = 0; s < sets.size(); ++s)
       {
@@ -184,11 +184,11 @@ namespace Voussoir
   Vector
   FaceMesh::make_vector(const unsigned int width) const
   {
-    IndexSet owned(width * n_numbers), held(width * n_numbers);
+    IndexSet owned(width * n_numbers), relevant(width * n_numbers);
     owned.add_range(width * first_owned, width * (first_owned + n_owned));
     for (const auto number : numbers)
-      held.add_range(width * number, width * (number + 1));
-    return Vector(owned, held, communicator());
+      relevant.add_range(width * number, width * (number + 1));
+    return Vector(owned, relevant, communicator());
   }
 
 

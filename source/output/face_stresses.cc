@@ -24,13 +24,13 @@ namespace Voussoir
         prm.add_parameter(
           "Face sets",
           sets,
-          "Faces to look at. On them arch stress is along the horizontal, "
+          "Faces to sample. On them arch stress is along the horizontal, "
           "cantilever stress along the steepest line; tension is positive "
           "[MPa].");
         prm.add_parameter(
           "Envelope interval",
           envelope_interval,
-          "Time between two looks for the envelopes [s]; 0 for a "
+          "Time between two samples for the envelopes [s]; 0 for a "
           "twentieth of the shortest period that the mesh "
           "carries with eight nodes per wavelength.",
           Patterns::Double(0.));
@@ -90,7 +90,7 @@ namespace Voussoir
                                                      run().resolving_interval(),
                             run().time_step);
         if (envelope_interval > 0.)
-          run().warn_of_coarse_looks(
+          run().warn_of_coarse_sampling(
             envelope_interval,
             "\"Envelope interval\" in section \"Output/face stresses\"");
         mesh   = std::make_unique<FaceMesh>(make_mesh(run()));

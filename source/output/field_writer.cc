@@ -197,7 +197,7 @@ namespace Voussoir
 
   namespace
   {
-    /** What is drawn. */
+    /** Fields of a picture. */
     struct Picture
     {
       const std::vector<NodalField> &fields;

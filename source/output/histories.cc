@@ -45,11 +45,10 @@ namespace Voussoir
         prm.add_parameter("Quantities",
                           quantities,
                           "What to write: displacement [m], velocity [m/s], "
-                          "acceleration [m/s2], in which cracks and joints "
-                          "that clap show as single steps, and that without "
-                          "what is above the filter frequency; displacement "
-                          "also since the static state or the last grouting of "
-                          "joints.",
+                          "acceleration [m/s2], in which pounding of cracks "
+                          "and joints shows as single steps, and the same "
+                          "below the filter frequency; displacement also since "
+                          "the static state or the last grouting of joints.",
                           Patterns::MultipleSelection(
                             "displacement|velocity|acceleration|filtered "
                             "acceleration|" +
@@ -227,7 +226,7 @@ namespace Voussoir
           table.write(line.time, values);
       }
 
-      /** The state at rest, which a run without steps ends with. */
+      /** The static state, which a run without steps ends with. */
       void
       take_rest(const State &state)
       {

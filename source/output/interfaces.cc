@@ -40,18 +40,19 @@ namespace Voussoir
           blocks_text,
           "Blocks of rock whose safety against sliding as a whole is watched: "
           "\"cell set: surface, surface\", separated by \";\", with all "
-          "surfaces of contact that hold the block, one for each plane. It is "
-          "that of limit equilibrium under what drives the block, weight, "
+          "surfaces of contact of the block, one for each plane. It is "
+          "that of limit equilibrium under the driving forces, weight, "
           "water, uplift, thrust of the dam, and its inertia as if it went with "
           "its base: along one plane or along the line where two of them meet, "
-          "zero if the block lifts off, infinite if nothing drives it or other "
-          "planes block its way. The mobilised ratio is how much of what the "
-          "planes bear the contact forces take, at most one. Both are means "
+          "zero if the block lifts off, infinite without a driving force or if "
+          "other planes prevent the slip. The mobilised ratio is the shear of "
+          "the contact forces over the resistance of the planes, at most one. "
+          "Both are means "
           "over 0.443 of the shortest period that the mesh carries.");
         declare_interval(prm,
                          "Time between two lines of interfaces.csv [s]. In it "
                          "the sliding safety of a surface is (c A + f N) / T, "
-                         "what friction and cohesion could bear over the "
+                         "the resistance by friction and cohesion over the "
                          "resultant of the shear, both where no keys hold. "
                          "Extremes in summary.json are those of all steps.");
       }
@@ -75,29 +76,29 @@ namespace Voussoir
       observe(const State &state) override
       {
         const std::size_t n_surfaces = areas.size();
-        Look              look{state.time,
-                  has_line(state.step),
-                  no_sums(n_quantities * n_surfaces),
-                  std::vector<double>(2 * n_surfaces)};
+        Sample            sample{state.time,
+                      has_line(state.step),
+                      no_sums(n_quantities * n_surfaces),
+                      std::vector<double>(2 * n_surfaces)};
         for (unsigned int k = 0; k < extremes.size(); ++k)
           {
             const ContactPoint &point = contact().points()[k];
             const double opening = opening_of(point), slip = slip_of(point);
             extremes[k][0] = std::max(extremes[k][0], opening);
             extremes[k][1] = std::max(extremes[k][1], slip);
-            add_to_sums(point, &look.parts[n_quantities * point.surface]);
-            double *now = &look.largest[2 * point.surface];
+            add_to_sums(point, &sample.parts[n_quantities * point.surface]);
+            double *now = &sample.largest[2 * point.surface];
             now[0]      = std::max(now[0], opening);
             now[1]      = std::max(now[1], slip);
           }
         for (const NearestContactPoint &point : points)
           for (unsigned int d = 0; d < 3; ++d)
             {
-              look.parts.push_back(no_sums(1)[0]);
-              look.parts.back() +=
+              sample.parts.push_back(no_sums(1)[0]);
+              sample.parts.back() +=
                 point.is_mine ? contact().points()[point.number].gap[d] : 0.;
             }
-        take(std::move(look));
+        take(std::move(sample));
       }
 
     private:
@@ -176,7 +177,7 @@ namespace Voussoir
              std::vector<std::array<double, 2>>(n_surfaces, {{0., 0.}}));
         keep("time at one", time_at_one, std::vector<double>(n_surfaces, 0.));
         keep("energies at start", energies_at_start, energies());
-        keep("last look", last_look, 0.);
+        keep("last look", last_sample, 0.);
         open_table(columns());
       }
 
@@ -241,22 +242,22 @@ namespace Voussoir
       }
 
       std::vector<double>
-      line_of(const Look &look) override
+      line_of(const Sample &sample) override
       {
-        const double       *sums  = look.sums.data();
-        const double        since = std::max(0., look.time - last_look);
+        const double       *sums  = sample.sums.data();
+        const double        since = std::max(0., sample.time - last_sample);
         std::vector<double> line;
         for (unsigned int s = 0; s < areas.size(); ++s)
           {
             const auto values = surface_values(sums + n_quantities * s,
-                                               &look.largest[2 * s],
+                                               &sample.largest[2 * s],
                                                areas[s]);
             line.insert(line.end(), values.begin(), values.end());
             const double open = sums[n_quantities * s + open_area];
             if (open > largest_open[s][0])
-              largest_open[s] = {{open, look.time}};
-            if (look.largest[2 * s] > largest_opening[s][0])
-              largest_opening[s] = {{look.largest[2 * s], look.time}};
+              largest_open[s] = {{open, sample.time}};
+            if (sample.largest[2 * s] > largest_opening[s][0])
+              largest_opening[s] = {{sample.largest[2 * s], sample.time}};
             const double safety = values.back();
             smallest_safety[s]  = std::min(smallest_safety[s], safety);
             // what slides is at its limit, up to the waves inside
@@ -267,20 +268,20 @@ namespace Voussoir
           line.push_back(1e3 * sums[n_quantities * areas.size() + k]);
         for (unsigned int b = 0; b < blocks.size(); ++b)
           {
-            look_at_block(b, look.time, since, sums);
+            evaluate_block(b, sample.time, since, sums);
             line.push_back(from_json_number(windows[b][safety_now]));
             line.push_back(windows[b][mobilised_now]);
           }
-        last_look = std::max(last_look, look.time);
+        last_sample = std::max(last_sample, sample.time);
         return line;
       }
 
       /** Goes on with the means of a block. */
       void
-      look_at_block(const unsigned int b,
-                    const double       time,
-                    const double       since,
-                    const double      *sums)
+      evaluate_block(const unsigned int b,
+                     const double       time,
+                     const double       since,
+                     const double      *sums)
       {
         const SlidingBlock &block    = blocks[b];
         double             *now      = windows[b].data();
@@ -434,7 +435,7 @@ namespace Voussoir
       // of each surface
       std::vector<double> areas, smallest_safety, time_at_one,
         energies_at_start;
-      double last_look = 0.;
+      double last_sample = 0.;
 
       std::vector<SlidingBlock>  blocks;
       std::vector<SafetyHistory> safety_of_blocks;
@@ -445,7 +446,7 @@ namespace Voussoir
       // largest open area [m2] and opening [m] of each surface, and when [s]
       std::vector<std::array<double, 2>> largest_open, largest_opening;
 
-      // of each block what is known of it now, then sums times their time since
+      // of each block its present values, then sums times their time since
       // the last mean
       enum OfWindow
       {

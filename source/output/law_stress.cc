@@ -51,7 +51,7 @@ namespace Voussoir
   {
     return history == nullptr ||
            (!is_active() &&
-            material->load_level(elastic_stress, widest_band()) <= 1.);
+            material->yield_ratio(elastic_stress, widest_band()) <= 1.);
   }
 
 
@@ -161,7 +161,7 @@ namespace Voussoir
     if (all_are_elastic)
       return result;
     const bool none_begins =
-      common != nullptr && !any_above(common->load_level(result, bands), 1.);
+      common != nullptr && !any_above(common->yield_ratio(result, bands), 1.);
     for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
       if (none_begins)
         {

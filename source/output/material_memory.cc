@@ -34,9 +34,9 @@ namespace Voussoir
                const unsigned int         q,
                const double               largest)
     {
-      const ActivePoint &point  = history.active_point(place.batch, q);
-      const Lanes        across = point.normal * (point.seen * point.normal),
-                  traction      = point.normal * (point.stress * point.normal);
+      const ActivePoint &point = history.active_point(place.batch, q);
+      const Lanes across   = point.normal * (point.law_strain * point.normal),
+                  traction = point.normal * (point.stress * point.normal);
       const ElasticConstants elastic       = material.elastic_constants();
       const double           strain_across = across[place.lane];
       if (!(strain_across > 0.) ||

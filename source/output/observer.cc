@@ -8,8 +8,8 @@
 namespace Voussoir
 {
   void
-  ObservedModel::warn_of_coarse_looks(const double       interval,
-                                      const std::string &place) const
+  ObservedModel::warn_of_coarse_sampling(const double       interval,
+                                         const std::string &place) const
   {
     if (interval < 1.001 * resolving_interval())
       return;

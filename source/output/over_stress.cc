@@ -159,7 +159,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Face sets", sets, "Faces to look at.");
+        prm.add_parameter("Face sets", sets, "Faces to evaluate.");
         add_option(prm,
                    "Stress",
                    compared,
@@ -323,7 +323,7 @@ namespace Voussoir
         write_fields(state.time);
       }
 
-      /** What is found of a face set. */
+      /** Results of a face set. */
       struct Face
       {
         std::string name;
@@ -403,7 +403,7 @@ namespace Voussoir
         return strength;
       }
 
-      /** The tension of cracked concrete says nothing about its demand. */
+      /** The tension of cracked concrete is no measure of its demand. */
       static void
       check_elastic(const ObservedModel            &model,
                     const std::vector<std::string> &face_sets)
@@ -632,8 +632,8 @@ namespace Voussoir
           reasons.push_back("the demand-capacity ratio of the " + face.name +
                             " is " + number(face.largest_at_rest) +
                             " in the static state");
-        // where the curve is furthest above its limit; how long the static
-        // state lasts says nothing
+        // where the curve is furthest above its limit; the
+        // duration of the static state does not count
         unsigned int worst  = 0;
         double       excess = 0.;
         for (unsigned int r = 0; r < ratios.size(); ++r)
@@ -716,7 +716,7 @@ namespace Voussoir
       unsigned long long next_step = 0; // to be counted
 
       // of each set and ratio the largest area at a moment [m2], and when [s];
-      // areas of this rank at the moments that are not looked at yet
+      // areas of this rank at the moments that are not evaluated yet
       std::vector<std::array<double, 2>> at_once;
       std::vector<double>                waiting_areas, waiting_times;
     };

@@ -80,7 +80,7 @@ namespace Voussoir
       {
         sample_step = run().time_step *
                       std::max(1.,
-                               std::floor(run().looking_interval(interval) /
+                               std::floor(run().sampling_interval(interval) /
                                             run().time_step +
                                           1e-9));
         recorder.prepare(run(), sample_step);
@@ -136,7 +136,7 @@ namespace Voussoir
         return accelerations[point * directions.size() + direction];
       }
 
-      /** What the summary says of a spectrum. */
+      /** A spectrum in the summary. */
       void
       describe(const unsigned int         point,
                const unsigned int         direction,

@@ -118,10 +118,10 @@ namespace Voussoir
       }
 
       std::vector<double>
-      line_of(const Look &look) override
+      line_of(const Sample &sample) override
       {
-        extremes.take(look.sums);
-        return look.sums;
+        extremes.take(sample.sums);
+        return sample.sums;
       }
 
       void

@@ -98,7 +98,7 @@ namespace Voussoir
 
 
     /** The point of the surface nearest to @p p (its y left out by choice), by
-     *  Newton's method for least squares, held inside. */
+     *  Newton's method for least squares, kept inside. */
     Hit
     nearest(const Surface &surface, const Point<3> &p, const bool without_y)
     {

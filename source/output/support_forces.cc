@@ -16,9 +16,9 @@ namespace Voussoir
 
     /**
      * Forces of supports and prescribed motions on the model, by face set. At a
-     * held node it is what its equation of motion lacks,
+     * fixed node it is the residual of its equation of motion,
      *   R = M a_base + f(u) - F(t) ,
-     * and what the static stages brought there; at a prescribed node the
+     * and the reaction of the static stages; at a prescribed node the
      * impulse of a step over its length.
      */
     class SupportForces : public TableObserver
@@ -35,8 +35,8 @@ namespace Voussoir
           "Face sets",
           face_sets,
           "Faces that a support of section \"Boundaries\" or a prescribed "
-          "motion holds, for each of which support_forces.csv has the force "
-          "that holds it, on the model, x, y, z [MN]; static state, loads and "
+          "motion holds; for each of them support_forces.csv has the force "
+          "of the support on the model, x, y, z [MN]; static state, loads and "
           "inertia of its nodes included. An edge of several sets counts for "
           "the first of them.");
         declare_interval(prm,
@@ -74,7 +74,7 @@ namespace Voussoir
           {
             Tensor<1, 3> sum = support.at_rest;
             for (unsigned int d = 0; d < 3; ++d)
-              sum[d] += support.held_mass[d] * acceleration[d];
+              sum[d] += support.fixed_mass[d] * acceleration[d];
             for (const unsigned int node : support.nodes)
               sum += run().scheme.support_force(state, node);
             for (unsigned int d = 0; d < 3; ++d)
@@ -87,9 +87,9 @@ namespace Voussoir
       struct Support
       {
         std::string               name;
-        std::vector<unsigned int> nodes;     // of this rank
-        Tensor<1, 3>              at_rest;   // of the static stages [N]
-        Tensor<1, 3>              held_mass; // that a rigid base drives [kg]
+        std::vector<unsigned int> nodes;      // of this rank
+        Tensor<1, 3>              at_rest;    // of the static stages [N]
+        Tensor<1, 3>              fixed_mass; // that a rigid base drives [kg]
       };
 
       void
@@ -105,9 +105,9 @@ namespace Voussoir
             Support support{name, list, {}, {}};
             for (const unsigned int node : list)
               for (unsigned int d = 0; d < 3; ++d)
-                if (is_held(run().solid.discretization, node, d))
+                if (is_fixed(run().solid.discretization, node, d))
                   {
-                    support.held_mass[d] += mass[node];
+                    support.fixed_mass[d] += mass[node];
                     if (run().initial.reaction.size() > 0)
                       support.at_rest[d] +=
                         run().initial.reaction.local_element(3 * node + d);
@@ -121,10 +121,10 @@ namespace Voussoir
       }
 
       std::vector<double>
-      line_of(const Look &look) override
+      line_of(const Sample &sample) override
       {
-        extremes.take(look.sums);
-        return look.sums;
+        extremes.take(sample.sums);
+        return sample.sums;
       }
 
       void
@@ -145,9 +145,9 @@ namespace Voussoir
       }
 
       static bool
-      is_held(const Discretization &discretization,
-              const unsigned int    node,
-              const unsigned int    d)
+      is_fixed(const Discretization &discretization,
+               const unsigned int    node,
+               const unsigned int    d)
       {
         return discretization.constraints.is_constrained(
           discretization.owned_dofs.nth_index_in_set(3 * node + d));
@@ -190,9 +190,9 @@ namespace Voussoir
                  owned_carriers(discretization, face_nodes))
               {
                 is_free = is_free || !(prescribed.count(node) > 0 ||
-                                       is_held(discretization, node, 0) ||
-                                       is_held(discretization, node, 1) ||
-                                       is_held(discretization, node, 2));
+                                       is_fixed(discretization, node, 0) ||
+                                       is_fixed(discretization, node, 1) ||
+                                       is_fixed(discretization, node, 2));
                 meets_interface =
                   meets_interface || of_interfaces.count(node) > 0;
                 if (taken.insert(node).second)
@@ -203,7 +203,7 @@ namespace Voussoir
                 place + " names \"" + set +
                 "\", on which neither a support of section "
                 "\"Boundaries\" nor a prescribed motion holds all "
-                "nodes; name faces that are held.");
+                "nodes; name faces that are fixed.");
             if (Utilities::MPI::logical_or(meets_interface, communicator))
               throw UserError(place + " names \"" + set +
                               "\", whose nodes an interface touches, the "
@@ -214,7 +214,7 @@ namespace Voussoir
         return result;
       }
 
-      /** Of each owned node, as if none were held; what a rigid base does not
+      /** Of each owned node, as if none were fixed; what a rigid base does not
        *  move as inertia has none [kg]. */
       std::vector<double>
       driven_mass() const

@@ -25,8 +25,8 @@ namespace Voussoir
   void
   TableObserver::open_table(const std::vector<std::string> &columns)
   {
-    lines = Schedule(interval, run().time_step);
-    looks = Schedule(run().looking_interval(interval), run().time_step);
+    lines   = Schedule(interval, run().time_step);
+    samples = Schedule(run().sampling_interval(interval), run().time_step);
     waiting.clear();
     table.open(run().log,
                run().folder + "/" + filename,
@@ -47,7 +47,7 @@ namespace Voussoir
   bool
   TableObserver::is_due(const unsigned long long step) const
   {
-    return lines.due(step) || looks.due(step);
+    return lines.due(step) || samples.due(step);
   }
 
 
@@ -59,9 +59,9 @@ namespace Voussoir
 
 
   void
-  TableObserver::take(Look &&look)
+  TableObserver::take(Sample &&sample)
   {
-    waiting.push_back(std::move(look));
+    waiting.push_back(std::move(sample));
     if (waiting.size() >= 100)
       flush();
   }
@@ -72,24 +72,26 @@ namespace Voussoir
   {
     std::vector<Sum>    parts;
     std::vector<double> largest;
-    for (const Look &look : waiting)
+    for (const Sample &sample : waiting)
       {
-        parts.insert(parts.end(), look.parts.begin(), look.parts.end());
-        largest.insert(largest.end(), look.largest.begin(), look.largest.end());
+        parts.insert(parts.end(), sample.parts.begin(), sample.parts.end());
+        largest.insert(largest.end(),
+                       sample.largest.begin(),
+                       sample.largest.end());
       }
     const std::vector<double> sums = sum_over_ranks(parts, communicator());
     Utilities::MPI::max(largest, communicator(), largest);
     auto sum  = sums.begin();
     auto most = largest.begin();
-    for (Look &look : waiting)
+    for (Sample &sample : waiting)
       {
-        look.sums.assign(sum, sum + look.parts.size());
-        std::copy_n(most, look.largest.size(), look.largest.begin());
-        sum += look.parts.size();
-        most += look.largest.size();
-        const std::vector<double> line = line_of(look);
-        if (look.has_line)
-          table.write(look.time, line);
+        sample.sums.assign(sum, sum + sample.parts.size());
+        std::copy_n(most, sample.largest.size(), sample.largest.begin());
+        sum += sample.parts.size();
+        most += sample.largest.size();
+        const std::vector<double> line = line_of(sample);
+        if (sample.has_line)
+          table.write(sample.time, line);
       }
     table.flush();
     waiting.clear();
@@ -97,9 +99,9 @@ namespace Voussoir
 
 
   std::vector<double>
-  TableObserver::line_of(const Look &look)
+  TableObserver::line_of(const Sample &sample)
   {
-    return look.sums;
+    return sample.sums;
   }
 
 

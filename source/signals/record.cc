@@ -140,14 +140,14 @@ namespace Voussoir
       return result;
     }
 
-    /** Enough of a line for what a header says. */
+    /** The beginning of a line, long enough for a header. */
     std::string
     beginning(const Line &line)
     {
       return line.text.substr(0, 200);
     }
 
-    /** What the header of an AT2 file says. */
+    /** Header of an AT2 file. */
     struct Header
     {
       std::size_t n_points  = 0;

@@ -180,7 +180,7 @@ namespace Voussoir
     void
     change_shape(SpectrumFit &fit, const double damping_ratio)
     {
-      // every other period is fitted, those between are looked at
+      // every other period is fitted, those between are checked
       std::vector<double> periods, target;
       for (std::size_t i = 0; i < fit.periods.size(); i += 2)
         {
@@ -359,7 +359,7 @@ namespace Voussoir
   double
   arias_intensity(const TimeSeries &acceleration)
   {
-    // of what is linear between the samples
+    // of a motion that is linear between the samples
     const std::vector<double> &a   = acceleration.values;
     double                     sum = 0.;
     for (std::size_t i = 1; i < a.size(); ++i)

@@ -37,7 +37,7 @@ namespace Voussoir
     , effective(force)
     , memory(uniform ? Vector() : force)
   {
-    tell_projections();
+    initialize_projections();
   }
 
 
@@ -55,7 +55,7 @@ namespace Voussoir
 
 
   void
-  CentralDifference::tell_projections()
+  CentralDifference::initialize_projections()
   {
     using Components = std::array<bool, 3>;
     std::set<unsigned int>             projected;
@@ -126,7 +126,7 @@ namespace Voussoir
 
 
   State
-  CentralDifference::state_at_rest() const
+  CentralDifference::initial_state() const
   {
     State state;
     state.accounts = EnergyAccounts(equation.discretization.reproducible);
@@ -191,7 +191,7 @@ namespace Voussoir
   std::optional<MotionBound>
   CentralDifference::bound_of_motion(const State &state) const
   {
-    // the force begins with that of the state at rest, whatever the motion
+    // the force begins with that of the static state, whatever the motion
     if (!equation.discretization.reproducible ||
         equation.initial.force.size() > 0)
       return {};

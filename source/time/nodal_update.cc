@@ -40,7 +40,7 @@ namespace Voussoir
         masses[slot] *= 1. + share * mass_coefficient;
         const NodalTerms::Matrix damping =
           damping_at(terms, slot, mass_coefficient);
-        // a held component keeps its zero velocity: unit row and column
+        // a fixed component keeps its zero velocity: unit row and column
         Tensor<2, 3> matrix;
         for (unsigned int d = 0; d < 3; ++d)
           for (unsigned int e = 0; e < 3; ++e)

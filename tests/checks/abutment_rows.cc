@@ -40,7 +40,7 @@ namespace Voussoir
         for (const auto &[shape, height] : dams)
           for (const double number : numbers)
             if (number <= 40. || shape == "custom")
-              look_at(file, shape, height / number, verdicts);
+              evaluate(file, shape, height / number, verdicts);
       }
 
     private:
@@ -82,10 +82,10 @@ namespace Voussoir
 
 
       static void
-      look_at(const ParameterFile &file,
-              const std::string   &shape,
-              const double         cell_size,
-              Verdicts            &verdicts)
+      evaluate(const ParameterFile &file,
+               const std::string   &shape,
+               const double         cell_size,
+               Verdicts            &verdicts)
       {
         std::ostringstream size, log;
         size << cell_size;

@@ -52,13 +52,14 @@ namespace Voussoir
                       changes.push_back(place + "Dip=" + dip);
                       changes.push_back(place + "Dip direction=" + direction);
                     }
-                  look_at(file.with(changes),
-                          "cells of " + size + " m, " + elevation + " m, dip " +
-                            dip + ", direction " + direction + ": ",
-                          {std::stod(elevation),
-                           std::stod(dip),
-                           std::stod(direction)},
-                          verdicts);
+                  evaluate(file.with(changes),
+                           "cells of " + size + " m, " + elevation +
+                             " m, dip " + dip + ", direction " + direction +
+                             ": ",
+                           {std::stod(elevation),
+                            std::stod(dip),
+                            std::stod(direction)},
+                           verdicts);
                 }
       }
 
@@ -69,10 +70,10 @@ namespace Voussoir
       };
 
       static void
-      look_at(const ParameterFile &file,
-              const std::string   &at,
-              const Wanted        &wanted,
-              Verdicts            &verdicts)
+      evaluate(const ParameterFile &file,
+               const std::string   &at,
+               const Wanted        &wanted,
+               Verdicts            &verdicts)
       {
         const auto         parameters = make_case(file);
         std::ostringstream report;

@@ -8,9 +8,10 @@ namespace Voussoir
   {
     /**
      * A wedge in the bank of an arch dam that is so soft that it does not hold
-     * it, at rest under its own weight. Its bottom dips towards the river, away
-     * from side and back, so that it alone bears the wedge, a block on an
-     * inclined plane: its safety is friction over the tangent of the dip.
+     * it, in its static state under its own weight. Its bottom dips towards the
+     * river, away from side and back, so that it alone carries the wedge, a
+     * block on an inclined plane: its safety is friction over the tangent of
+     * the dip.
      */
     class AbutmentWedgeSafety : public Check
     {
@@ -27,7 +28,7 @@ namespace Voussoir
                                   "0"));
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        verdicts.near("safety factor of the wedge at rest",
+        verdicts.near("static safety factor of the wedge",
                       block_safety(*simulation,
                                    "left wedge: left wedge bottom, left wedge "
                                    "side, left wedge back"),

@@ -67,7 +67,7 @@ namespace Voussoir
                                {{"left", Point<3>()},
                                 {"right", Point<3>(length, 0., 0.)}},
                                "")
-                    .share(simulation->rest.initial.displacement);
+                    .share(simulation->static_state.initial.displacement);
                 const double deflection =
                   Utilities::MPI::sum(moved[1][2] - moved[0][2], communicator);
                 verdicts.near(quadrature + ", nu = " + poisson + ", " +

@@ -103,7 +103,7 @@ namespace Voussoir
           const auto simulation =
             make_simulation_with_files(*parameters, ranks);
           simulation->run.march();
-          look_at(simulation->run);
+          evaluate(simulation->run);
           Content content = content_of(*simulation);
           for (const std::string &table : split_list(tables))
             content[table][0] = text_of("bitwise/run/" + table);
@@ -151,7 +151,7 @@ namespace Voussoir
     private:
       /** Keeps what shows that joints and cracks take part. */
       void
-      look_at(const Run &run)
+      evaluate(const Run &run)
       {
         most_cracked = number_of_cracked(run);
         if (run.contact)

@@ -54,7 +54,7 @@ namespace Voussoir
 
   private:
     void
-    say(const std::string &text, const bool good);
+    print(const std::string &text, const bool good);
 
     const MPI_Comm communicator;
     const bool     speaks;

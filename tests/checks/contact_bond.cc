@@ -60,8 +60,8 @@ namespace Voussoir
     drive(const ParameterFile                             &file,
           const Tensor<1, 3>                              &way,
           const MPI_Comm                                   communicator,
-          std::vector<std::string>                         changes = {},
-          const std::function<void(const ContactPoint &)> &look    = {})
+          std::vector<std::string>                         changes  = {},
+          const std::function<void(const ContactPoint &)> &callback = {})
     {
       changes.push_back(vector_entry("Constraints/base/Displacement", way));
       const auto parameters = make_case(file.with(changes));
@@ -81,9 +81,9 @@ namespace Voussoir
                                  -sums.given / area,
                                  sums.opening,
                                  sums.slip});
-          if (look)
+          if (callback)
             for (const ContactPoint &point : simulation->run.contact->points())
-              look(point);
+              callback(point);
         }
       const ContactEnergy &lost = simulation->run.contact->surfaces()[0].energy;
       const auto           sum =
@@ -292,7 +292,7 @@ namespace Voussoir
             keep_smallest(smallest, now.bars);
             if (at_half_yield == 0. && now.opening > 0.5 * strength / slope)
               at_half_yield = now.bars;
-            // what the bars bear stretches the layer
+            // the force of the bars stretches the layer
             const double base =
               0.5 * way * (1. - std::cos(2. * numbers::PI * now.time / end));
             if (now.pressure == 0.)

@@ -177,7 +177,7 @@ namespace Voussoir
           }
       }
 
-      /** A ring on a base of held nodes. */
+      /** A ring on a base of fixed nodes. */
       void
       add_ring_on_base(Random &random)
       {
@@ -188,7 +188,7 @@ namespace Voussoir
         inverse_mass.resize(8);
       }
 
-      /** A node on planes of held ones, which may hold it more often than it
+      /** A node on planes of fixed ones, which may hold it more often than it
        *  can move. */
       void
       add_wedge(Random &random)
@@ -211,7 +211,7 @@ namespace Voussoir
                                                              free_node(random));
       }
 
-      /** Of which some are held in a direction or two. */
+      /** Of which some are fixed in a direction or two. */
       Tensor<2, 3>
       free_node(Random &random) const
       {
@@ -461,7 +461,7 @@ namespace Voussoir
         const double size = random.one_in(8) ? 1e-6 : 1.;
         for (unsigned int step = 0; step < 3; ++step)
           {
-            // what is held does not move
+            // what is fixed does not move
             for (unsigned int i = 0; i < n_nodes; ++i)
               displacement[i] +=
                 size *
@@ -485,7 +485,7 @@ namespace Voussoir
             Worst                           &worst)
       {
         // less is none
-        double motion_size = 1e-20, force_size = 0., flexibility = 0.;
+        double motion_size = 1e-20, force_size = 0., compliance = 0.;
         std::vector<Tensor<1, 3>> force(predicted.size());
         for (unsigned int k = 0; k < before.size(); ++k)
           {
@@ -501,16 +501,16 @@ namespace Voussoir
           {
             keep_largest(motion_size, predicted[i].norm());
             keep_largest(motion_size, displacement[i].norm());
-            keep_largest(flexibility, cluster.inverse_mass[i].norm());
+            keep_largest(compliance, cluster.inverse_mass[i].norm());
           }
-        keep_largest(force_size, motion_size / flexibility);
-        keep_largest(motion_size, flexibility * force_size);
+        keep_largest(force_size, motion_size / compliance);
+        keep_largest(motion_size, compliance * force_size);
         for (unsigned int i = 0; i < predicted.size(); ++i)
           keep_largest(worst.motion,
                        (displacement[i] - predicted[i] -
                         cluster.inverse_mass[i] * force[i])
                            .norm() /
-                         std::max(motion_size, flexibility * force_size));
+                         std::max(motion_size, compliance * force_size));
 
         double violation = 0.;
         for (unsigned int k = 0; k < before.size(); ++k)
@@ -525,11 +525,11 @@ namespace Voussoir
             keep_largest(violation, positive_part(-gap[0]) / motion_size);
             const Tensor<2, 3> sum = cluster.inverse_mass[point.first] +
                                      cluster.inverse_mass[point.second];
-            if (sum.norm() == 0.) // forces between held nodes do nothing
+            if (sum.norm() == 0.) // forces between fixed nodes do nothing
               continue;
             const Law law(contact, before[k]);
-            // nor does one across a gap that is held
-            if (point.frame[0] * (sum * point.frame[0]) > 1e-12 * flexibility)
+            // nor does one across a gap whose nodes are fixed
+            if (point.frame[0] * (sum * point.frame[0]) > 1e-12 * compliance)
               keep_largest(violation,
                            law.normal_violation(
                              gap[0], point.force[0], motion_size, force_size));

@@ -79,7 +79,7 @@ namespace Voussoir
           return given.empty() ? 0. : std::stod(given);
         };
         const double pressure = std::stod(file.given("Check/Pressure")),
-                     held =
+                     resistance =
                        section[0] * (entry("Friction coefficient") * pressure +
                                      entry("Cohesion")),
                      stiffness =
@@ -89,9 +89,9 @@ namespace Voussoir
         // what a change of the force adds
         const auto change = [&](const double by, const double d) {
           const double size = std::abs(by);
-          return Slip{by * size / (2. * d * stiffness * held),
+          return Slip{by * size / (2. * d * stiffness * resistance),
                       by * size * size /
-                        (6. * d * d * stiffness * held * held)};
+                        (6. * d * d * stiffness * resistance * resistance)};
         };
         const Slip pulled = change(force, 1.), back = change(-force, 2.),
                    pushed = change(-2. * force, 2.);

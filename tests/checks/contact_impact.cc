@@ -21,7 +21,7 @@ namespace Voussoir
       {
         prm.add_parameter("Length", length, "Of a bar [m].");
         prm.add_parameter("Contact at", contact_at, "Elevation [m].");
-        prm.add_parameter("Wall", wall, "The lower bar is held.");
+        prm.add_parameter("Wall", wall, "The lower bar is fixed.");
       }
 
       void

@@ -11,8 +11,8 @@ namespace Voussoir
   {
     /**
      * Keys hold a block on an incline on which it would slide: the interface
-     * bears more shear than friction could, and has no sliding safety. Without
-     * keys it has one, on a slope that it stands on.
+     * resists more shear than friction could, and has no sliding safety.
+     * Without keys it has one, on a slope that it stands on.
      */
     class KeyedSafety : public Check
     {
@@ -36,28 +36,28 @@ namespace Voussoir
         verdicts.is_true("without keys the block slides",
                          !stands(keyed.with({"Interfaces/plane/Key depth=0"}),
                                  communicator));
-        const Observed held = observe(keyed, communicator);
-        verdicts.near("with keys: shear over what friction could bear",
-                      held.shear / (friction * held.pressure),
+        const Observed observed = observe(keyed, communicator);
+        verdicts.near("with keys: shear over the resistance of friction",
+                      observed.shear / (friction * observed.pressure),
                       slopes[0],
                       1e-3);
         verdicts.near("normal force over the block's",
-                      held.pressure,
+                      observed.pressure,
                       weight * std::cos(std::atan(slopes[0] * friction)),
                       1e-3,
                       "N");
         verdicts.is_true("no safety of the surface in interfaces.csv",
-                         held.safety.empty());
-        verdicts.is_true("none of the block", held.block_safety.empty());
-        verdicts.is_true("none in the summary, and none below one",
-                         held.surface.at("smallest sliding safety").is_null() &&
-                           held.surface.at("time at safety one or below [s]") ==
-                             0.);
+                         observed.safety.empty());
+        verdicts.is_true("none of the block", observed.block_safety.empty());
+        verdicts.is_true(
+          "none in the summary, and none below one",
+          observed.surface.at("smallest sliding safety").is_null() &&
+            observed.surface.at("time at safety one or below [s]") == 0.);
         verdicts.is_true("none of the block in the summary",
-                         held.block.at("safety at the start").is_null() &&
-                           held.block.at("smallest safety").is_null() &&
-                           held.block.at("time at safety one or below [s]") ==
-                             0.);
+                         observed.block.at("safety at the start").is_null() &&
+                           observed.block.at("smallest safety").is_null() &&
+                           observed.block.at(
+                             "time at safety one or below [s]") == 0.);
 
         const Observed bare = observe(
           on_slope(file, slopes[1]).with({"Interfaces/plane/Key depth=0"}),
@@ -77,7 +77,7 @@ namespace Voussoir
       }
 
     private:
-      /** What the observer says of the block at rest. */
+      /** Results of the observer for the block without motion. */
       struct Observed
       {
         double         pressure, shear;      // [N]

@@ -9,10 +9,10 @@ namespace Voussoir
   namespace
   {
     /**
-     * A bar held at both ends, with a bond in its middle, in static stages:
+     * A bar fixed at both ends, with a bond in its middle, in static stages:
      * cooled until the bond breaks, warmed until the joint has closed again,
-     * and cooled once more by so little that a whole bond would bear it. By
-     * then the joint is open by L alpha T and bears nothing.
+     * and cooled once more by so little that a whole bond would resist it. By
+     * then the joint is open by L alpha T and transmits nothing.
      */
     class LostBond : public Check
     {

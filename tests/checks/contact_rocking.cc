@@ -13,7 +13,7 @@ namespace Voussoir
      * under its weight (Housner 1963), at angles so small that the moment m g
      * b/2 against it does not change: from an impact to the next it takes T = 2
      * sqrt(2 theta I / (m g b / 2)) ,   I = m (b^2 + h^2) / 3 , with theta the
-     * largest angle on the way. An impact costs energy and never gives any:
+     * largest angle of the motion. An impact costs energy and never gives any:
      * Housner's, on the other edge alone, leaves r = 1 - 3/2 b^2 / (b^2 + h^2)
      * of the angular velocity. An elastic block keeps more of it, or less, as
      * waves in it come and go.

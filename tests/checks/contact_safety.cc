@@ -89,6 +89,7 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<Safety>
-      registered("contact safety", "Sliding safety of a block at rest.");
+      registered("contact safety",
+                 "Sliding safety of a block in its static state.");
   } // namespace
 } // namespace Voussoir

@@ -145,7 +145,7 @@ namespace Voussoir
             {
               worse(positive_part(-g[0]));
               worse((F[0] + s.tension * point.area) / force_size);
-              // what a bond without an end still bears
+              // strength of a bond without an end
               worse(positive_part(shear - s.bond * point.area) / force_size);
               continue;
             }
@@ -210,7 +210,7 @@ namespace Voussoir
     public:
       explicit WithoutFriction(const Made &made)
         : n(made.contact.points.size())
-        , flexibility(n * n)
+        , delassus(n * n)
         , gap(n)
       {
         const auto &points = made.contact.points;
@@ -220,7 +220,7 @@ namespace Voussoir
                                            made.predicted[points[k].first]);
             for (unsigned int l = 0; l < n; ++l)
               for (unsigned int node = 0; node < made.predicted.size(); ++node)
-                flexibility[k * n + l] +=
+                delassus[k * n + l] +=
                   sign(points[k], node) * sign(points[l], node) *
                   (points[k].frame[0] *
                    (made.inverse_mass[node] * points[l].frame[0]));
@@ -246,7 +246,7 @@ namespace Voussoir
                   {
                     right[i] = -gap[closed[i]];
                     for (unsigned int j = 0; j < closed.size(); ++j)
-                      matrix(i, j) = flexibility[closed[i] * n + closed[j]];
+                      matrix(i, j) = delassus[closed[i] * n + closed[j]];
                   }
                 matrix.gauss_jordan();
                 matrix.vmult(x, right);
@@ -258,7 +258,7 @@ namespace Voussoir
               {
                 double g = gap[k];
                 for (unsigned int l = 0; l < n; ++l)
-                  g += flexibility[k * n + l] * forces[l];
+                  g += delassus[k * n + l] * forces[l];
                 good = good && forces[k] >= -1e-13 && g >= -1e-13;
               }
             if (good)
@@ -277,7 +277,7 @@ namespace Voussoir
       }
 
       const unsigned int  n;
-      std::vector<double> flexibility, gap;
+      std::vector<double> delassus, gap;
     };
 
 
@@ -289,7 +289,7 @@ namespace Voussoir
       {
         without_friction(verdicts);
         with_friction(verdicts);
-        between_held_nodes(verdicts);
+        between_fixed_nodes(verdicts);
         blocks_on_a_base(verdicts);
         friction_that_fades(verdicts);
       }
@@ -363,11 +363,11 @@ namespace Voussoir
           }
       }
 
-      /** A node on two or three planes of held nodes, which more points hold
+      /** A node on two or three planes of fixed nodes, which more points hold
        *  than it can move: from sliding along a line to forces that are not
        *  unique. */
       static void
-      between_held_nodes(Verdicts &verdicts)
+      between_fixed_nodes(Verdicts &verdicts)
       {
         Random random;
         Worst  worst;
@@ -395,7 +395,7 @@ namespace Voussoir
               random.inverse_mass(trial % 3 == 0 ? 2. : 0.);
             worst.add(random, made);
           }
-        worst.report("between held nodes: ", verdicts);
+        worst.report("between fixed nodes: ", verdicts);
       }
 
       /** Four blocks with upright joints on four parts of a base. */
@@ -442,9 +442,9 @@ namespace Voussoir
       static void
       friction_that_fades(Verdicts &verdicts)
       {
-        Random            random;
-        const Flexibility flexibility(random.inverse_mass(2.));
-        double            shear = 0., closed = 0.;
+        Random                 random;
+        const DelassusOperator delassus(random.inverse_mass(2.));
+        double                 shear = 0., closed = 0.;
         for (const double lasting : {1e-20, 1e-200, 1e-310, 5e-324})
           for (const double gap : {0.2, -0.2})
             {
@@ -452,12 +452,12 @@ namespace Voussoir
               limits.friction = limits.at_once = gap > 0. ? 0.5 : 0.;
               limits.lasting                   = lasting;
               const Tensor<1, 3> b({gap, -7e-5, 5e-4});
-              const ContactForce found = solve_contact(b, flexibility, limits);
+              const ContactForce found = solve_contact(b, delassus, limits);
               keep_largest(shear, std::hypot(found.force[1], found.force[2]));
               keep_largest(closed,
                            gap > 0. ?
                              found.force.norm() :
-                             std::abs((b + flexibility.full * found.force)[0]));
+                             std::abs((b + delassus.full * found.force)[0]));
             }
         verdicts.below("friction that fades: shear", shear, 1e-15);
         verdicts.below("friction that fades: gap, or force where open",

@@ -131,7 +131,8 @@ namespace Voussoir
                                  const double         expected) {
           const auto parameters = make_case(stages);
           const auto simulation = make_simulation(*parameters, communicator);
-          for (const auto &stage : simulation->rest.summary.at("stages"))
+          for (const auto &stage :
+               simulation->static_state.summary.at("stages"))
             verdicts.is_true(name + "found by multigrid",
                              stage.at("found by multigrid").get<bool>());
           double largest = 0., smallest = 1e300, opening = 0., slip = 0.;

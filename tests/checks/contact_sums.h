@@ -9,7 +9,7 @@
 
 namespace Voussoir
 {
-  /** What the points of a surface bear together. */
+  /** Resultant of the contact forces of a surface. */
   struct ContactSums
   {
     dealii::Tensor<1, 3> force;              // contact on the second side [N]
@@ -67,8 +67,9 @@ namespace Voussoir
             continue;
           const double m = simulation.model.solid.mass.mass.local_element(i);
           double motion  = simulation.run.state.displacement.local_element(i);
-          if (simulation.rest.initial.displacement.size() > 0)
-            motion -= simulation.rest.initial.displacement.local_element(i);
+          if (simulation.static_state.initial.displacement.size() > 0)
+            motion -=
+              simulation.static_state.initial.displacement.local_element(i);
           sums[d] += m * motion;
           sums[3] += m / 3.;
         }
@@ -77,7 +78,7 @@ namespace Voussoir
       {sums[0] / sums[3], sums[1] / sums[3], sums[2] / sums[3]});
   }
 
-  /** Whether a case comes to rest in its static stage. */
+  /** Whether a case has a static state. */
   inline bool
   stands(const ParameterFile &file, const MPI_Comm communicator)
   {
@@ -93,7 +94,7 @@ namespace Voussoir
     return true;
   }
 
-  /** Safety of a block at rest on its surfaces, as the observer "interfaces"
+  /** Safety of a block in its static state, as the observer "interfaces"
    *  reports it; @p block as its entry has it. */
   inline double
   block_safety(const Simulation &simulation, const std::string &block)

@@ -8,9 +8,9 @@ namespace Voussoir
   {
     /**
      * A block on a base with water in the joint under it, from a heel at x = 0
-     * to a toe: head linear between them, or with drains on the way. The
-     * pressure of contact is less by it, while the base still bears all of the
-     * weight.
+     * to a toe: head linear between them, or with drains between. The
+     * pressure of contact is less by it, while the base still carries all of
+     * the weight.
      */
     class Uplift : public Check
     {

@@ -97,12 +97,12 @@ namespace Voussoir
      * The wedge against limit equilibrium. The frame is that of the sliding
      * line y, which is level; the weight is tilted by its plunge.
      *
-     * The elastic wedge at rest bears shear across the line too, so that the
-     * forces of each plane are not those of limit equilibrium; but the block's
-     * safety, from their resultant, is. A push from behind, which grows slowly,
-     * then leads through a safety of one. The shear across the line presses on
-     * the planes and adds a little to their resistance, until the wedge has
-     * slipped so far that all shear is along the line.
+     * The elastic wedge in its static state carries shear across the line too,
+     * so that the forces of each plane are not those of limit equilibrium; but
+     * the block's safety, from their resultant, is. A push from behind, which
+     * grows slowly, then leads through a safety of one. The shear across the
+     * line presses on the planes and adds a little to their resistance, until
+     * the wedge has slipped so far that all shear is along the line.
      */
     class WedgeSafety : public Check
     {
@@ -177,7 +177,7 @@ namespace Voussoir
         changes.push_back(history.str());
         const auto parameters = make_case(file.with(changes));
         const auto simulation = make_simulation(*parameters, communicator);
-        verdicts.near("at rest before: safety factor of the block",
+        verdicts.near("static state: safety factor of the block",
                       block_safety(*simulation, "wedge: left, right"),
                       safety,
                       0.01);

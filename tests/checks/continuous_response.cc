@@ -32,7 +32,9 @@ namespace Voussoir
         const auto   simulation = make_simulation(*parameters, communicator);
         const Change coarse     = largest_change(*simulation, 500),
                      fine       = largest_change(*simulation, 1000);
-        verdicts.above("cracked, damage on the way", coarse.damaged, 0.5);
+        verdicts.above("cracked, damage during the motion",
+                       coarse.damaged,
+                       0.5);
         verdicts.near("largest change of half a step over that of one",
                       fine.largest / coarse.largest,
                       0.5,

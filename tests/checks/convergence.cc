@@ -33,8 +33,8 @@ namespace Voussoir
 
 
     /**
-     * Standing plane P wave in a laterally held column with fixed base: the
-     * error in space falls with the power degree + 1 of the cell size. The
+     * Standing plane P wave in a laterally constrained column with fixed base:
+     * the error in space falls with the power degree + 1 of the cell size. The
      * known error of the scheme in time is taken out by comparing with its own
      * frequency, sin(w' dt/2) = w dt/2.
      */

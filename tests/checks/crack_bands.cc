@@ -19,38 +19,38 @@ namespace Voussoir
         const Tensor<1, 3> x = point(1, 0, 0), y = point(0, 1, 0),
                            z = point(0, 0, 1);
         // edges, normal, width
-        look_at("cube, edge", {{x, y, z}}, x, 1., verdicts);
-        look_at("cube, diagonal of a face",
-                {{x, y, z}},
-                x + y,
-                std::sqrt(2.),
-                verdicts);
-        look_at("cube, diagonal",
-                {{x, y, z}},
-                x + y + z,
-                2. / std::sqrt(3.),
-                verdicts);
-        look_at(
+        evaluate("cube, edge", {{x, y, z}}, x, 1., verdicts);
+        evaluate("cube, diagonal of a face",
+                 {{x, y, z}},
+                 x + y,
+                 std::sqrt(2.),
+                 verdicts);
+        evaluate("cube, diagonal",
+                 {{x, y, z}},
+                 x + y + z,
+                 2. / std::sqrt(3.),
+                 verdicts);
+        evaluate(
           "four times as long, along it", {{x, y, 4. * z}}, z, 4., verdicts);
-        look_at(
+        evaluate(
           "four times as long, across it", {{x, y, 4. * z}}, x, 1., verdicts);
         // the crack is parallel to two edges: the distance of the faces
-        look_at("sheared by 30 degrees",
-                {{x, y, z + std::tan(numbers::PI / 6.) * x}},
-                z,
-                1.,
-                verdicts);
-        look_at("half the cell", {{x, y, 4. * z}}, z, 2., verdicts, 0.5);
+        evaluate("sheared by 30 degrees",
+                 {{x, y, z + std::tan(numbers::PI / 6.) * x}},
+                 z,
+                 1.,
+                 verdicts);
+        evaluate("half the cell", {{x, y, 4. * z}}, z, 2., verdicts, 0.5);
       }
 
     private:
       static void
-      look_at(const std::string                 &name,
-              const std::array<Tensor<1, 3>, 3> &edges,
-              const Tensor<1, 3>                &normal,
-              const double                       width,
-              Verdicts                          &verdicts,
-              const double                       share = 1.)
+      evaluate(const std::string                 &name,
+               const std::array<Tensor<1, 3>, 3> &edges,
+               const Tensor<1, 3>                &normal,
+               const double                       width,
+               Verdicts                          &verdicts,
+               const double                       share = 1.)
       {
         std::vector<Point<3>> vertices;
         for (unsigned int v = 0; v < 8; ++v)

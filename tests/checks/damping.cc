@@ -7,8 +7,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * Free vibration of a laterally held column in its first axial mode, at
-     * several frequencies: the decay and its period against the roots that
+     * Free vibration of a laterally constrained column in its first axial mode,
+     * at several frequencies: the decay and its period against the roots that
      * tests/data/damping_reference.py finds.
      */
     class ModalDamping : public Check

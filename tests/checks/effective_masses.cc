@@ -96,7 +96,7 @@ namespace Voussoir
         return matrix;
       }
 
-      std::vector<unsigned int>           free; // unknowns that are not held
+      std::vector<unsigned int>           free; // unknowns that are not fixed
       LAPACKFullMatrix<double>            mass;
       std::vector<dealii::Vector<double>> shapes;
     };

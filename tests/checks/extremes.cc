@@ -20,7 +20,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Amplitude", amplitude, "Half the way [m].");
+        prm.add_parameter("Amplitude", amplitude, "Half the distance [m].");
         prm.add_parameter("Frequency", frequency, "Of the motion [Hz].");
         prm.add_parameter("Intervals", intervals, "Of lines [s].");
         prm.add_parameter("Observers", observers, "With such an interval.");

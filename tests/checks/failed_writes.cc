@@ -59,7 +59,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        on_first(communicator, [&verdicts] { look_at_files(verdicts); });
+        on_first(communicator, [&verdicts] { evaluate_files(verdicts); });
         const auto march = [&](const std::string &folder,
                                const std::string &from,
                                const std::string &to) {
@@ -140,40 +140,42 @@ namespace Voussoir
 
     private:
       static void
-      look_at_files(Verdicts &verdicts)
+      evaluate_files(Verdicts &verdicts)
       {
-        const auto say = [&](const std::string &what,
-                             const std::string &reason,
-                             const std::string &expected = "written") {
+        const auto report = [&](const std::string &what,
+                                const std::string &reason,
+                                const std::string &expected = "written") {
           verdicts.same_text(what,
                              reason.empty() ? "written" : reason,
                              expected);
         };
         fs::remove_all("files");
         fs::create_directories("files/folder");
-        say("a new file", write_file("files/a", "first"));
-        say("in a folder that does not exist",
-            write_file("nowhere/a", "text"),
-            "its folder does not exist");
-        say("in a file",
-            write_file("files/a/b", "text"),
-            "a part of its path is not a folder");
-        say("with the name of a folder",
-            write_file("files/folder", "text"),
-            "there is a folder of that name");
-        say("with a long name",
-            write_file(std::string(300, 'a'), "text"),
-            "the name is too long");
-        say("full disk", write_file("/dev/full", "text"), "the disk is full");
+        report("a new file", write_file("files/a", "first"));
+        report("in a folder that does not exist",
+               write_file("nowhere/a", "text"),
+               "its folder does not exist");
+        report("in a file",
+               write_file("files/a/b", "text"),
+               "a part of its path is not a folder");
+        report("with the name of a folder",
+               write_file("files/folder", "text"),
+               "there is a folder of that name");
+        report("with a long name",
+               write_file(std::string(300, 'a'), "text"),
+               "the name is too long");
+        report("full disk",
+               write_file("/dev/full", "text"),
+               "the disk is full");
         limit_files(100);
         const std::string too_long =
           write_file("files/a", std::string(200, '.'));
         limit_files(RLIM_INFINITY); // before this check writes to its own file
-        say("too long", too_long, too_large);
+        report("too long", too_long, too_large);
         verdicts.is_true("what was there before is there still",
                          text_of("files/a") == "first");
         fs::create_symlink("a", "files/link");
-        say("through a link", write_file("files/link", "second"));
+        report("through a link", write_file("files/link", "second"));
         verdicts.is_true("which stays one",
                          fs::is_symlink("files/link") &&
                            text_of("files/a") == "second");
@@ -182,20 +184,20 @@ namespace Voussoir
         GrowingFile growing;
         growing.open("files/growing");
         growing.append("one\n");
-        say("a file that grows on a full disk",
-            growing.flush(),
-            "the disk is full");
+        report("a file that grows on a full disk",
+               growing.flush(),
+               "the disk is full");
         fs::remove("files/growing");
         growing.append("two\n");
-        say("with room", growing.flush());
+        report("with room", growing.flush());
         limit_files(10);
         growing.append("three\n");
         const std::string too_little = growing.flush();
         limit_files(RLIM_INFINITY);
-        say("with too little room", too_little, too_large);
+        report("with too little room", too_little, too_large);
         verdicts.is_true("no part of what does not fit",
                          text_of("files/growing") == "one\ntwo\n");
-        say("with room again", growing.flush());
+        report("with room again", growing.flush());
         verdicts.is_true("all of it",
                          text_of("files/growing") == "one\ntwo\nthree\n");
         verdicts.is_true("nothing else is left", files_in("files") == 4);

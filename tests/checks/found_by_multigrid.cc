@@ -20,7 +20,7 @@ namespace Voussoir
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        for (const auto &stage : simulation->rest.summary.at("stages"))
+        for (const auto &stage : simulation->static_state.summary.at("stages"))
           {
             verdicts.is_true(stage.at("names").dump() + " found by multigrid",
                              stage.at("found by multigrid").get<bool>());

@@ -132,9 +132,9 @@ namespace Voussoir
                                "Loads/Names=weight",
                                "Loads/weight/Class=gravity",
                                "Static state/Stages=weight"}));
-        const auto   simulation = make_simulation(*parameters, communicator);
-        const auto  &stage      = simulation->rest.summary.at("stages").at(0);
-        const double weight     = 2400. * volume * 9.81;
+        const auto  simulation = make_simulation(*parameters, communicator);
+        const auto &stage = simulation->static_state.summary.at("stages").at(0);
+        const double      weight = 2400. * volume * 9.81;
         const std::string name =
           std::string("inertia factor ") + (factor < 1. ? "1/4" : "1");
         verdicts.near(name + ": weight",

@@ -34,9 +34,9 @@ namespace Voussoir
 
     /** Points of the first material that have cracked in the static state. */
     unsigned int
-    n_cracked(const RestState &rest, const MPI_Comm communicator)
+    n_cracked(const StaticState &static_state, const MPI_Comm communicator)
     {
-      const PointHistory *history = rest.initial.material_memory.of(0);
+      const PointHistory *history = static_state.initial.material_memory.of(0);
       unsigned int        number  = 0;
       for (const auto &[cell, place] : history->cells())
         for (unsigned int q = 0; q < history->n_points(); ++q)
@@ -71,14 +71,14 @@ namespace Voussoir
         };
         // the wall time of a state that was taken is that of the one found
         const auto seconds = [](const auto &simulation) {
-          return simulation.second->rest.summary.at("seconds")
+          return simulation.second->static_state.summary.at("seconds")
             .template get<double>();
         };
 
         const auto one = marched("one", {}, communicator);
         verdicts.is_true("the state is kept", n_files() == 1);
         verdicts.above("  points cracked in it",
-                       n_cracked(one.second->rest, communicator),
+                       n_cracked(one.second->static_state, communicator),
                        1.);
 
         const auto other = marched("other",
@@ -93,10 +93,10 @@ namespace Voussoir
         verdicts.is_true("  and is the same bit for bit",
                          same(again.second->run.state.displacement,
                               one.second->run.state.displacement));
-        verdicts.is_true("  with the warnings of the search for it",
-                         one.second->rest.summary.contains("warnings") &&
-                           again.second->log.warnings() ==
-                             one.second->log.warnings());
+        verdicts.is_true(
+          "  with the warnings of the search for it",
+          one.second->static_state.summary.contains("warnings") &&
+            again.second->log.warnings() == one.second->log.warnings());
         on_first(communicator, [&] {
           verdicts.is_true("one rank alone takes it",
                            seconds(marched("alone", {}, MPI_COMM_SELF)) ==

@@ -13,7 +13,7 @@ namespace Voussoir
   namespace
   {
     /** A law with memory that has of LawDefaults all that it may: above all, no
-     *  load_level. The energy norm of its stress stays at a limit. */
+     *  yield_ratio. The energy norm of its stress stays at a limit. */
     struct Plain : IsotropicElasticity
     {
       static constexpr unsigned int n_history = 1; // largest norm so far [Pa]
@@ -59,7 +59,7 @@ namespace Voussoir
         entries.clear();
         // under the name that is the default of every material
         entries["linear elastic"] = {
-          "A law without load level.",
+          "A law without yield ratio.",
           [] { return std::make_unique<MaterialOf<Plain>>(); }};
         Registry<Check>::create("materials", "")
           ->run(file, verdicts, communicator);

@@ -30,8 +30,8 @@ namespace Voussoir
     text << name << " = " << std::setprecision(4) << value
          << (unit.empty() ? "" : " " + unit) << "  (reference " << reference
          << ", allowed " << 100. * tolerance << " %)";
-    say(text.str(),
-        std::abs(value - reference) <= tolerance * std::abs(reference));
+    print(text.str(),
+          std::abs(value - reference) <= tolerance * std::abs(reference));
   }
 
 
@@ -45,7 +45,7 @@ namespace Voussoir
     const bool good = std::abs(value) <= limit;
     if (!good)
       text << ": it is " << value;
-    say(text.str(), good);
+    print(text.str(), good);
   }
 
 
@@ -59,14 +59,14 @@ namespace Voussoir
     const bool good = value >= limit;
     if (!good)
       text << ": it is " << value;
-    say(text.str(), good);
+    print(text.str(), good);
   }
 
 
   void
   Verdicts::is_true(const std::string &name, const bool value)
   {
-    say(name, value);
+    print(name, value);
   }
 
 
@@ -76,8 +76,8 @@ namespace Voussoir
                       const std::string &expected)
   {
     const bool good = text == expected;
-    say(name + ": " + text + (good ? "" : " (must be: " + expected + ')'),
-        good);
+    print(name + ": " + text + (good ? "" : " (must be: " + expected + ')'),
+          good);
   }
 
 
@@ -98,7 +98,7 @@ namespace Voussoir
 
 
   void
-  Verdicts::say(const std::string &text, const bool good)
+  Verdicts::print(const std::string &text, const bool good)
   {
     all_good = all_good && good;
     if (speaks)

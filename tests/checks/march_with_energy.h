@@ -6,10 +6,10 @@
 namespace Voussoir
 {
   /** Marches to the end time and evaluates the balance when it is due;
-   *  look(evaluated) is called after each step. */
-  template <typename Look>
+   *  callback(evaluated) is called after each step. */
+  template <typename Callback>
   void
-  march_with_energy(Run &run, const Look &look)
+  march_with_energy(Run &run, const Callback &callback)
   {
     while (run.state.step < run.n_steps())
       {
@@ -20,7 +20,7 @@ namespace Voussoir
         run.scheme.step(run.state);
         if (evaluated)
           run.energy.evaluate(run.state);
-        look(evaluated);
+        callback(evaluated);
       }
   }
 } // namespace Voussoir

@@ -51,7 +51,7 @@ namespace Voussoir
       PointTest    test(material, size, 1e-3);
       Softening    result;
       double       stress = 0., displacement = 0.;
-      const auto   look = [&] {
+      const auto   sample = [&] {
         const double now  = sign * test.stress[0][0];
         const double away = size * (sign * test.strain[0][0] - now / modulus);
         if (now >= result.peak)
@@ -62,8 +62,8 @@ namespace Voussoir
         stress       = now;
         displacement = away;
       };
-      advance(test, along_x(sign * start), 100, look);
-      advance(test, along_x(sign * strain), 20000, look);
+      advance(test, along_x(sign * start), 100, sample);
+      advance(test, along_x(sign * strain), 20000, sample);
       result.balance = (test.stored + test.dissipated) / test.work;
       return result;
     }
@@ -87,7 +87,7 @@ namespace Voussoir
       }
 
       void
-      look_at(const Material &material, Verdicts &verdicts) const override
+      evaluate(const Material &material, Verdicts &verdicts) const override
       {
         for (const double size : {0.25, 1., 4.})
           {
@@ -97,29 +97,29 @@ namespace Voussoir
               tensile_strength / material.elastic_constants().young_modulus;
             const double opening =
               8. * fracture_energy / (tensile_strength * size);
-            say("pulled" + in_cell.str(),
-                soften(material, size, 1., limit, limit + opening, 0.),
-                tensile_strength,
-                fracture_energy,
-                verdicts);
+            report("pulled" + in_cell.str(),
+                   soften(material, size, 1., limit, limit + opening, 0.),
+                   tensile_strength,
+                   fracture_energy,
+                   verdicts);
             // the curve of GB 50010 ends at 5 % of the strength
             const double crushing =
               6. * crushing_energy / (compressive_strength * size);
-            say("pressed" + in_cell.str(),
-                soften(material, size, -1., 1e-3, 3e-3 + crushing, 0.05),
-                compressive_strength,
-                crushing_energy,
-                verdicts);
+            report("pressed" + in_cell.str(),
+                   soften(material, size, -1., 1e-3, 3e-3 + crushing, 0.05),
+                   compressive_strength,
+                   crushing_energy,
+                   verdicts);
           }
       }
 
     private:
       static void
-      say(const std::string &name,
-          const Softening   &softening,
-          const double       strength,
-          const double       energy,
-          Verdicts          &verdicts)
+      report(const std::string &name,
+             const Softening   &softening,
+             const double       strength,
+             const double       energy,
+             Verdicts          &verdicts)
       {
         verdicts.near("strength " + name,
                       1e-6 * softening.peak,
@@ -159,7 +159,7 @@ namespace Voussoir
       }
 
       void
-      look_at(const Material &material, Verdicts &verdicts) const override
+      evaluate(const Material &material, Verdicts &verdicts) const override
       {
         const double modulus = material.elastic_constants().young_modulus;
         for (const double size : {0.25, 1., 4.})
@@ -206,7 +206,7 @@ namespace Voussoir
       }
 
       void
-      look_at(const Material &material, Verdicts &verdicts) const override
+      evaluate(const Material &material, Verdicts &verdicts) const override
       {
         unload(material, in_tension, {1.5e-4, 3e-4, 6e-4}, verdicts);
         unload(material, in_compression, {-1e-3, -2e-3, -6e-3}, verdicts);

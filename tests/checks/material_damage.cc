@@ -6,7 +6,7 @@ namespace Voussoir
 
   namespace
   {
-    /** The largest stress on the way to a strain along z [Pa]. */
+    /** The largest stress up to a strain along z [Pa]. */
     double
     peak(const Material    &material,
          const double       confinement,
@@ -52,7 +52,7 @@ namespace Voussoir
     {
     public:
       void
-      look_at(const Material &material, Verdicts &verdicts) const override
+      evaluate(const Material &material, Verdicts &verdicts) const override
       {
         const double modulus = material.elastic_constants().young_modulus;
 
@@ -160,7 +160,7 @@ namespace Voussoir
     {
     public:
       void
-      look_at(const Material &material, Verdicts &verdicts) const override
+      evaluate(const Material &material, Verdicts &verdicts) const override
       {
         const double modulus = material.elastic_constants().young_modulus;
 
@@ -213,7 +213,7 @@ namespace Voussoir
       }
 
       void
-      look_at(const Material &material, Verdicts &verdicts) const override
+      evaluate(const Material &material, Verdicts &verdicts) const override
       {
         const double sine   = std::sin(friction_angle * numbers::PI / 180.),
                      factor = (1. + sine) / (1. - sine),
@@ -279,7 +279,7 @@ namespace Voussoir
       }
 
       void
-      look_at(const Material &material, Verdicts &verdicts) const override
+      evaluate(const Material &material, Verdicts &verdicts) const override
       {
         const auto constants = material.elastic_constants();
         for_each_cell_size(

@@ -19,7 +19,7 @@ namespace Voussoir
       }
 
       void
-      look_at(const Material &material, Verdicts &verdicts) const override
+      evaluate(const Material &material, Verdicts &verdicts) const override
       {
         const auto  &names  = PointTest::component_names();
         const double stress = 1e6;

@@ -36,7 +36,7 @@ namespace Voussoir
       }
 
       void
-      look_at(const Material &material, Verdicts &verdicts) const override
+      evaluate(const Material &material, Verdicts &verdicts) const override
       {
         const double phi    = friction_angle * numbers::PI / 180.,
                      psi    = dilation_angle * numbers::PI / 180.;
@@ -105,7 +105,7 @@ namespace Voussoir
                         "MPa");
 
         if (surface == "planes")
-          look_at_random_returns(material, verdicts);
+          evaluate_random_returns(material, verdicts);
       }
 
     private:
@@ -153,7 +153,8 @@ namespace Voussoir
       /** All planes, edges and corners: no stress beyond the surface, none
        *  below it after a return. */
       void
-      look_at_random_returns(const Material &material, Verdicts &verdicts) const
+      evaluate_random_returns(const Material &material,
+                              Verdicts       &verdicts) const
       {
         const double sine  = std::sin(friction_angle * numbers::PI / 180.),
                      limit = 2. * cohesion *

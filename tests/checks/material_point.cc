@@ -14,7 +14,7 @@ namespace Voussoir
     }
 
 
-    /** The largest -sigma_xx on the way [Pa]. */
+    /** The largest -sigma_xx of the path [Pa]. */
     double
     strength(const Material &material, const NormalControls &target)
     {
@@ -50,7 +50,7 @@ namespace Voussoir
       }
 
       void
-      look_at(const Material &material, Verdicts &verdicts) const override
+      evaluate(const Material &material, Verdicts &verdicts) const override
       {
         const double modulus = material.elastic_constants().young_modulus;
         const double limit   = strength_in_tension / modulus;
@@ -110,7 +110,7 @@ namespace Voussoir
 
         if (!openings.empty())
           {
-            // on the way from peak to nothing, at strains sigma/E + w/l
+            // between the peak and zero stress, at strains sigma/E + w/l
             PointTest opening(material, 0.5, 1e-3);
             for (const std::string &item : split_list(openings))
               {

@@ -51,7 +51,7 @@ namespace Voussoir
             PointTest::Controls controls;
             controls[2] = {true, first * i / 100.};
             test.advance(controls);
-            envelope.look_at(test);
+            envelope.evaluate(test);
           }
         const auto cracked = test.strain;
         double     shear   = 0.;
@@ -60,7 +60,7 @@ namespace Voussoir
             {
               shear += 1e-7;
               advance(test, cracked, shear);
-              envelope.look_at(test);
+              envelope.evaluate(test);
             }
         };
         for (const std::string &stage : split_list(stages))
@@ -98,7 +98,7 @@ namespace Voussoir
         double lost    = 0.;
 
         void
-        look_at(const PointTest &test)
+        evaluate(const PointTest &test)
         {
           keep_largest(largest, eigenvalues(test.stress)[0]);
           const Tensor<2, 3> product =

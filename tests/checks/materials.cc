@@ -98,21 +98,21 @@ namespace Voussoir
             const auto parameters =
               make_case(file.with({"Materials/stuff/Class=" + name}));
             const Material &material = *parameters->material_list().at(0);
-            look_at_point(name, material, verdicts);
-            look_at_cells(name, *parameters, verdicts, communicator);
-            look_at_patch(name, *parameters, 1e-5, verdicts, communicator);
+            evaluate_point(name, material, verdicts);
+            evaluate_cells(name, *parameters, verdicts, communicator);
+            evaluate_patch(name, *parameters, 1e-5, verdicts, communicator);
             // cracks depend on the size of the cells
             const auto regular = make_case(file.with(
               {"Materials/stuff/Class=" + name, "Mesh/box/Distortion=0"}));
-            look_at_patch(name, *regular, 1e-3, verdicts, communicator);
+            evaluate_patch(name, *regular, 1e-3, verdicts, communicator);
           }
       }
 
     private:
       void
-      look_at_point(const std::string &name,
-                    const Material    &material,
-                    Verdicts          &verdicts) const
+      evaluate_point(const std::string &name,
+                     const Material    &material,
+                     Verdicts          &verdicts) const
       {
         std::mt19937                 random(1);
         const PointSituation<double> situation{1., 1e-3};
@@ -200,10 +200,10 @@ namespace Voussoir
 
 
       void
-      look_at_cells(const std::string &name,
-                    Case              &parameters,
-                    Verdicts          &verdicts,
-                    const MPI_Comm     communicator) const
+      evaluate_cells(const std::string &name,
+                     Case              &parameters,
+                     Verdicts          &verdicts,
+                     const MPI_Comm     communicator) const
       {
         const auto simulation = make_simulation(parameters, communicator);
         const InternalForce &internal = simulation->run.equation.internal_force;
@@ -262,11 +262,11 @@ namespace Voussoir
 
       /** One strain everywhere: no force inside, whatever the law does. */
       void
-      look_at_patch(const std::string &name,
-                    Case              &parameters,
-                    const double       size,
-                    Verdicts          &verdicts,
-                    const MPI_Comm     communicator) const
+      evaluate_patch(const std::string &name,
+                     Case              &parameters,
+                     const double       size,
+                     Verdicts          &verdicts,
+                     const MPI_Comm     communicator) const
       {
         const auto simulation = make_simulation(parameters, communicator);
         const Discretization &discretization =

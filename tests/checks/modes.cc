@@ -130,7 +130,7 @@ namespace Voussoir
           simulation->model.solid.materials[0]->elastic_constants();
         const double base = material.p_wave_speed() / length; // [rad/s]
 
-        // of the whole rod, held end included, as in the closed form
+        // of the whole rod, fixed end included, as in the closed form
         const double mass = simulation->model.solid.mass.total[0];
         double       sum  = 0.;
         for (unsigned int j = 0; j < modes.list.size(); ++j)
@@ -242,18 +242,18 @@ namespace Voussoir
           return make_simulation(*parameters, communicator)->modes;
         };
         const Modes without  = with_rock({}),
-                    held     = with_rock({"Modes/Held materials=rock"}),
+                    rigid    = with_rock({"Modes/Held materials=rock"}),
                     massless = with_rock({"Modes/Massless materials=rock"});
         Case dam_alone(
           ParameterFile(file.resolve("../data/koyna_section.prm")));
         const Modes fixed = make_simulation(dam_alone, communicator)->modes;
         verdicts.near("rigid rock, mode 1 of a fixed base",
-                      held.list[0].frequency,
+                      rigid.list[0].frequency,
                       fixed.list[0].frequency,
                       1e-6,
                       "Hz");
         verdicts.above("rigid rock over rock without mass, mode 1",
-                       held.list[0].frequency / massless.list[0].frequency,
+                       rigid.list[0].frequency / massless.list[0].frequency,
                        1.);
         verdicts.above("rock without mass over rock with mass, mode 1",
                        massless.list[0].frequency / without.list[0].frequency,

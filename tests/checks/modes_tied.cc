@@ -117,9 +117,9 @@ namespace Voussoir
               halves.push_back((j - 0.5) * numbers::PI / length);
           }
         std::sort(halves.begin(), halves.end());
-        const auto look = [&](const std::string              &name,
-                              const std::vector<std::string> &changes,
-                              const std::vector<double>      &expected) {
+        const auto evaluate = [&](const std::string              &name,
+                                  const std::vector<std::string> &changes,
+                                  const std::vector<double>      &expected) {
           const auto   parameters = make_case(file.with(changes));
           const auto   simulation = make_simulation(*parameters, communicator);
           const double c          = simulation->model.solid.materials[0]
@@ -133,15 +133,19 @@ namespace Voussoir
                           tolerance,
                           "1/m");
         };
-        look("opened by its weight", {"Loads/weight/Cell sets=lower"}, halves);
-        look("closed by its weight", {"Loads/weight/Cell sets=upper"}, whole);
-        look("opened, but tied",
-             {"Loads/weight/Cell sets=lower", "Modes/Interfaces=all tied"},
-             whole);
-        look("with a gap",
-             {"Loads/weight/Cell sets=upper",
-              "Interfaces/cut/Initial gap=1e-3"},
-             halves);
+        evaluate("opened by its weight",
+                 {"Loads/weight/Cell sets=lower"},
+                 halves);
+        evaluate("closed by its weight",
+                 {"Loads/weight/Cell sets=upper"},
+                 whole);
+        evaluate("opened, but tied",
+                 {"Loads/weight/Cell sets=lower", "Modes/Interfaces=all tied"},
+                 whole);
+        evaluate("with a gap",
+                 {"Loads/weight/Cell sets=upper",
+                  "Interfaces/cut/Initial gap=1e-3"},
+                 halves);
       }
 
     private:

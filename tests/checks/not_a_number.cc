@@ -43,7 +43,7 @@ namespace Voussoir
     }
 
 
-    /** A law that answers no numbers while the strain is large, and numbers
+    /** A law that returns no numbers while the strain is large, and numbers
      *  again when it becomes smaller. */
     struct NotANumber : IsotropicElasticity
     {
@@ -52,7 +52,7 @@ namespace Voussoir
 
       template <typename Number>
       Number
-      load_level(const SymmetricTensor3<Number> &stress, const Number &) const
+      yield_ratio(const SymmetricTensor3<Number> &stress, const Number &) const
       {
         return strain(stress).norm() / limit;
       }
@@ -86,16 +86,16 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        look_at_verdicts(verdicts, communicator);
-        look_at_extremes(verdicts);
-        look_at_entries(verdicts, communicator);
-        look_at_spectra(verdicts);
-        look_at_materials(file, verdicts, communicator);
+        evaluate_verdicts(verdicts, communicator);
+        evaluate_extremes(verdicts);
+        evaluate_entries(verdicts, communicator);
+        evaluate_spectra(verdicts);
+        evaluate_materials(file, verdicts, communicator);
       }
 
     private:
       static void
-      look_at_verdicts(Verdicts &verdicts, const MPI_Comm communicator)
+      evaluate_verdicts(Verdicts &verdicts, const MPI_Comm communicator)
       {
         Verdicts   tried(communicator);
         const auto expect = [&](const std::string           &name,
@@ -113,7 +113,7 @@ namespace Voussoir
       }
 
       static void
-      look_at_extremes(Verdicts &verdicts)
+      evaluate_extremes(Verdicts &verdicts)
       {
         double largest = 0., smallest = 0.;
         for (const double value : {1., nan, 2., -2.})
@@ -140,7 +140,7 @@ namespace Voussoir
 
       /** Pressures that differ by round-off in their directions. */
       static void
-      look_at_spectra(Verdicts &verdicts)
+      evaluate_spectra(Verdicts &verdicts)
       {
         double worst = 0.;
         for (const double pressure : {1., -1.1, 1.2e6, -3.7e7, 1e-9})
@@ -165,7 +165,7 @@ namespace Voussoir
       }
 
       static void
-      look_at_entries(Verdicts &verdicts, const MPI_Comm communicator)
+      evaluate_entries(Verdicts &verdicts, const MPI_Comm communicator)
       {
         // on the last rank only; with a larger number after it
         const unsigned int rank =
@@ -194,9 +194,9 @@ namespace Voussoir
 
       /** The check of all materials, with such a law as the only one. */
       static void
-      look_at_materials(const ParameterFile &file,
-                        Verdicts            &verdicts,
-                        const MPI_Comm       communicator)
+      evaluate_materials(const ParameterFile &file,
+                         Verdicts            &verdicts,
+                         const MPI_Comm       communicator)
       {
         auto      &entries = Registry<Material>::entries();
         const auto known   = entries;

@@ -44,7 +44,7 @@ namespace Voussoir
         double delay = 0.;
         if (uniform)
           {
-            look_at_uniform(file, given, verdicts, communicator);
+            evaluate_uniform(file, given, verdicts, communicator);
             return;
           }
         const auto at_surface =
@@ -108,10 +108,10 @@ namespace Voussoir
     private:
       template <typename Given>
       static void
-      look_at_uniform(const ParameterFile &file,
-                      const Given         &given,
-                      Verdicts            &verdicts,
-                      const MPI_Comm       communicator)
+      evaluate_uniform(const ParameterFile &file,
+                       const Given         &given,
+                       Verdicts            &verdicts,
+                       const MPI_Comm       communicator)
       {
         double     delay = 0.;
         const auto motion =

@@ -53,38 +53,38 @@ namespace Voussoir
         // steps of the interval before the fit and after it
         for (const auto &[wanted, fitted] :
              std::vector<std::array<double, 2>>{{{6.8, 7.}}, {{1.97, 2.}}})
-          look(file.with({automatic(wanted)}),
-               std::to_string(wanted).substr(0, 4) + " steps, fitted",
-               fitted,
-               interval,
-               communicator,
-               verdicts);
+          evaluate(file.with({automatic(wanted)}),
+                   std::to_string(wanted).substr(0, 4) + " steps, fitted",
+                   fitted,
+                   interval,
+                   communicator,
+                   verdicts);
         // a fit would cost more than a tenth: every second step, each step
         for (const auto &[wanted, lines] :
              std::vector<std::array<double, 2>>{{{1.6, 2.}}, {{0.8, 1.}}})
-          look(file.with({automatic(wanted)}),
-               std::to_string(wanted).substr(0, 3) + " steps, not fitted",
-               wanted,
-               lines / wanted * interval,
-               communicator,
-               verdicts);
+          evaluate(file.with({automatic(wanted)}),
+                   std::to_string(wanted).substr(0, 3) + " steps, not fitted",
+                   wanted,
+                   lines / wanted * interval,
+                   communicator,
+                   verdicts);
         // a step that is given stays
-        look(file.with({"Time/Time step=" + exactly(interval / 2.5)}),
-             "2.5 steps, given",
-             2.5,
-             3. / 2.5 * interval,
-             communicator,
-             verdicts);
+        evaluate(file.with({"Time/Time step=" + exactly(interval / 2.5)}),
+                 "2.5 steps, given",
+                 2.5,
+                 3. / 2.5 * interval,
+                 communicator,
+                 verdicts);
       }
 
     private:
       static void
-      look(const ParameterFile &file,
-           const std::string   &name,
-           const double         steps,
-           const double         between_lines,
-           const MPI_Comm       communicator,
-           Verdicts            &verdicts)
+      evaluate(const ParameterFile &file,
+               const std::string   &name,
+               const double         steps,
+               const double         between_lines,
+               const MPI_Comm       communicator,
+               Verdicts            &verdicts)
       {
         const auto parameters =
           make_case(file.with({"Output/Folder=" + folder}));

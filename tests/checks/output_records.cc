@@ -53,18 +53,18 @@ namespace Voussoir
         const Discretization &discretization =
           simulation->model.solid.discretization;
         std::map<std::uint64_t, std::array<double, 2>> expected;
-        for (unsigned int look = 0; look < 3; ++look)
+        for (unsigned int sample = 0; sample < 3; ++sample)
           {
             State state = simulation->run.state;
-            state.step  = look;
+            state.step  = sample;
             for (unsigned int i = 0; i < discretization.node_positions.size();
                  ++i)
               for (unsigned int d = 0; d < 3; ++d)
                 {
                   const Point<3> &x = discretization.node_positions[i];
                   state.displacement.local_element(3 * i + d) =
-                    1e-3 * std::sin((0.1 + 0.02 * look) * x[0] + 0.07 * x[1] -
-                                    0.05 * x[2] + 2. * d + look);
+                    1e-3 * std::sin((0.1 + 0.02 * sample) * x[0] + 0.07 * x[1] -
+                                    0.05 * x[2] + 2. * d + sample);
                 }
             observer->observe(state);
             reference(*simulation, state.displacement, expected);

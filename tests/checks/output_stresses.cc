@@ -215,7 +215,7 @@ namespace Voussoir
                  "Face stresses and section forces of known stress fields.");
 
 
-    /** The stresses in a body at rest after a static stage: loads and the
+    /** The stresses in the static state of a body: loads and the
      *  static factor of the material, or a change of temperature. */
     class StressesAtRest : public Check
     {

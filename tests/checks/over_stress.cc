@@ -143,7 +143,7 @@ namespace Voussoir
           }
       }
 
-      // 1.2 times the strength at rest, 1.5 times it in both steps
+      // 1.2 times the strength in the static state, 1.5 times it in both steps
       void
       at_rest() const
       {

@@ -17,25 +17,25 @@ namespace Voussoir
     run(const ParameterFile &file, Verdicts &verdicts, const MPI_Comm) override
     {
       const auto parameters = make_case(file);
-      look_at(*parameters->material_list().at(0), verdicts);
+      evaluate(*parameters->material_list().at(0), verdicts);
     }
 
   private:
     virtual void
-    look_at(const Material &material, Verdicts &verdicts) const = 0;
+    evaluate(const Material &material, Verdicts &verdicts) const = 0;
   };
 
   /** What is given of xx, yy, zz. */
   using NormalControls = std::array<PointTest::Control, 3>;
 
-  /** On to strains or stresses in equal steps, without shear stress; @p look is
-   *  called after each. */
+  /** On to strains or stresses in equal steps, without shear stress; @p
+   * callback is called after each. */
   inline void
   advance(
     PointTest                   &test,
     const NormalControls        &target,
     const unsigned int           steps,
-    const std::function<void()> &look = [] {})
+    const std::function<void()> &callback = [] {})
   {
     const auto strain = test.strain, stress = test.stress;
     for (unsigned int i = 1; i <= steps; ++i)
@@ -50,24 +50,25 @@ namespace Voussoir
                            start + share * (target[d].value - start)};
           }
         test.advance(controls);
-        look();
+        callback();
       }
   }
 
-  /** Calls @p look with a point in cells of several sizes [m], and a text that
-   *  says so. */
+  /** Calls @p callback with a point in cells of several sizes [m], and a text
+   * that says so. */
   inline void
   for_each_cell_size(
-    const Material &material,
-    const std::function<
-      void(PointTest &, const double size, const std::string &in_cell)> &look)
+    const Material                                        &material,
+    const std::function<void(PointTest &,
+                             const double       size,
+                             const std::string &in_cell)> &callback)
   {
     for (const double size : {0.25, 0.5, 1., 2.})
       {
         PointTest          test(material, size, 1e-3);
         std::ostringstream in_cell;
         in_cell << " in a cell of " << size << " m";
-        look(test, size, in_cell.str());
+        callback(test, size, in_cell.str());
       }
   }
 } // namespace Voussoir

@@ -34,13 +34,13 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        const auto alone = look_at(file, "p4est", MPI_COMM_SELF);
+        const auto alone = evaluate(file, "p4est", MPI_COMM_SELF);
         for (const std::string partition : {"p4est", "METIS"})
           {
             verdicts.above("largest displacement [mm]",
                            1e3 * alone.motion.largest(),
                            0.1);
-            const Result together = look_at(file, partition, communicator);
+            const Result together = evaluate(file, partition, communicator);
             verdicts.below("difference to one rank, by " + partition,
                            relative_difference(together.motion, alone.motion),
                            tolerance);
@@ -70,9 +70,9 @@ namespace Voussoir
       };
 
       Result
-      look_at(const ParameterFile &file,
-              const std::string   &partition,
-              const MPI_Comm       communicator) const
+      evaluate(const ParameterFile &file,
+               const std::string   &partition,
+               const MPI_Comm       communicator) const
       {
         // the stable step differs in the last digits, so it is given
         const auto parameters =

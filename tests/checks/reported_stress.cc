@@ -57,7 +57,7 @@ namespace Voussoir
      * A short bar along z, rolling at its bottom, whose top is pulled and
      * pushed by T(t) = P (1 - exp(-(t/t_0)^2)) sin(2 pi f t) besides a pull at
      * rest. It is too short for waves, so its stress is that traction, whatever
-     * damping makes of its strain: an amplitude P around the pull at rest,
+     * damping makes of its strain: an amplitude P around the static pull,
      * above a strength as long as the traction is.
      */
     class ReportedStress : public Check
@@ -92,7 +92,7 @@ namespace Voussoir
                                   Utilities::trim(change.substr(equals + 1)));
               }
             for (const double frequency : {1., 10.})
-              look_at(file.with(changes), name, frequency, communicator);
+              evaluate(file.with(changes), name, frequency, communicator);
           }
       }
 
@@ -101,10 +101,10 @@ namespace Voussoir
         thickness                       = 0.5;
 
       void
-      look_at(const ParameterFile &file,
-              const std::string   &variant,
-              const double         frequency,
-              const MPI_Comm       communicator) const
+      evaluate(const ParameterFile &file,
+               const std::string   &variant,
+               const double         frequency,
+               const MPI_Comm       communicator) const
       {
         const double n_periods = frequency < 5. ? 3. : 6., // twice t_0 is one
           period               = 1. / frequency;
@@ -224,26 +224,26 @@ namespace Voussoir
       {
         for (const double frequency : {1., 10.})
           for (const std::string factor : {"1", "0.6"})
-            look_at(file.with(
-                      {"Materials/weak/Static factor=" + factor,
-                       "Materials/sound/Static factor=" + factor,
-                       "Static state/Stages=" +
-                         std::string(factor == "1" ? "" : "pull"),
-                       "Loads/pull/Active=" +
-                         std::string(factor == "1" ? "false" : "true")}),
-                    frequency,
-                    factor,
-                    verdicts,
-                    communicator);
+            evaluate(file.with(
+                       {"Materials/weak/Static factor=" + factor,
+                        "Materials/sound/Static factor=" + factor,
+                        "Static state/Stages=" +
+                          std::string(factor == "1" ? "" : "pull"),
+                        "Loads/pull/Active=" +
+                          std::string(factor == "1" ? "false" : "true")}),
+                     frequency,
+                     factor,
+                     verdicts,
+                     communicator);
       }
 
     private:
       static void
-      look_at(const ParameterFile &file,
-              const double         frequency,
-              const std::string   &static_factor,
-              Verdicts            &verdicts,
-              const MPI_Comm       communicator)
+      evaluate(const ParameterFile &file,
+               const double         frequency,
+               const std::string   &static_factor,
+               Verdicts            &verdicts,
+               const MPI_Comm       communicator)
       {
         // the crack begins at a sine of 0.98, or, with the pull, 0.588
         std::ostringstream time, end;

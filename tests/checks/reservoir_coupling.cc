@@ -58,7 +58,7 @@ namespace Voussoir
                                   {&water}},
                                  LeapFrog{time_step});
 
-        State state = scheme.state_at_rest();
+        State state = scheme.initial_state();
         for (unsigned int node = 0; node < tank.discretization.n_owned_nodes();
              ++node)
           for (unsigned int d = 0; d < 3; ++d)

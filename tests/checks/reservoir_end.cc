@@ -143,9 +143,9 @@ namespace Voussoir
               name << ", bottom " << channel.reflection;
             name << ": ";
             direction == 2 ?
-              look_at_floor(
+              evaluate_floor(
                 channel, *parameters, name.str(), verdicts, communicator) :
-              look_at_wall(
+              evaluate_wall(
                 channel, *parameters, name.str(), verdicts, communicator);
           }
       }
@@ -198,11 +198,11 @@ namespace Voussoir
       }
 
       void
-      look_at_floor(const Channel     &channel,
-                    Case              &parameters,
-                    const std::string &name,
-                    Verdicts          &verdicts,
-                    const MPI_Comm     communicator) const
+      evaluate_floor(const Channel     &channel,
+                     Case              &parameters,
+                     const std::string &name,
+                     Verdicts          &verdicts,
+                     const MPI_Comm     communicator) const
       {
         Tank   tank(parameters, communicator);
         double half = 0.;
@@ -228,11 +228,11 @@ namespace Voussoir
       }
 
       void
-      look_at_wall(const Channel     &channel,
-                   Case              &parameters,
-                   const std::string &name,
-                   Verdicts          &verdicts,
-                   const MPI_Comm     communicator) const
+      evaluate_wall(const Channel     &channel,
+                    Case              &parameters,
+                    const std::string &name,
+                    Verdicts          &verdicts,
+                    const MPI_Comm     communicator) const
       {
         Tank          tank(parameters, communicator);
         const double  width = channel.depth / rows;

@@ -93,7 +93,7 @@ namespace Voussoir
       }
 
 
-      /** Two columns: a sine in a hump, and @p more of it. */
+      /** Two columns: a sine of one pulse, and @p more of it. */
       static void
       write_record(const double more, const MPI_Comm communicator)
       {
@@ -102,9 +102,9 @@ namespace Voussoir
             std::ofstream out("surface.txt");
             for (unsigned int i = 0; i <= 200; ++i)
               {
-                const double t = 0.005 * i, hump = std::sin(numbers::PI * t);
+                const double t = 0.005 * i, pulse = std::sin(numbers::PI * t);
                 out << t << ' '
-                    << (1. + more) * hump * hump *
+                    << (1. + more) * pulse * pulse *
                          std::sin(6. * numbers::PI * t)
                     << '\n';
               }

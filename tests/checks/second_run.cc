@@ -36,7 +36,7 @@ namespace Voussoir
         ResultFolder folder(*parameters, options, simulation.log);
         folder.claim(simulation.log);
         Run second(simulation.model,
-                   simulation.rest,
+                   simulation.static_state,
                    simulation.modes,
                    folder,
                    simulation.log);

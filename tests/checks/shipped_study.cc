@@ -62,7 +62,7 @@ namespace Voussoir
             const auto parts = split_list(result, ':');
             const auto found =
               Criterion(parts.at(1), "Results")
-                .look(summary_of(parts.at(0)).get<RunSummary>());
+                .evaluate(summary_of(parts.at(0)).get<RunSummary>());
             verdicts.is_true("run " + result +
                                (found.second || !found.first ?
                                   std::string() :

@@ -60,7 +60,7 @@ namespace Voussoir
                       1e-6 * (rho * g * H + p),
                       1e-6);
         const CsvTable history(folder + "/histories.csv");
-        verdicts.is_true("histories.csv: one line, at rest",
+        verdicts.is_true("histories.csv: one line, of the static state",
                          history.numbers("time [s]") ==
                              std::vector<double>({0.}) &&
                            history.numbers("top velocity z [m/s]").at(0) == 0.);

@@ -33,10 +33,9 @@ namespace Voussoir
         const PointWeights weights(simulation->model.solid.discretization,
                                    {{"point", point}},
                                    "Point");
-        const Tensor<1, 3> displacement =
-          Utilities::MPI::sum(weights.share(
-                                simulation->rest.initial.displacement)[0],
-                              communicator);
+        const Tensor<1, 3> displacement = Utilities::MPI::sum(
+          weights.share(simulation->static_state.initial.displacement)[0],
+          communicator);
         if (along != 0.)
           verdicts.near(
             "along the river", 1e3 * displacement[1], along, tolerance, "mm");

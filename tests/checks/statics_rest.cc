@@ -32,7 +32,7 @@ namespace Voussoir
               }
             Vector drift = simulation->run.state.displacement;
             drift -= before;
-            const auto &stages = simulation->rest.summary.at("stages");
+            const auto &stages = simulation->static_state.summary.at("stages");
             verdicts.above(
               "supports " + supports + ": largest static displacement [mm]",
               1e3 * stages.back().at("largest displacement [m]").get<double>(),

@@ -20,7 +20,7 @@ namespace Voussoir
       {
         const auto  parameters = make_case(file);
         const auto  simulation = make_simulation(*parameters, communicator);
-        const auto &stages     = simulation->rest.summary.at("stages");
+        const auto &stages     = simulation->static_state.summary.at("stages");
 
         std::map<std::string, Tensor<1, 3>> found;
         Tensor<1, 3>                        applied;

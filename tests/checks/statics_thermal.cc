@@ -14,7 +14,7 @@ namespace Voussoir
   {
     /**
      * Bodies whose temperature changes by dT0 everywhere or by dT0 in a linear
-     * way from the back to the front face, at rest on planes of symmetry:
+     * way from the back to the front face, supported by planes of symmetry:
      *
      * - free bar: u = alpha dT0 x, no stress
      * - clamped bar: no displacement along it, sigma_xx = -E alpha dT0
@@ -103,8 +103,9 @@ namespace Voussoir
       {
         const Discretization &discretization =
           simulation.model.solid.discretization;
-        const Vector      &displacement = simulation.rest.initial.displacement;
-        const unsigned int n            = discretization.n_owned_nodes();
+        const Vector &displacement =
+          simulation.static_state.initial.displacement;
+        const unsigned int n = discretization.n_owned_nodes();
         // nothing holds the plate across: its mean is what the exact one has
         std::vector<double> sums(2);
         for (unsigned int node = 0; node < n; ++node)
@@ -149,7 +150,7 @@ namespace Voussoir
                                               Point<3>(10., 0., 10.)}};
         const auto                    share =
           PointWeights(simulation.model.solid.discretization, points, "")
-            .share(simulation.rest.initial.displacement);
+            .share(simulation.static_state.initial.displacement);
         return Utilities::MPI::sum(share[1][1] - share[0][1],
                                    simulation.model.grid.communicator()) /
                exact(points[1].position, strain)[1];
@@ -163,9 +164,11 @@ namespace Voussoir
         const Discretization &discretization =
           simulation.model.solid.discretization;
         const Vector u =
-          with_ghosts(discretization, simulation.rest.initial.displacement);
+          with_ghosts(discretization,
+                      simulation.static_state.initial.displacement);
         const Vector temperature =
-          with_ghosts(discretization, simulation.rest.initial.temperature);
+          with_ghosts(discretization,
+                      simulation.static_state.initial.temperature);
         FEValues<3>                        values(discretization.mapping,
                            discretization.fe,
                            discretization.matrix_free.get_quadrature(),
@@ -207,6 +210,6 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<Thermal>
-      registered("thermal", "Expansion, held expansion, bending.");
+      registered("thermal", "Expansion, constrained expansion, bending.");
   } // namespace
 } // namespace Voussoir

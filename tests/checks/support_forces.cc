@@ -41,7 +41,7 @@ namespace Voussoir
     /**
      * The end of a rod moves along it, prescribed, and nothing else there:
      * until waves come back, R = rho c A v(t) ,  2 rho c A v(t - L/c) at the
-     * other end, which is held, in uniaxial strain or, with sides that are
+     * other end, which is fixed, in uniaxial strain or, with sides that are
      * free, where the rod is slow, in uniaxial stress, R = E A u / L, with a
      * contraction of nu u / L.
      */
@@ -84,15 +84,15 @@ namespace Voussoir
         };
         MPI_Barrier(communicator);
         const ForceHistory pulled("rod_waves", "top"),
-          held("rod_waves", "bottom");
-        double of_pulled = 0., of_held = 0.;
+          fixed("rod_waves", "bottom");
+        double of_pulled = 0., of_fixed = 0.;
         for (std::size_t i = 0; i < pulled.times.size(); ++i)
           {
             const double t = pulled.times[i];
             keep_largest(of_pulled,
                          std::abs(pulled.force[i][2] - factor * velocity(t)));
-            keep_largest(of_held,
-                         std::abs(held.force[i][2] +
+            keep_largest(of_fixed,
+                         std::abs(fixed.force[i][2] +
                                   2. * factor * velocity(t - 20. / speed)));
           }
         const double end = pulled.times.back();
@@ -109,13 +109,13 @@ namespace Voussoir
         verdicts.below("its error over time",
                        of_pulled / (factor * velocity(end)),
                        tolerance);
-        verdicts.near("force at the end that is held",
-                      1e-6 * held.force.back()[2],
+        verdicts.near("force at the end that is fixed",
+                      1e-6 * fixed.force.back()[2],
                       -2e-6 * factor * velocity(end - 20. / speed),
                       2. * tolerance,
                       "MN");
         verdicts.below("its error over time",
-                       of_held / (2. * factor * velocity(end - 20. / speed)),
+                       of_fixed / (2. * factor * velocity(end - 20. / speed)),
                        2. * tolerance);
         // looked at between the lines of the table, too, not in every step
         const auto   summary = read_summary("rod_waves");
@@ -151,7 +151,7 @@ namespace Voussoir
           simulation->model.solid.materials[0]->elastic_constants();
         MPI_Barrier(communicator);
         const ForceHistory pulled("rod_slow", "top"),
-          held("rod_slow", "bottom");
+          fixed("rod_slow", "bottom");
         const double force = c.young_modulus * 6. * 0.02 / 20.;
         verdicts.near("slowly, sides free: force E A u/L",
                       1e-6 * pulled.force.back()[2],
@@ -159,7 +159,7 @@ namespace Voussoir
                       1e-4,
                       "MN");
         verdicts.near("the other end",
-                      1e-6 * held.force.back()[2],
+                      1e-6 * fixed.force.back()[2],
                       -1e-6 * force,
                       1e-4,
                       "MN");
@@ -191,14 +191,14 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<RodForces>
-      registered_rod("forces of a rod", "Held and moved ends over time.");
+      registered_rod("forces of a rod", "Fixed and moved ends over time.");
 
 
     /**
      * Forces of all supports of a damped block on a rigid base, with weight,
      * against the change of its momentum,
      *   R + W = d/dt sum m (v + v_base) ,
-     * and those at rest against its weight.
+     * and those of the static state against its weight.
      */
     class MomentumBalance : public Check
     {
@@ -230,7 +230,7 @@ namespace Voussoir
           make_simulation_with_files(*parameters, communicator);
         Run         &run = simulation->run;
         const double mass =
-          simulation->model.solid.mass.total[0]; // held nodes too
+          simulation->model.solid.mass.total[0]; // fixed nodes too
         const auto momentum = [&] {
           Tensor<1, 3>  sum;
           const Vector &m = simulation->model.solid.mass.mass;

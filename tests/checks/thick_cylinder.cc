@@ -116,8 +116,8 @@ namespace Voussoir
                            discretization.matrix_free.get_quadrature(),
                            update_gradients | update_JxW_values |
                              update_quadrature_points);
-        const double expected     = plastic_radius();
-        Vector       displacement = simulation->rest.initial.displacement;
+        const double expected = plastic_radius();
+        Vector displacement   = simulation->static_state.initial.displacement;
         displacement.update_ghost_values();
 
         double yielded = 0., volume = 0., error = 0.;

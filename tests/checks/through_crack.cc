@@ -10,7 +10,7 @@ namespace Voussoir
     /**
      * A block that is pulled by 4 mm sin(pi t)^2 and let back, all of which
      * opens its middle layer: from face to face if all cells there are weak,
-     * nowhere on the way if the middle one bears a hundred times as much.
+     * nowhere if the middle one is a hundred times as strong.
      */
     class ThroughCrack : public Check
     {
@@ -21,7 +21,7 @@ namespace Voussoir
           const MPI_Comm       communicator) override
       {
         const auto all_weak = found(file, communicator);
-        verdicts.near("all cells are weak: open all the way [mm]",
+        verdicts.near("all cells are weak: open from face to face [mm]",
                       all_weak.at(largest),
                       4.,
                       0.01);
@@ -53,7 +53,7 @@ namespace Voussoir
           found(file.with({"Materials/middle/Tensile strength=1.8e8",
                            "Materials/middle/Fracture energy=1e7"}),
                 communicator);
-        verdicts.near("the middle one is sound: open all the way [mm]",
+        verdicts.near("the middle one is sound: open from face to face [mm]",
                       one_sound.at(largest),
                       0.,
                       0.);

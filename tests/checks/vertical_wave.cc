@@ -52,7 +52,7 @@ namespace Voussoir
           {
             simulation->run.scheme.step(simulation->run.state);
             // extremes of each level over the ranks, now and then
-            const bool look = simulation->run.state.step % 10 == 0;
+            const bool evaluated = simulation->run.state.step % 10 == 0;
             std::map<long, std::array<double, 6>> levels;
             for (unsigned int node = 0; node < discretization.n_owned_nodes();
                  ++node)
@@ -78,7 +78,7 @@ namespace Voussoir
                       keep_largest(surface[d], std::abs(u));
                   }
               }
-            if (look)
+            if (evaluated)
               {
                 std::map<long, std::array<double, 6>> merged;
                 for (const auto &part :

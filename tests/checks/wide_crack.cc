@@ -28,7 +28,7 @@ namespace Voussoir
                                                                   "open") !=
                              std::string::npos);
         const std::string text = warnings.at(0);
-        // looked at every tenth of a second
+        // checked every tenth of a second
         verdicts.near("  at the time [s]",
                       time_in(text),
                       std::asin(std::sqrt(65. / 140.)) / (0.05 * numbers::PI) +
@@ -52,6 +52,6 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<WideCrack>
-      registered("wide crack", "The warning of what cracks have cut off.");
+      registered("wide crack", "The warning of a detached block.");
   } // namespace
 } // namespace Voussoir

@@ -41,7 +41,7 @@ namespace Voussoir
 
       template <typename Number>
       Number
-      load_level(const SymmetricTensor3<Number> &stress, const Number &) const
+      yield_ratio(const SymmetricTensor3<Number> &stress, const Number &) const
       {
         return norm(stress) / strength;
       }
@@ -139,6 +139,7 @@ namespace Voussoir
 
     // Reference: ourselves
     const Registry<Check>::Add<WrongLaw>
-      registered("wrong law", "A law that loses more than it tells is seen.");
+      registered("wrong law",
+                 "A law that loses more than it reports is found.");
   } // namespace
 } // namespace Voussoir

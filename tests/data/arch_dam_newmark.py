@@ -7,7 +7,7 @@ mesh and ground motion, which it takes from a run's fields and ground_motion.csv
     C = a (M + M_w) + b K, of each material its own b; a, b from the ratio at two frequencies
     water: mass 7/8 rho sqrt(H h) n n^T per area (Westergaard), H the depth below
            the level, of the column of faces, h that of the node
-    rigid base: the forces - (M + M_w) a of what is no light rock
+    rigid base: the forces - (M + M_w) a of all but massless rock
     boundary: springs and dashpots per area; K u + C v + sigma n of the free field,
            which is a column of linear elements under Newmark, too
 
@@ -194,8 +194,8 @@ class Model:
         return self.blocks(faces.ravel(), values.reshape(-1, 3, 3))
 
     def hold(self):
-        held = np.unique(self.mesh.rim())
-        self.free = np.setdiff1d(self.free, (3 * held[:, None] + np.arange(3)).ravel())
+        fixed = np.unique(self.mesh.rim())
+        self.free = np.setdiff1d(self.free, (3 * fixed[:, None] + np.arange(3)).ravel())
 
     def inner(self, matrix):
         return matrix[self.free][:, self.free].tocsc()
@@ -352,9 +352,9 @@ def response(model, motion, points, step, every, massless, all_levels):
 
 
 def compare_modes(mesh, summary, kind_of_mass):
-    held = Model(mesh, True, kind_of_mass)
-    held.hold()
-    for n, (f, theirs) in enumerate(zip(held.modes(6)[0], summary["modes"]["modes"]), 1):
+    rigid_rock = Model(mesh, True, kind_of_mass)
+    rigid_rock.hold()
+    for n, (f, theirs) in enumerate(zip(rigid_rock.modes(6)[0], summary["modes"]["modes"]), 1):
         print(f"mode {n}: {f:.5f} Hz, Voussoir {theirs['frequency [Hz]']:.5f} Hz, off by {100 * (theirs['frequency [Hz]'] / f - 1):.4f} %")
 
 

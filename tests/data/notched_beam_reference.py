@@ -58,25 +58,25 @@ def ligament_and_load(rows):
     matrix = scipy.sparse.csr_matrix(
         (np.concatenate(data), (np.concatenate(at_row), np.concatenate(at_column))), (size, size)
     )
-    held = [2 * node(i, 0) + 1 for i in range(columns + 1) if i * h < SUPPORT + 1e-9]
+    fixed = [2 * node(i, 0) + 1 for i in range(columns + 1) if i * h < SUPPORT + 1e-9]
     # the press holds what it pushes along the beam, too
-    held += [2 * node(i, rows) for i in range(columns) if i * h > HALF_LENGTH - HALF_LOAD - 1e-9]
+    fixed += [2 * node(i, rows) for i in range(columns) if i * h > HALF_LENGTH - HALF_LOAD - 1e-9]
     pressed = [2 * node(i, rows) + 1 for i in range(columns + 1) if i * h > HALF_LENGTH - HALF_LOAD - 1e-9]
     first = round(NOTCH / h)
     ligament = [2 * node(columns, j) for j in range(first, rows + 1)]
     # forces of the ligament and of the load under unit displacements of both
-    known = np.array(held + pressed + ligament)
+    known = np.array(fixed + pressed + ligament)
     free = np.setdiff1d(np.arange(size), known)
     solve = scipy.sparse.linalg.factorized(matrix[free][:, free].tocsc())
     units = np.zeros((len(known), len(ligament) + 1))
-    units[len(held) : len(held) + len(pressed), 0] = -1.0
+    units[len(fixed) : len(fixed) + len(pressed), 0] = -1.0
     for k in range(len(ligament)):
-        units[len(held) + len(pressed) + k, k + 1] = 1.0
+        units[len(fixed) + len(pressed) + k, k + 1] = 1.0
     coupling = matrix[free][:, known] @ units
     inner = np.column_stack([solve(-coupling[:, k]) for k in range(units.shape[1])])
     forces = matrix[known][:, free] @ inner + matrix[known][:, known] @ units
-    load = -forces[len(held) : len(held) + len(pressed)].sum(axis=0)
-    pull = forces[len(held) + len(pressed) :]
+    load = -forces[len(fixed) : len(fixed) + len(pressed)].sum(axis=0)
+    pull = forces[len(fixed) + len(pressed) :]
     area = np.full(len(ligament), h)
     area[[0, -1]] *= 0.5
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Parts of a report against what is known of made-up results: a wall of two blocks
-with a joint that gapes more upstream, and summaries of which the verdict is plain.
+with a joint that is open wider upstream, and summaries of which the verdict is plain.
 
 usage: check_parts.py FOLDER_OF_THE_REPORT
 """
@@ -181,7 +181,7 @@ def check_verdicts(scratch):
     good = {"numerical checks": {"energy-balance error": line(1e-3, True, **{"at most": 0.01})}}
     crest = {"quantity": "histories/*/largest displacement [m]", "clause": "4.2", "load case": "MCE", "source": "user's",
              "demand": 0.2, "at most": 0.15, "met": False, "of": "histories/crest/largest displacement [m]"}
-    loose = "at t = 4 s a crack is open by 388 mm, 2 % of its cell: what cracks have cut off is loose from now on"
+    detached = "at t = 4 s a crack is open by 388 mm, 2 % of its cell: cracks have detached a block from the rest"
     for name, changed, colours, judged in (
             ("nothing assessed", good, ("good", "open"), {}),
             ("an earlier version", {}, ("doubt", "open"), {}),
@@ -202,7 +202,7 @@ def check_verdicts(scratch):
              ("good", "bad"), {"slip at the end [mm]": "not met"}),
             ("strength lowered", {"numerical checks": {"strength lowered by long cells [%]": line(59., False, **{
                 "at most": 10., "of": "concrete"})}}, ("bad", "open"), {"strength lowered by long cells [%]": "not met"}),
-            ("a warning", {**good, "warnings": [loose]}, ("doubt", "open"), {}),
+            ("a warning", {**good, "warnings": [detached]}, ("doubt", "open"), {}),
             ("stopped", {**good, "verdict": "stopped: the motion grows without end"}, ("bad", "open"), {}),
             ("a criterion", {**good, "acceptance table": {"crest": crest}}, ("bad", "good", "open"),
              {"crest, MCE: 4.2": "not met"}),

@@ -11,7 +11,7 @@ namespace Voussoir
   /**
    * K x = lambda M x with a positive definite stiffness K and a mass M that may
    * be singular. All three map (result, vector), of which each rank has `size`
-   * entries, and keep held entries at zero.
+   * entries, and keep constrained entries at zero.
    */
   struct Eigenproblem
   {

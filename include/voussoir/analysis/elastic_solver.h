@@ -35,11 +35,11 @@ namespace Voussoir
     /** What the stiffness may have beside that of the cells. */
     struct Additions
     {
-      /** Springs of an absorbing boundary that is not held. */
+      /** Springs of an absorbing boundary that is not fixed. */
       const NodalTerms *springs = nullptr;
 
       /** Contact between parts of the model, which hold together where they
-       *  touch at this displacement until `tangent_contact` says otherwise. */
+       *  touch at this displacement until `tangent_contact` changes that. */
       Contact      *contact      = nullptr;
       const Vector *displacement = nullptr;
 
@@ -48,7 +48,7 @@ namespace Voussoir
     };
 
     /**
-     * @param constraints hanging nodes and all that is held, see
+     * @param constraints of hanging and fixed nodes, see
      *   Discretization::make_constraints(), and nodes that follow others
      */
     ElasticSolver(const Discretization                    &discretization,
@@ -61,15 +61,15 @@ namespace Voussoir
     StaticContact *
     tangent_contact();
 
-    /** Zero on entries that are held. */
+    /** Sets constrained entries to zero. */
     void
     clear_held(Vector &vector) const;
 
-    /** force = K displacement, reactions of what is held included. */
+    /** force = K displacement, reactions of supports included. */
     void
     apply(Vector &force, const Vector &displacement) const;
 
-    /** An approximation of K^-1, zero on what is held. */
+    /** An approximation of K^-1, zero on constrained entries. */
     void
     precondition(Vector &displacement, const Vector &force) const;
 
@@ -97,7 +97,7 @@ namespace Voussoir
     void
     set_up_multigrid();
 
-    /** `apply` without a look whether to stop. */
+    /** `apply` without polling for a request to stop. */
     void
     multiply(Vector &force, const Vector &displacement) const;
 
@@ -111,7 +111,7 @@ namespace Voussoir
     const dealii::AffineConstraints<double> &constraints;
     const TiedNodes                         *ties;
     mutable Vector                           tied; // the tied displacement
-    std::vector<unsigned int>                held; // owned entries
+    std::vector<unsigned int>                constrained; // owned entries
     std::optional<StaticContact>             static_contact;
     dealii::TrilinosWrappers::SparseMatrix   matrix; // until `multigrid` is
     std::optional<Multigrid>                 multigrid;

@@ -46,7 +46,7 @@ namespace Voussoir
   struct ModeParameters
   {
     unsigned int      number = 0;
-    std::string       held_materials, massless_materials;
+    std::string       fixed_materials, massless_materials;
     InterfacesInModes interfaces = InterfacesInModes::tied_where_closed;
     WaterInModes      water      = WaterInModes::by_reservoir;
     double            tolerance  = 1e-5;
@@ -59,7 +59,7 @@ namespace Voussoir
     bool
     want_cells_of_water(const ReservoirParameters &reservoir) const;
 
-    /** Refuses unknown materials and a model that nothing holds. */
+    /** Refuses unknown materials and a model without supports. */
     void
     check(const std::vector<std::string> &materials,
           const BoundaryParameters       &boundaries) const;
@@ -73,7 +73,7 @@ namespace Voussoir
     const BoundaryParameters &boundaries;
     const NodalTerms         &terms;
 
-    /** The interfaces at rest, or null. */
+    /** The interfaces in the static state, or null. */
     const Contact *contact = nullptr;
 
     /** Cells of water that move along, or null. */

@@ -11,7 +11,7 @@ namespace Voussoir
    * Stiffness and mass of the natural modes, K phi = omega^2 (M + M_a) phi. A
    * motion is a list of numbers: the displacements of the owned nodes and, with
    * compressible water, what stands for its pressures (see ModalWater). Entries
-   * that are held or follow others are zero.
+   * that are fixed or follow others are zero.
    */
   class ModalSystem
   {
@@ -63,9 +63,9 @@ namespace Voussoir
     std::vector<Motion>
     start(const unsigned int number) const;
 
-    /** M r: the forces on all that is not held under unit acceleration of all
-     *  in one direction. What is held moves, too, as the ground does, and
-     * pushes the water. */
+    /** M r: the forces on the free unknowns under unit acceleration of all in
+     *  one direction. Fixed nodes move, too, as the ground does, and push the
+     *  water. */
     Motion
     rigid_momentum(const unsigned int direction) const;
 

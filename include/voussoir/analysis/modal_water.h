@@ -35,7 +35,7 @@ namespace Voussoir
     /** [N/m] */
     const double stiffness;
 
-    /** What has unknowns, as space.node_positions. */
+    /** Positions of the unknowns, as space.node_positions. */
     const Reservoir &reservoir;
 
     /**

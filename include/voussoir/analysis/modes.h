@@ -17,8 +17,8 @@ namespace Voussoir
     double mass;      // phi^T (M + M_a) phi [kg]
     double residual;  // |K phi - omega^2 (M + M_a) phi| / |K phi|
 
-    /** phi^T (M + M_a) r / mass, with r = 1 in one direction, at what is held
-     * as well: held walls of a canyon push the water. */
+    /** phi^T (M + M_a) r / mass, with r = 1 in one direction, at fixed nodes as
+     *  well: fixed walls of a canyon push the water. */
     dealii::Tensor<1, 3> participation;
 
     /** participation^2 mass, by direction [kg]. */
@@ -47,7 +47,7 @@ namespace Voussoir
 
   /**
    * The lowest natural modes, K phi = omega^2 (M + M_a) phi, with the moduli as
-   * given, absorbing faces held, interfaces tied. Called on all ranks.
+   * given, absorbing faces fixed, interfaces tied. Called on all ranks.
    */
   Modes
   find_modes(const ModalModel     &model,

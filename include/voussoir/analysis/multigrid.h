@@ -27,22 +27,23 @@ namespace Voussoir
   class Multigrid
   {
   public:
-    /** dst = A src, symmetric and zero on entries that are held. */
+    /** dst = A src, symmetric and zero on entries that are constrained. */
     using Operator = std::function<void(Vector &dst, const Vector &src)>;
 
     /**
      * @param apply    on the finest level
-     * @param matrix   with any entries where held; afterwards empty, unless it
+     * @param matrix   with any entries where fixed; afterwards empty, unless it
      *   is so small that it is the only level
      * @param diagonal of the matrix
-     * @param held     owned entries
+     * @param constrained     owned entries
      * @param n_components of a node, whose entries follow each other
-     * @param near_kernel  the motions that cost no energy where nothing is held
+     * @param near_kernel  the motions that cost no energy where nothing is
+     * fixed
      */
     Multigrid(const Operator                         &apply,
               dealii::TrilinosWrappers::SparseMatrix &matrix,
               const Vector                           &diagonal,
-              const std::vector<unsigned int>        &held,
+              const std::vector<unsigned int>        &constrained,
               const unsigned int                      n_components,
               const Epetra_MultiVector               &near_kernel);
 
@@ -94,7 +95,7 @@ namespace Voussoir
     correct(Vector &dst, const Vector &residual) const;
 
     FinestLevel                               finest;
-    const std::vector<unsigned int>          &held;
+    const std::vector<unsigned int>          &constrained;
     Smoother                                  smoother;
     dealii::TrilinosWrappers::PreconditionAMG coarser;
     ML_Struct                                *levels = nullptr; // of `coarser`

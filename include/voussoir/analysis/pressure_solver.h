@@ -16,13 +16,13 @@ namespace Voussoir
   class PressureSolver
   {
   public:
-    /** @param held owned unknowns with zero pressure */
+    /** @param constrained owned unknowns with zero pressure */
     PressureSolver(const AcousticSpace             &space,
-                   const std::vector<unsigned int> &held);
+                   const std::vector<unsigned int> &constrained);
 
     /** Solves until the residual is @p tolerance times @p flux, which is zero
-     *  where the pressure is held. Throws UserError if that takes more than
-     * 1000 iterations. */
+     *  where the pressure is constrained. Throws UserError if that takes more
+     * than 1000 iterations. */
     void
     solve(Vector &pressure, const Vector &flux, const double tolerance) const;
 
@@ -37,7 +37,7 @@ namespace Voussoir
     apply(Vector &flux, const Vector &pressure) const;
 
     const AcousticSpace            &space;
-    const std::vector<unsigned int> held;
+    const std::vector<unsigned int> constrained;
 
     // empty, unless it is the only level of the multigrid, which refers to it
     dealii::TrilinosWrappers::SparseMatrix matrix;

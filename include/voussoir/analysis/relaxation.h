@@ -8,21 +8,21 @@
 namespace Voussoir
 {
   /**
-   * Equilibrium with contact by damped motion: the explicit steps of the run,
-   * with the contact of the run and, until nothing moves any more, with the
-   * critical damping of the frequency that Rayleigh's quotient of the velocity
-   * gives: high as long as many modes move, then that of the slowest (adaptive
-   * dynamic relaxation, Underwood 1983). No stiffness is assembled, so joints
-   * may open and slip as they like.
+   * Equilibrium with contact by dynamic relaxation: the explicit steps of the
+   * run, with the contact of the run and, until nothing moves any more, with
+   * the critical damping of the frequency that Rayleigh's quotient of the
+   * velocity gives: high as long as many modes move, then that of the slowest
+   * (adaptive, Underwood 1983). No stiffness is assembled, so joints may open
+   * and slip as they like.
    */
   class Relaxation
   {
   public:
     /**
      * @param internal_force of the static stage
-     * @param mass        of the run; what the static stage holds loses its own
+     * @param mass        of the run; nodes that the static stage fixes get none
      * @param terms       of the run
-     * @param constraints hanging nodes and what the static stage holds
+     * @param constraints of hanging nodes and nodes that the static stage fixes
      * @param springs     whether the absorbing boundary stands on its springs
      */
     Relaxation(const Discretization                    &discretization,
@@ -33,7 +33,7 @@ namespace Voussoir
                const bool                               springs,
                Contact                                 *contact);
 
-    /** How a motion ended. */
+    /** How a relaxation ended. */
     struct Result
     {
       bool         at_rest = false;
@@ -67,8 +67,8 @@ namespace Voussoir
     too_far(const Vector &displacement) const;
 
     /**
-     * Root of v K v / (v M v) [rad/s], where K v is what the damped motion
-     * makes of its own change: M a' + c M a + K v = 0.
+     * Root of v K v / (v M v) [rad/s], where K v follows from the time
+     * derivative of the equation of motion, M a' + c M a + K v = 0.
      *
      * @param velocity of the last three steps
      */

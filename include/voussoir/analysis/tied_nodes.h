@@ -20,8 +20,8 @@ namespace Voussoir
               const Contact                                   &contact,
               const std::function<bool(const ContactPoint &)> &is_tied);
 
-    /** These constraints, and those of the followers: a group is held in each
-     *  direction in which one of its nodes is. Called on all ranks. */
+    /** These constraints, and those of the followers: a group is constrained in
+     *  each direction in which one of its nodes is. Called on all ranks. */
     dealii::AffineConstraints<double>
     added_to(const dealii::AffineConstraints<double> &constraints) const;
 

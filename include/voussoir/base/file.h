@@ -74,7 +74,7 @@ namespace Voussoir
     const std::string &
     name() const;
 
-    /** What is written [bytes]. */
+    /** Size of the written part [bytes]. */
     std::uintmax_t
     size() const;
 
@@ -89,7 +89,7 @@ namespace Voussoir
     has_waiting() const;
 
   private:
-    /** Why what was written is not there any more; empty: it is. */
+    /** Why the written part is lost; empty: it is not. */
     std::string
     loss() const;
 

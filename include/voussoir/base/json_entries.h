@@ -12,7 +12,7 @@
 
 namespace Voussoir
 {
-  // Structs whose members have names in JSON, said once for both ways:
+  // Structs whose members have names in JSON, listed once for both directions:
   // for_each_entry(part, entry) calls entry(name, member) for all of them. What
   // is not known, an empty optional, map or JSON, is left out.
 

@@ -15,7 +15,7 @@
 
 namespace Voussoir
 {
-  /** What the program says: on the terminal of the first rank and, once the
+  /** Messages of the program: on the terminal of the first rank and, once the
    *  output folder is known, in its log.txt. */
   class Log
   {
@@ -24,7 +24,7 @@ namespace Voussoir
 
     ~Log();
 
-    /** Writes to this file from now on, first what was said before; no file is
+    /** Writes to this file from now on, first the messages before; no file is
      *  missing yet. Goes on in a file that is there, or begins a new one. */
     void
     open(const std::string &filename, const bool append);
@@ -42,20 +42,20 @@ namespace Voussoir
       (*this)(text.str());
     }
 
-    /** Whether it is time to say how far a long task is; only on the first
+    /** Whether it is time to report how far a long task is; only on the first
      * rank.
      */
     bool
     progress_is_due() const;
 
-    /** Says how far a long task is, with what it is about: a bar in the last
-     * line of a terminal, which goes when something else is said; elsewhere and
+    /** Reports how far a long task is, with its subject: a bar in the last
+     * line of a terminal, which the next message overwrites; elsewhere and
      * in log.txt a line, not more often than every five seconds. */
     void
     progress(const double share_done, const std::string &text);
 
     /** Says what the results must not be read without, and again at the end and
-     * in the summary of a run. Warnings that were said before are not repeated.
+     * in the summary of a run. Warnings are not repeated.
      */
     template <typename... Parts>
     void
@@ -108,10 +108,9 @@ namespace Voussoir
     std::map<std::string, std::uint64_t>
     sizes_of_growing_files() const;
 
-    /** Takes note of files that were written and are not there any more, or
-     *  not as they were. */
+    /** Records which files that were written are missing or changed. */
     void
-    look_for_lost_files();
+    check_for_lost_files();
 
     MPI_Comm
     communicator() const;
@@ -130,7 +129,7 @@ namespace Voussoir
     MPI_Comm    mpi_communicator;
     const bool  speaks, quiet, has_bar;
     bool        shows_bar = false;
-    GrowingFile file; // what was said before it is open waits
+    GrowingFile file; // messages wait until it is open
 
     using Clock = std::chrono::steady_clock;
     Clock::time_point last_bar, last_line; // of progress

@@ -14,7 +14,7 @@ namespace Voussoir
    *
    * deal.II's ParameterHandler wants every entry declared before it parses, but
    * which sections a case has depends on the names the user lists in it
-   * (materials, loads). So the file is read once here, `given()` answers what
+   * (materials, loads). So the file is read once here, `given()` returns what
    * must be known to declare, and `parse()` then hands all of it to the
    * ParameterHandler, strictly.
    */
@@ -70,8 +70,9 @@ namespace Voussoir
       std::string place; // "case.prm, line 12" or "--set"
     };
 
-    /** What a file says goes before what those say that it includes, which all
-     *  see names of files from the folder of the first one. */
+    /** Entries of a file take precedence over those of the files that it
+     *  includes; all resolve names of files from the folder of the first one.
+     */
     void
     read(const std::string &filename, std::vector<std::string> includers);
 

@@ -85,7 +85,7 @@ namespace Voussoir
     }
 
     /**
-     * A new object of the class called @p name. @p place tells where the name
+     * A new object of the class called @p name. @p place names where the name
      * was read, for the message when there is no such class.
      */
     static std::unique_ptr<Base>

@@ -8,7 +8,7 @@
 
 namespace Voussoir
 {
-  /** Quantities whose values say in which unit they were given. */
+  /** Quantities whose values show in which unit they were given. */
   enum class Usual
   {
     modulus,

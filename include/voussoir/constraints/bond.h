@@ -5,7 +5,7 @@
 
 namespace Voussoir
 {
-  /** A bond that can be lost: its strength and what is left of it after. */
+  /** A bond that can be lost: its strength, whole and residual. */
   class Bond : public InterfaceLaw
   {
   public:

@@ -27,7 +27,7 @@ namespace Voussoir
             const InterfacesParameters &parameters,
             const InterfaceSurfaces    &surfaces);
 
-    /** The points, for those who find the same forces in another way. */
+    /** The points, for another solver of the same forces. */
     InterfacePoints &
     points_of_interfaces();
 
@@ -79,17 +79,18 @@ namespace Voussoir
     void
     resume();
 
-    /** From here on the points swing on their way to a static state. */
+    /** Begins the dynamic relaxation of a static stage, in which points
+     * oscillate. */
     void
     begin_approach();
 
-    /** Takes those swings out of the history, which opened joints that end
-     *  closed: what stays is that from before and the way from there to where
-     *  the points are now. */
+    /** Removes these oscillations, which opened joints that end closed, from
+     * the history: it is that before the relaxation and of the monotonic change
+     * to the present gap and slip. */
     void
     forget_approach();
 
-    /** Lets the water into the interfaces whose uplift comes with one of these
+    /** Applies the uplift of the interfaces whose water comes with one of these
      *  loads. */
     void
     let_water_in(const std::vector<std::string> &loads);
@@ -170,8 +171,8 @@ namespace Voussoir
     std::vector<dealii::Tensor<1, 3>> displacement, force;
 
     // at the owned nodes
-    std::vector<double>               flexibility; // -1: full
-    std::vector<dealii::Tensor<2, 3>> full_flexibility;
+    std::vector<double>               compliance; // [m/N], -1: full
+    std::vector<dealii::Tensor<2, 3>> full_compliance;
     std::vector<dealii::Tensor<1, 3>> applied, last_velocity;
 
     ContactSolver::Effort total;

@@ -16,7 +16,7 @@ namespace Voussoir
     sticking // closed
   };
 
-  /** What a contact point bears in a step, as forces. */
+  /** Resistance of a contact point in a step, as forces. */
   struct ContactLimits
   {
     double tension = 0., bond = 0., cohesion = 0.; // [N]
@@ -24,8 +24,9 @@ namespace Voussoir
     double opening  = 0.;    // largest so far, an intact bond has none [m]
     bool   locked   = false; // no slip (shear keys)
 
-    // friction follows the pressure with a delay (see ContactPoint): what it
-    // bears under that of before [N], and its part of that of now
+    // friction follows the pressure with a delay (see ContactPoint): the shear
+    // that it resists under the pressure of before [N], and the share of the
+    // present pressure that counts at once
     double lasting = 0., at_once = 1.;
 
     /** Normal force at which it opens [N]; an opened bond has its tension open
@@ -111,14 +112,14 @@ namespace Voussoir
 
 
   /**
-   * Flexibility of the two nodes of a point, in the frame of its normal n and
-   * the tangents t1, t2: a force F on the second node and -F on the first move
-   * them by D F against each other in a step [m/N].
+   * Delassus operator D of a point, in the frame of its normal n and the
+   * tangents t1, t2: a force F on the second node and -F on the first change
+   * the gap by D F in a step [m/N].
    */
-  struct Flexibility
+  struct DelassusOperator
   {
-    /** @param full symmetric; singular where nodes are held */
-    explicit Flexibility(const dealii::Tensor<2, 3> &full);
+    /** @param full symmetric; singular where nodes are fixed */
+    explicit DelassusOperator(const dealii::Tensor<2, 3> &full);
 
     dealii::Tensor<2, 3> full, inverse; // of its range, if singular
 
@@ -145,13 +146,13 @@ namespace Voussoir
    */
   ContactForce
   solve_contact(const dealii::Tensor<1, 3> &b,
-                const Flexibility          &flexibility,
+                const DelassusOperator     &delassus,
                 const ContactLimits        &limits);
 
-  /** The same for D = @p flexibility times the identity. */
+  /** The same for D = @p delassus times the identity. */
   ContactForce
   solve_contact(const dealii::Tensor<1, 3> &b,
-                const double                flexibility,
+                const double                delassus,
                 const ContactLimits        &limits);
 } // namespace Voussoir
 

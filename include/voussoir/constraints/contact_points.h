@@ -31,9 +31,9 @@ namespace Voussoir
 
   /**
    * The points of surfaces in contact, which share nodes where surfaces cross:
-   * their gaps, what they bear by their laws and what bars do there. What the
-   * forces are is found by ContactSolver in a step of time and by StaticContact
-   * at rest.
+   * their gaps, their resistance by their laws and the forces of bars. The
+   * contact forces are found by ContactSolver in a step of time and by
+   * StaticContact in the static state.
    *
    * Knows neither mesh nor ranks: its nodes are those of the clusters of one
    * rank.

@@ -13,18 +13,18 @@ namespace Voussoir
    * opening that the interfaces resist. Exact, without penalty: a cluster of
    * two nodes in closed form, others by their dense system if nothing slips or
    * opens, else by projected Gauss-Seidel over their points and, where that
-   * goes slowly, Newton's iteration. Where these do not converge, by following
-   * a path that leads to a solution (see contact_path.h).
+   * goes slowly, Newton's iteration. Where these do not converge, by homotopy
+   * (see contact_homotopy.h).
    *
-   * Keeps the flexibility of nodes and points in a step: those of the last
-   * `prepare_step`.
+   * Keeps the Delassus operators of points and the compliances of nodes in a
+   * step, those of the last `prepare_step`.
    */
   class ContactSolver
   {
   public:
     /**
      * @param inverse_mass of each node: a momentum p changes its velocity by
-     *   H p; zero where held
+     *   H p; zero where fixed
      */
     void
     prepare_step(ContactPoints                           &contact,
@@ -62,9 +62,9 @@ namespace Voussoir
 
     struct Cluster : ContactPoints::Cluster
     {
-      // motion of the points under their forces; the forces that hold all
-      // points are minus the stiffness times the gaps
-      std::vector<double> flexibility, stiffness;
+      // Delassus operator of all points, and its pseudo-inverse: the forces
+      // that hold all points are minus the stiffness times the gaps
+      std::vector<double> delassus, stiffness;
 
       // forces over the root of the area, orthonormal, that move no node
       std::vector<std::vector<double>> self_equilibrated;
@@ -157,12 +157,12 @@ namespace Voussoir
                    const Cluster &cluster,
                    const double   largest_force);
 
-    /** Flexibility of a point times a force in its frame. */
+    /** Delassus operator of a point times a force in its frame [m]. */
     dealii::Tensor<1, 3>
     relative_motion(const unsigned int          number,
                     const dealii::Tensor<1, 3> &force) const;
 
-    /** Flexibility of a node times a force. */
+    /** Compliance of a node times a force [m]. */
     dealii::Tensor<1, 3>
     motion(const unsigned int node, const dealii::Tensor<1, 3> &force) const;
 
@@ -192,12 +192,12 @@ namespace Voussoir
     std::vector<Cluster> clusters; // of several points
 
     double time_step = 0.;
-    // inverse mass times the time step squared [m/N]; where it is no multiple
-    // of the identity, minus one and in the full matrix
-    std::vector<double>               node_flexibility, point_flexibility;
+    // compliance of a node: inverse mass times the time step squared [m/N];
+    // where it is no multiple of the identity, minus one and in the full matrix
+    std::vector<double>               node_compliance, point_delassus;
     std::vector<dealii::Tensor<2, 3>> node_matrix;
-    std::vector<Flexibility>          point_matrix;
-    std::vector<unsigned int>         matrix_of_point;
+    std::vector<DelassusOperator>     point_operator;
+    std::vector<unsigned int>         operator_of_point;
 
     // of the cluster at hand: gaps without contact forces, forces that hold its
     // points, motion of its nodes

@@ -7,14 +7,14 @@
 
 namespace Voussoir
 {
-  /** What a point of an interface has been through. */
+  /** Internal variables of a point of an interface. */
   struct InterfaceHistory
   {
     double opening = 0.; // largest so far, with the initial gap [m]
-    double slip    = 0.; // length of the path it has slipped [m]
+    double slip    = 0.; // accumulated length of its path [m]
   };
 
-  /** What a point of an interface bears now. */
+  /** Resistance of a point of an interface. */
   struct InterfaceStrength
   {
     double tension  = 0.; // of the bond [Pa]
@@ -25,7 +25,7 @@ namespace Voussoir
 
   /**
    * The strength of an interface (joint, slip plane, dam-rock contact). Closed,
-   * it bears any pressure p, tension up to `tension`, and shear up to
+   * it resists any pressure p, tension up to `tension`, and shear up to
    *   bond + cohesion + friction <p> ;
    * open, tension up to `tension` and shear up to `bond`. An opened bond
    * unloads along the secant to zero opening.

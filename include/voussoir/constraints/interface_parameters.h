@@ -24,14 +24,14 @@ namespace Voussoir
     bool
     given() const;
 
-    /** Pressure at an elevation and a share of the way from the upstream to the
-     *  downstream faces [Pa]. */
+    /** Pressure at an elevation and a share of the distance from the upstream
+     * to the downstream faces [Pa]. */
     double
     pressure(const double elevation, const double share) const;
   };
 
   /** A section "Interfaces/NAME": surfaces along which the mesh is split and
-   *  what they bear. */
+   *  their strength. */
   struct InterfaceParameters
   {
     std::string                   name;

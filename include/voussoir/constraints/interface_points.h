@@ -13,7 +13,7 @@ namespace Voussoir
    * The contact points of all interfaces of a case on this rank: where in the
    * mesh they are, the exchange with the ranks of their nodes, and what the
    * static stages do to them. Contact finds their forces in a step of time,
-   * StaticContact at rest.
+   * StaticContact in the static state.
    */
   class InterfacePoints : public ContactPoints
   {
@@ -29,7 +29,7 @@ namespace Voussoir
     set_delay(const Discretization                            &discretization,
               const std::function<double(const Grid::Cell &)> &wave_speed);
 
-    /** Lets the water into the interfaces whose uplift comes with one of these
+    /** Applies the uplift of the interfaces whose water comes with one of these
      *  loads. */
     void
     let_water_in(const std::vector<std::string> &loads);

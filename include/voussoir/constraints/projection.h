@@ -11,7 +11,7 @@ namespace Voussoir
   /**
    * A constraint that corrects the predicted motion at the end of each step
    * (contact, prescribed motion): it gets displacement and velocity as they
-   * would be without it and returns what it did, as momentum and energy.
+   * would be without it and returns its momentum and energy.
    */
   class Projection
   {
@@ -43,7 +43,7 @@ namespace Voussoir
     {}
 
     /** Inverse of the mass that the update divides by, of an owned node: a
-     *  momentum p changes its velocity by H p; zero where held, and for others
+     *  momentum p changes its velocity by H p; zero where fixed, and for others
      *  than those that prescribe it where the motion is prescribed. */
     using InverseMass =
       std::function<dealii::Tensor<2, 3>(const unsigned int node)>;

@@ -18,7 +18,7 @@ namespace Voussoir
   public:
     /**
      * @param interfaces whose forces are found; must live as long as this
-     * @param stiffness  of the body at the owned nodes [N/m], zero where held
+     * @param stiffness  of the body at the owned nodes [N/m], zero where fixed
      */
     StaticContact(InterfacePoints &interfaces, const Vector &stiffness);
 
@@ -32,14 +32,14 @@ namespace Voussoir
     respond(Vector &force, const Vector &displacement);
 
     /**
-     * Moves the tangent towards that of points which all hold together, of the
-     * bodies as one: by a share of the way, 1 is all of it. Under such a
-     * tangent no part is loose, and no step goes too far.
+     * Moves the tangent towards that of points which all stick, of the bodies
+     * as one, by a share of the difference; 1 is all of it. Under such a
+     * tangent no block is detached, and no step goes too far.
      */
     void
     stiffen(const double share);
 
-    /** Leaves the tangent to points that touch, which hold together. */
+    /** Leaves the tangent to closed points, which stick. */
     void
     tie(const Vector &displacement);
 
@@ -53,7 +53,7 @@ namespace Voussoir
     {
       dealii::types::global_dof_index first, second; // global nodes
       dealii::Tensor<2, 3>            tangent;       // [N/m]
-      std::array<bool, 3>             first_held, second_held;
+      std::array<bool, 3>             first_fixed, second_fixed;
     };
 
     /** The pairs of this rank, whose nodes may be those of others. */
@@ -104,7 +104,7 @@ namespace Voussoir
 
     // at the nodes of the clusters and at the owned ones
     mutable std::vector<dealii::Tensor<1, 3>> at_nodes, forces, at_owned;
-    std::vector<std::array<bool, 3>>          held; // nodes of the clusters
+    std::vector<std::array<bool, 3>>          fixed; // nodes of the clusters
   };
 } // namespace Voussoir
 

@@ -27,8 +27,8 @@ namespace Voussoir
   /**
    * The objects of one kind that a case names, each a section of its own: `set
    * Names = concrete, rock` and, in the section of that name, the class it is
-   * of and the entries of that class. They say what the file says and do not
-   * change; what changes with a model or a run is made anew.
+   * of and the entries of that class. They have the values of the file and do
+   * not change; what changes with a model or a run is made anew.
    */
   template <typename Base>
   class NamedObjects
@@ -133,7 +133,7 @@ namespace Voussoir
     declare(dealii::ParameterHandler &prm);
   };
 
-  /** Everything that a parameter file says, checked as far as that is possible
+  /** All entries of a parameter file, checked as far as that is possible
    *  without the mesh. */
   class Case
   {
@@ -176,7 +176,7 @@ namespace Voussoir
     StudyParameters                study;
     NamedObjects<Observer>         observers;
 
-    /** Observers that the file does not name, which look at strengths that it
+    /** Observers that the file does not name, which evaluate strengths that it
      *  gives: over-stress, and cracks that go through. One that does not fit
      *  the mesh is left out. */
     std::vector<std::string> added_observers;
@@ -216,12 +216,12 @@ namespace Voussoir
     add_observers();
 
     /** Takes sections of observers that are not among these, as where "--set"
-     *  leaves one out: their entries are checked, and the log says it. */
+     *  leaves one out: their entries are checked, and the log notes it. */
     void
     declare_unused_observers(const std::vector<std::string> &used);
 
     /** Lets the uplift of interfaces come with the first load of water, where
-     *  the file does not say with which. */
+     *  the file does not name one. */
     void
     find_water_of_uplift();
 

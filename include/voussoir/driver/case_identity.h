@@ -12,7 +12,7 @@ namespace Voussoir
 {
   /**
    * What must not change between a checkpoint and the run that goes on from it:
-   * each entry but those that only say how long to run and what to write when,
+   * each entry but those for the duration and for what is written when,
    * as "Section/Entry = value", and the checksums of the files that entries
    * name.
    */

@@ -12,7 +12,7 @@ namespace Voussoir
   run_command_line(const int argc, char **argv, const MPI_Comm communicator);
 
   /**
-   * Calls @p action and turns what it throws into one sentence on the first
+   * Calls @p action and turns its exceptions into one sentence on the first
    * rank that has one and exit code 1, or for a stop on request the one for
    * that.
    */

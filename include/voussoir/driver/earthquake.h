@@ -11,7 +11,7 @@ namespace Voussoir
   /** The motion of the ground that a case gives or has made. */
   struct EarthquakeMotion
   {
-    /** Reads or makes it and says what it is. Throws UserError for one that
+    /** Reads or makes the motion and reports it. Throws UserError for one that
      *  cannot enter the model as the case wants. */
     EarthquakeMotion(const Model &model, Log &log);
 
@@ -31,7 +31,7 @@ namespace Voussoir
     double followed_to = 0.;
   };
 
-  /** The earthquake of a run, in the one way or the other that it enters the
+  /** The earthquake of a run: motion of a rigid base, or waves that enter the
    *  model. */
   struct Earthquake
   {

@@ -1,8 +1,8 @@
 #ifndef voussoir_driver_kept_states_h
 #define voussoir_driver_kept_states_h
 
-#include <voussoir/driver/rest_state.h>
 #include <voussoir/driver/result_folder.h>
+#include <voussoir/driver/static_state.h>
 
 namespace Voussoir
 {
@@ -19,13 +19,13 @@ namespace Voussoir
     KeptStates(const Model &model, const ResultFolder &folder, Log &log);
 
     /** The state of such a run; none if there is none, or it is damaged. */
-    std::optional<RestState>
+    std::optional<StaticState>
     find() const;
 
-    /** Keeps it, unless another run is about to do that or it is impossible,
-     *  which the log says. */
+    /** Keeps the state, unless another run is about to do that; if that fails,
+     *  the log has a warning. */
     void
-    keep(const RestState &rest) const;
+    keep(const StaticState &static_state) const;
 
   private:
     const Model   &model;

@@ -22,7 +22,7 @@ namespace Voussoir
     bool overwrite = false;
     bool quiet     = false;
 
-    /** No output folder: for tests that look at the state themselves. */
+    /** No output folder: for tests that evaluate the state themselves. */
     bool no_output = false;
 
     /** For checks and estimates only: no static state, no modes, and nothing is

@@ -1,11 +1,11 @@
 #ifndef voussoir_driver_run_h
 #define voussoir_driver_run_h
 
-#include <voussoir/driver/rest_state.h>
 #include <voussoir/driver/run_checkpoints.h>
 #include <voussoir/driver/run_requests.h>
 #include <voussoir/driver/run_summary.h>
 #include <voussoir/driver/run_times.h>
+#include <voussoir/driver/static_state.h>
 #include <voussoir/driver/supervision.h>
 #include <voussoir/time/central_difference.h>
 
@@ -19,15 +19,15 @@ namespace Voussoir
   class Run
   {
   public:
-    /** @param model,rest,modes,folder,log must live as long as this */
+    /** @param model,static_state,modes,folder,log must live as long as this */
     Run(const Model        &model,
-        const RestState    &rest,
+        const StaticState  &static_state,
         const Modes        &modes,
         const ResultFolder &folder,
         Log                &log);
 
-    /** With what was made before. */
-    Run(const RestState          &rest,
+    /** With a setup that was made before. */
+    Run(const StaticState        &static_state,
         const Modes              &modes,
         const ResultFolder       &folder,
         std::unique_ptr<RunSetup> setup,
@@ -46,7 +46,8 @@ namespace Voussoir
     void
     step();
 
-    /** Writes what is left. Throws UserError if results could not be written.
+    /** Writes the remaining results. Throws UserError if results could not be
+     * written.
      */
     RunSummary
     end();
@@ -57,7 +58,7 @@ namespace Voussoir
 
     const std::unique_ptr<RunSetup> setup;
     const Model                    &model;
-    const RestState                &rest;
+    const StaticState              &static_state;
     const Modes                    &modes;
     const ResultFolder             &folder;
     Log                            &log;
@@ -89,9 +90,9 @@ namespace Voussoir
     bool
     write_checkpoint();
 
-    /** Does what is asked from outside. */
+    /** Polls the requests and fulfils them. */
     void
-    attend();
+    poll_requests();
 
     [[noreturn]] void
     abort(const std::string &reason);

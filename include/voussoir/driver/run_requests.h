@@ -7,8 +7,8 @@
 
 namespace Voussoir
 {
-  /** What the clock and those outside ask of a run: signals, and a file "stop"
-   *  in its folder. */
+  /** Requests to a run, by the clock, by signals and by a file "stop" in its
+   *  folder. */
   class RunRequests
   {
   public:
@@ -21,7 +21,7 @@ namespace Voussoir
     void
     start(const unsigned long long step);
 
-    /** Whether it is time to look after a step. */
+    /** Whether it is time to poll after a step. */
     bool
     are_due(const unsigned long long step) const;
 
@@ -31,9 +31,9 @@ namespace Voussoir
       bool report, save, stop;
     };
 
-    /** Looks; the same on all ranks, which must call this together. */
+    /** Polls; the same on all ranks, which must call this together. */
     Requests
-    look(const unsigned long long step);
+    poll(const unsigned long long step);
 
     /** A checkpoint was tried. */
     void
@@ -43,8 +43,8 @@ namespace Voussoir
     const double        checkpoint_interval; // [s]; 0: none
     const ResultFolder &folder;
     Log                &log;
-    dealii::Timer       since_checkpoint, since_look, since_stop_file;
-    unsigned long long  last_look = 0, next_look = 0; // steps
+    dealii::Timer       since_checkpoint, since_poll, since_stop_file;
+    unsigned long long  last_poll = 0, next_poll = 0; // steps
   };
 } // namespace Voussoir
 

@@ -8,7 +8,7 @@
 namespace Voussoir
 {
   /**
-   * What a run is made of besides the state at rest: its plan, damping and what
+   * What a run is made of besides the static state: its plan, damping and what
    * goes with that, as the moduli and the time step.
    */
   class RunSetup

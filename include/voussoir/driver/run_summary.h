@@ -76,7 +76,7 @@ namespace Voussoir
     std::map<std::string, FitSummary> fits; // by component
     nlohmann::json                    static_state, modes;
     std::optional<WaterSummary>       reservoir;
-    nlohmann::json materials;  // what their laws tell, by name
+    nlohmann::json materials;  // results of their laws, by name
     nlohmann::json detachment; // the widest crack, over its cell
     EnergySummary  energy;
   };
@@ -88,7 +88,7 @@ namespace Voussoir
     failed   // by a mistake in its file, or its results are not written
   };
 
-  /** What is known of a run at its end. */
+  /** Results of a run at its end. */
   struct RunSummary
   {
     RunEnd      end = RunEnd::complete;
@@ -136,7 +136,7 @@ namespace Voussoir
   void
   write_summary(const std::string &folder, RunSummary &summary, Log &log);
 
-  /** A run that was stopped, with what is known of it. */
+  /** A run that was stopped, with its results until then. */
   class StoppedRun : public RunStopped
   {
   public:
@@ -162,7 +162,7 @@ namespace Voussoir
   RunSummary
   summary_of(const Run &run);
 
-  /** What the log says of a run at its end. */
+  /** The conclusion of a run for the log. */
   std::string
   conclusion(const Run &run, const RunSummary &summary);
 } // namespace Voussoir

@@ -27,7 +27,7 @@ namespace Voussoir
   private:
     RunPlan                   plan;  // until the setup has it
     std::unique_ptr<RunSetup> early; // null if damping waits for the modes
-    RestState                 found; // of the static stages
+    StaticState               found; // of the static stages
 
   public:
     const Modes modes;
@@ -36,8 +36,8 @@ namespace Voussoir
     std::unique_ptr<RunSetup> setup; // until the run has it
 
   public:
-    const RestState rest; // with the moduli of the run
-    Run             run;
+    const StaticState static_state; // with the moduli of the run
+    Run               run;
   };
 } // namespace Voussoir
 

@@ -21,7 +21,8 @@ namespace Voussoir
   /**
    * Many runs of one parameter file with some entries varied, and the search
    * for the value of one at which something happens. Each run has a folder in
-   * that of the study; a study that is started again does only what is missing.
+   * that of the study; a study that is started again does only the missing
+   * runs.
    */
   class Study
   {
@@ -83,7 +84,7 @@ namespace Voussoir
     void
     conclude() const;
 
-    /** Does a run, or takes what is there of it. */
+    /** Does a run, or takes its results if they exist. */
     const Outcome &
     outcome_of(const StudyValues &values);
 
@@ -101,7 +102,7 @@ namespace Voussoir
     seek_limit(const StudyValues &values);
 
     void
-    say(const std::string &text) const;
+    report(const std::string &text) const;
 
     /** Brings the outcomes of all groups together on each rank. */
     void

@@ -33,7 +33,7 @@ namespace Voussoir
       double                   value;
       std::vector<std::string> names; // along the path, without stars
 
-      /** When [s] and where [m] that was, if the summary says so beside it: "at
+      /** When [s] and where [m] that was, if the summary has it beside it: "at
        *  the time [s]", or "time of the smallest safety [s]" beside "smallest
        *  safety"; likewise "at [m]" and "place of the ...". Else null. */
       nlohmann::json time, place;
@@ -81,7 +81,7 @@ namespace Voussoir
      *  run that was stopped meets what happened before. Throws UserError if a
      *  run that went to its end does not have the number. */
     std::pair<std::optional<double>, bool>
-    look(const RunSummary &summary) const;
+    evaluate(const RunSummary &summary) const;
 
     const std::string text;
 

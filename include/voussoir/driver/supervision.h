@@ -6,7 +6,7 @@
 namespace Voussoir
 {
   /** Watches whether a run goes well: warns of what its results must not be
-   *  read without, each once, and says why it must stop. */
+   *  read without, each once, and reports why it must stop. */
   class Supervision
   {
   public:
@@ -41,7 +41,7 @@ namespace Voussoir
     draw_last_good() const;
 
   private:
-    /** Warns of cracks so wide that what they cut off moves on its own. */
+    /** Warns of cracks so wide that they detach a block. */
     void
     check_cracks(const double time);
 
@@ -53,7 +53,7 @@ namespace Voussoir
     const EnergyBalance &energy;
     const double         energy_limit;
     const bool           has_memory;
-    const Schedule       looks;     // at cracks and slips
+    const Schedule       checks;    // of cracks and slips
     State                last_good; // without the memory of materials
     bool                 warned_of_energy = false, warned_of_cracks = false,
          warned_of_slips = false;

@@ -23,10 +23,10 @@ namespace Voussoir
   numerical_checks(const Run &run);
 
   /**
-   * What a run says of the dam by what its summary has, whether or not the case
-   * has criteria of its own: demand over strength, whether the dam is open from
-   * face to face or a piece of it loose, slips and their rate at the end,
-   * safety of blocks. A table of lines as at_most() makes them.
+   * Results of a run for the dam, from its summary, whether or not the case has
+   * criteria of its own: demand over strength, whether a crack goes through or
+   * a block is detached, slips and their rate at the end, safety of blocks. A
+   * table of lines as at_most() makes them.
    */
   nlohmann::json
   engineering_results(const nlohmann::json &summary);

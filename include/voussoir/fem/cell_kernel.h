@@ -238,7 +238,7 @@ namespace Voussoir
                      const PointHistory    &history) const = 0;
 
     /**
-     * Adds the force that a free expansion needs to be held back [N],
+     * Adds the force that suppresses a free expansion [N],
      *   f = sum B^T k D : alpha T I ,
      * with the temperature T [K] of each node in all three components.
      */

@@ -79,7 +79,7 @@ namespace Voussoir
     void
     add_mesh_viscosity(const double undamped_limit);
 
-    /** Frequency at which the given moduli hold [Hz]; 0: at rest. */
+    /** Frequency at which the given moduli hold [Hz]; 0: they are relaxed. */
     double
     reference_frequency() const;
 
@@ -121,7 +121,7 @@ namespace Voussoir
     double
     ratio(const double frequency, const double factor = 1.) const;
 
-    /** Storage modulus at a frequency [Hz] over the modulus at rest. */
+    /** Storage modulus at a frequency [Hz] over the relaxed modulus. */
     double
     modulus_ratio(const double frequency, const double factor = 1.) const;
 

@@ -76,12 +76,12 @@ namespace Voussoir
     relative_cost(const bool has_memory) const;
   };
 
-  /** A face set on which displacement components are held at zero: all, the one
-   *  at right angles to the face (roller, plane of symmetry), or the two in it
-   *  (plane of antisymmetry). */
+  /** A face set on which displacement components are fixed at zero: all, the
+   * one at right angles to the face (roller, plane of symmetry), or the two in
+   * it (plane of antisymmetry). */
   struct Support
   {
-    enum class Held
+    enum class Fixed
     {
       all,
       normal,
@@ -89,7 +89,7 @@ namespace Voussoir
     };
 
     std::string set;
-    Held        held;
+    Fixed       fixed;
   };
 
   /**
@@ -135,7 +135,7 @@ namespace Voussoir
     dealii::DoFHandler<3>             dof_handler;
     dealii::AffineConstraints<double> hanging_nodes;
     /** Hanging nodes and supports. The matrix-free data know the hanging nodes
-     *  only: at a held node the internal force is the reaction, and the mass
+     *  only: at a fixed node the internal force is the reaction, and the mass
      *  is zero. */
     dealii::AffineConstraints<double> constraints;
     dealii::IndexSet                  owned_dofs, relevant_dofs;
@@ -168,12 +168,12 @@ namespace Voussoir
 
     /**
      * Hanging nodes, these supports, and all nodes of the cells of the
-     * materials that are true in @p held_materials, if it is not empty. The
+     * materials that are true in @p fixed_materials, if it is not empty. The
      * supports of the case are not among them unless they are given.
      */
     dealii::AffineConstraints<double>
     make_constraints(const std::vector<Support> &supports,
-                     const std::vector<bool>    &held_materials = {}) const;
+                     const std::vector<bool>    &fixed_materials = {}) const;
 
     /** Position of each owned node [m]. */
     std::vector<dealii::Point<3>> node_positions;

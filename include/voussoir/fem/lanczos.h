@@ -14,7 +14,7 @@ namespace Voussoir
    * that does not happen, as where numbers overflow.
    *
    * @param start        with a part in every mode
-   * @param inverse_mass diagonal of M^-1, zero where held
+   * @param inverse_mass diagonal of M^-1, zero where fixed
    * @param apply        first argument = A times the second
    * @param reproducible whether the result must be the same on any number of
    *   ranks, bit for bit, as far as it is up to sums here

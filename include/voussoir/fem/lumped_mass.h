@@ -23,10 +23,10 @@ namespace Voussoir
                const std::vector<double> &density,
                const std::vector<double> &driven_density);
 
-    /** Mass of each degree of freedom [kg], zero where held. */
+    /** Mass of each degree of freedom [kg], zero where fixed. */
     Vector mass;
 
-    /** Its inverse [1/kg], zero where held. */
+    /** Its inverse [1/kg], zero where fixed. */
     Vector inverse;
 
     /** Mass that an inertial earthquake force acts on [kg]. */

@@ -21,7 +21,7 @@ namespace Voussoir
     dealii::Tensor<1, 3, Lanes> normal; // across the crack
 
     SymmetricTensor3<Lanes> strain;      // B u [1]
-    SymmetricTensor3<Lanes> seen;        // by the law, e [1]
+    SymmetricTensor3<Lanes> law_strain;  // passed to the law, e [1]
     SymmetricTensor3<Lanes> plastic;     // e_p [1]
     SymmetricTensor3<Lanes> stress;      // of the law [Pa]
     SymmetricTensor3<Lanes> filter;      // B w [1]
@@ -215,7 +215,7 @@ namespace Voussoir
     dealii::SymmetricTensor<2, 3>
     stress(const Place &place, const unsigned int q) const;
 
-    /** Strain e that the law of such a point has seen [1], less the elastic one
+    /** Strain e passed to the law of such a point [1], less the elastic one
      * of its stress, C^-1 : sigma. */
     dealii::SymmetricTensor<2, 3>
     inelastic_strain(const Place       &place,

@@ -7,7 +7,7 @@
 namespace Voussoir
 {
   /**
-   * What has come in and been lost since the start by way of nodal vectors, of
+   * Energy that nodal vectors have supplied and dissipated since the start, of
    * this rank [J]. Energy that the cells take is in the memory of their points
    * and in the energy balance.
    */

@@ -42,7 +42,7 @@ namespace Voussoir
   nlohmann::json
   read_state_header(const std::string &file, const MPI_Comm communicator);
 
-  /** What is wrong with the file, which all ranks look through together; empty
+  /** Damage of the file, which all ranks check together; empty
    *  if it is whole. */
   std::string
   damage_of_state(const std::string &file, const MPI_Comm communicator);

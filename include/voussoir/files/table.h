@@ -28,7 +28,7 @@ namespace Voussoir
                  const std::vector<std::vector<double>> &columns);
 
   /** A file of comma-separated values over time, with the time in the first
-   *  column. The first rank writes it, what the others say is ignored. Lines
+   *  column. The first rank writes it, lines of the others are ignored. Lines
    *  that cannot be written wait until they can. */
   class TimeTable
   {

@@ -159,11 +159,11 @@ namespace Voussoir
     const std::vector<std::string> &
     face_set_names() const;
 
-    /** Refuses a name that is no cell set; @p place says where it was read. */
+    /** Refuses a name that is no cell set; @p place names where it was read. */
     void
     check_cell_set(const std::string &name, const std::string &place) const;
 
-    /** Refuses a name that is no face set; @p place says where it was read. */
+    /** Refuses a name that is no face set; @p place names where it was read. */
     void
     check_face_set(const std::string &name, const std::string &place) const;
 

@@ -78,7 +78,7 @@ namespace Voussoir
     const std::vector<SideFace> &
     side_faces() const;
 
-    /** Corners of the box around the boundary [m]. */
+    /** Corners of the bounding box of the boundary [m]. */
     const std::pair<dealii::Point<3>, dealii::Point<3>> &
     extent() const;
 

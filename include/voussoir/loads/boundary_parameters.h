@@ -19,7 +19,7 @@ namespace Voussoir
     void
     check(const Grid &grid) const;
 
-    /** Whether no face is held, neither by a support nor by the springs of an
+    /** Whether no face is fixed, neither by a support nor by the springs of an
      *  absorbing boundary. */
     bool
     empty() const;

@@ -26,7 +26,7 @@ namespace Voussoir
    *
    * @param stiffness K [-]
    * @param areas     M, lumped [m2]
-   * @param held      nodes with s = 0
+   * @param in_surface nodes of the free surface, with s = 0
    * @param speed     c [m/s]
    * @param number    of modes, at most
    * @return without decay; the same numbers whoever computes them
@@ -34,7 +34,7 @@ namespace Voussoir
   ChannelModes
   find_channel_modes(const dealii::SparseMatrix<double> &stiffness,
                      const std::vector<double>          &areas,
-                     const std::vector<bool>            &held,
+                     const std::vector<bool>            &in_surface,
                      const double                        speed,
                      const unsigned int                  number);
 } // namespace Voussoir

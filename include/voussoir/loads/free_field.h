@@ -28,7 +28,7 @@ namespace Voussoir
     bool reproducible = false;
   };
 
-  /** A vertical face of the boundary: where it reaches and of what it is. */
+  /** A vertical face of the boundary: its extent and its material. */
   struct SideFace
   {
     double           lower, upper; // [m]

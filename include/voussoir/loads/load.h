@@ -61,7 +61,7 @@ namespace Voussoir
       return false;
     }
 
-    /** Adds its steady nodal forces, of held nodes too [N]. */
+    /** Adds its steady nodal forces, of fixed nodes too [N]. */
     virtual void
     add_steady_force(Vector &) const
     {}

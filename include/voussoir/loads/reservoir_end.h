@@ -38,7 +38,7 @@ namespace Voussoir
      *  unknown stands for [m3], what dashpots of the bottom this has
      *  [m3/(Pa s)], and whether it lies in the free surface. */
     std::vector<double> areas, volumes, dashpots;
-    std::vector<bool>   held;
+    std::vector<bool>   in_surface;
 
     /** Owned unknowns of the water in the section. */
     struct Node

@@ -61,7 +61,7 @@ namespace Voussoir
              const MotionPlace          given_at,
              const GroundMotionSignals &motion);
 
-  /** What a case says of its wave field. */
+  /** Entries of a wave field. */
   struct FreeFieldCase
   {
     const WaveParameters &wave;

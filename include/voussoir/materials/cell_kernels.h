@@ -189,10 +189,10 @@ namespace Voussoir
                   trial +=
                     law.stress(response.elastic_offset(batch, q, history));
                 const bool is_active = history.is_active(batch, q);
-                Lanes      level     = 0.;
+                Lanes      ratio     = 0.;
                 if (!is_active || history.lanes_are_alone())
-                  level = law.load_level(trial, widest);
-                if (is_active || any_above(level, 1.))
+                  ratio = law.yield_ratio(trial, widest);
+                if (is_active || any_above(ratio, 1.))
                   {
                     if (!knows_own)
                       {
@@ -203,7 +203,7 @@ namespace Voussoir
                       }
                     stress = response.advance(
                       stress,
-                      level,
+                      ratio,
                       cell.get_symmetric_gradient(q),
                       own.get_symmetric_gradient(q),
                       batch,

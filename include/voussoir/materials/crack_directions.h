@@ -46,7 +46,7 @@ namespace Voussoir
     const auto [tension, pull]      = pick(1.);
     const auto [compression, press] = pick(-1.);
 
-    // concrete bears about twenty times as much compression
+    // compressive strength of concrete is about twenty times the tensile one
     const Number            severity = 0.05 * press;
     const Number            tiny     = 1e-300;
     CrackDirections<Number> result{tension, tension, compression, {}};

@@ -50,8 +50,8 @@ namespace Voussoir
    * - (sigma_a + sigma_b) : de/2 on the law. Of it, with the stored energy
    *   sigma : e_e / 2 of the elastic strain e_e, it loses exactly
    *     (sigma_a : e_e,b - sigma_b : e_e,a)/2 + (sigma_a + sigma_b) : de_p/2 .
-   *   What the law itself says that it has lost goes into the balance instead,
-   *   which hence shows a law that tells less or more. Where no internal
+   *   The loss that the law itself reports goes into the balance instead, which
+   *   hence shows a law that reports less or more. Where no internal
    *   variable has changed the law is elastic and loses nothing: what is left
    *   then is the error of the rule where cracks open and close, which belongs
    *   to closing.
@@ -130,19 +130,19 @@ namespace Voussoir
         }
       const SymmetricTensor3<Lanes> filter = filtered - own_strain;
       now.strain                           = own_strain;
-      now.seen                             = own_strain + offset +
-                 (modulus(last.share) - 1.) *
-                   (own_strain - last.plastic - elastic_static) +
-                 modulus(last.share) * fourth_power(last.share) * filter;
+      now.law_strain                       = own_strain + offset +
+                       (modulus(last.share) - 1.) *
+                         (own_strain - last.plastic - elastic_static) +
+                       modulus(last.share) * fourth_power(last.share) * filter;
 
       find_bands(history.bands(batch), now);
       Lanes     *values = history.values(batch, q);
       const auto response =
-        law.respond(now.seen,
+        law.respond(now.law_strain,
                     values,
                     PointSituation<Lanes>{now.band, step.length});
       now.share   = response.damping_share;
-      now.plastic = now.seen - response.elastic_strain;
+      now.plastic = now.law_strain - response.elastic_strain;
       now.stress  = response.stress;
 
       // the law's numbers stay zero while it is elastic
@@ -186,7 +186,7 @@ namespace Voussoir
           // less what is known to be lost, however little
           const Lanes switched =
             0.5 * (last.stress * response.elastic_strain -
-                   now.stress * (last.seen - last.plastic)) -
+                   now.stress * (last.law_strain - last.plastic)) -
             lost;
           closing +=
             dealii::compare_and_apply_mask<dealii::SIMDComparison::less_than>(
@@ -194,13 +194,15 @@ namespace Voussoir
               Lanes(round_off),
               switched,
               Lanes(0.));
-          taken_by_damping = 0.5 * ((last.stress + now.stress) *
-                                    (change - (now.seen - last.seen)));
+          taken_by_damping =
+            0.5 * ((last.stress + now.stress) *
+                   (change - (now.law_strain - last.law_strain)));
         }
       if (any_above(begins, 0.))
         {
           // as an elastic point brings it
-          const SymmetricTensor3<Lanes> seen_then = elastic_static + offset;
+          const SymmetricTensor3<Lanes> law_strain_then =
+            elastic_static + offset;
           const SymmetricTensor3<Lanes> elastic_strain =
             k * (own_strain - now.plastic - elastic_static + filter);
           const Lanes imbalance = history.imbalance(batch, q);
@@ -214,8 +216,8 @@ namespace Voussoir
                           Lanes(1.)) +
             0.5 * (1. / k - 1.) *
               (law.stress(elastic_strain) * elastic_strain) +
-            law.stress(seen_then) *
-              (own_strain - now.seen - elastic_static + seen_then);
+            law.stress(law_strain_then) *
+              (own_strain - now.law_strain - elastic_static + law_strain_then);
           taken_by_damping =
             dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
               begins, Lanes(1.), brought, taken_by_damping);
@@ -252,7 +254,7 @@ namespace Voussoir
 
     /**
      * Takes a point over from the law of the static state: its stress stays,
-     * and `seen` becomes the strain at which this law has it.
+     * and `law_strain` becomes the strain at which this law has it.
      */
     void
     hand_over(const Law         &static_law,
@@ -268,20 +270,22 @@ namespace Voussoir
           const double band = point.band[lane];
           if (band == 0.)
             continue;
-          SymmetricTensor3<double>           seen;
+          SymmetricTensor3<double>           law_strain;
           std::array<double, Law::n_history> numbers, copy;
           for (unsigned int i = 0; i < 6; ++i)
-            seen.access_raw_entry(i) = point.seen.access_raw_entry(i)[lane];
+            law_strain.access_raw_entry(i) =
+              point.law_strain.access_raw_entry(i)[lane];
           for (unsigned int i = 0; i < Law::n_history; ++i)
             numbers[i] = copy[i] = values[i][lane];
           const auto response = static_law.respond(
-            seen,
+            law_strain,
             copy.data(),
             PointSituation<double>{band, std::numeric_limits<double>::max()});
-          seen =
-            law.hand_over(seen, response, numbers.data(), band, static_factor);
+          law_strain = law.hand_over(
+            law_strain, response, numbers.data(), band, static_factor);
           for (unsigned int i = 0; i < 6; ++i)
-            point.seen.access_raw_entry(i)[lane] = seen.access_raw_entry(i);
+            point.law_strain.access_raw_entry(i)[lane] =
+              law_strain.access_raw_entry(i);
           for (unsigned int i = 0; i < Law::n_history; ++i)
             values[i][lane] = numbers[i];
         }
@@ -315,23 +319,23 @@ namespace Voussoir
       ActivePoint &point = history.active_point(batch, q);
       for (unsigned int i = 0; i < 6; ++i)
         {
-          auto       &of_point = offset.access_raw_entry(i);
-          auto       &seen     = point.seen.access_raw_entry(i);
-          const Lanes own      = strain.access_raw_entry(i);
-          using Comparison     = dealii::SIMDComparison;
+          auto       &of_point   = offset.access_raw_entry(i);
+          auto       &law_strain = point.law_strain.access_raw_entry(i);
+          const Lanes own        = strain.access_raw_entry(i);
+          using Comparison       = dealii::SIMDComparison;
           of_point = dealii::compare_and_apply_mask<Comparison::equal>(
-            point.band, Lanes(0.), of_point, seen - own);
-          seen = own + of_point;
+            point.band, Lanes(0.), of_point, law_strain - own);
+          law_strain = own + of_point;
         }
       std::array<Lanes, Law::n_history> copy;
       std::copy_n(history.values(batch, q), Law::n_history, copy.begin());
       point.strain = strain;
       const auto response =
-        law.respond(point.seen,
+        law.respond(point.law_strain,
                     copy.data(),
                     PointSituation<Lanes>{band_of(point, history, batch), 0.});
       point.stress           = response.stress;
-      point.plastic          = point.seen - response.elastic_strain;
+      point.plastic          = point.law_strain - response.elastic_strain;
       point.share            = response.damping_share;
       point.impact           = 0.;
       point.filter           = SymmetricTensor3<Lanes>();
@@ -363,12 +367,12 @@ namespace Voussoir
            const PointHistory            &history,
            const PointHistory            *at_start) const
     {
-      const ActivePoint      &point     = history.active_point(batch, q);
-      SymmetricTensor3<Lanes> seen_then = static_strain;
+      const ActivePoint      &point           = history.active_point(batch, q);
+      SymmetricTensor3<Lanes> law_strain_then = static_strain;
       if (history.has_static_strains())
-        seen_then += history.strain_offset(batch, q);
-      SymmetricTensor3<Lanes> elastic_then = seen_then,
-                              stress_then  = law.stress(seen_then);
+        law_strain_then += history.strain_offset(batch, q);
+      SymmetricTensor3<Lanes> elastic_then = law_strain_then,
+                              stress_then  = law.stress(law_strain_then);
       if (at_start != nullptr && at_start->is_active(batch, q))
         {
           const ActivePoint &then = at_start->active_point(batch, q);
@@ -379,13 +383,13 @@ namespace Voussoir
                   stress_then.access_raw_entry(i)[lane] =
                     then.stress.access_raw_entry(i)[lane];
                   elastic_then.access_raw_entry(i)[lane] =
-                    then.seen.access_raw_entry(i)[lane] -
+                    then.law_strain.access_raw_entry(i)[lane] -
                     then.plastic.access_raw_entry(i)[lane];
                 }
         }
       const Lanes of_law =
-        0.5 * (point.stress * (point.seen - point.plastic)) -
-        stress_then * (0.5 * elastic_then + point.seen - seen_then);
+        0.5 * (point.stress * (point.law_strain - point.plastic)) -
+        stress_then * (0.5 * elastic_then + point.law_strain - law_strain_then);
       const Lanes damping_energy = (1. / modulus(point.share) - 1.) * of_law +
                                    filter_energy(point.filter,
                                                  point.stress - stress_then,
@@ -395,8 +399,8 @@ namespace Voussoir
         of_law + damping_energy +
         0.5 * ((point.total_stress() - stress_then) * (strain - point.strain));
       const Lanes of_damping =
-        damping_energy +
-        stress_then * (point.strain - point.seen - static_strain + seen_then);
+        damping_energy + stress_then * (point.strain - point.law_strain -
+                                        static_strain + law_strain_then);
       using dealii::compare_and_apply_mask;
       using Comparison = dealii::SIMDComparison;
       const Lanes zero = 0.;
@@ -438,9 +442,10 @@ namespace Voussoir
     static Lanes
     change_of_memory(const ActivePoint &last, const ActivePoint &now)
     {
-      const Lanes tiny    = std::numeric_limits<double>::min();
-      const auto  flow    = now.plastic - last.plastic;
-      const Lanes of_flow = (flow * flow) / (now.seen * now.seen + tiny);
+      const Lanes tiny = std::numeric_limits<double>::min();
+      const auto  flow = now.plastic - last.plastic;
+      const Lanes of_flow =
+        (flow * flow) / (now.law_strain * now.law_strain + tiny);
       return std::abs(now.share - last.share) / (last.share + tiny) +
              std::sqrt(of_flow);
     }
@@ -467,7 +472,7 @@ namespace Voussoir
         all_known = all_known && known[lane] > 0.;
       if (all_known)
         return;
-      const auto  crack = crack_directions(law.stress(point.seen));
+      const auto  crack = crack_directions(law.stress(point.law_strain));
       const Lanes zero  = 0.;
       for (unsigned int d = 0; d < 3; ++d)
         point.normal[d] = compare_and_apply_mask<Comparison::equal>(

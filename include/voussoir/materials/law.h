@@ -14,9 +14,8 @@ namespace Voussoir
   struct PointResponse;
 
   /**
-   * The contract of a stress law: all that somebody who adds one must know. A
-   * law is a struct without mesh, clock and ranks, in one file of its own with
-   * the line
+   * The contract of a stress law, for whoever adds one. A law is a struct
+   * without mesh, clock and ranks, in one file of its own with the line
    *
    *   const Registry<Material>::Add<MaterialOf<Law>>
    *     registered("name", "One sentence.");
@@ -46,8 +45,8 @@ namespace Voussoir
    *             Number                         *history,
    *             const PointSituation<Number>   &situation) const;
    *
-   * which answers the strain e [1] that the point has come to and lets its
-   * history go one step on. Where the answer is elastic, it must be `stress`.
+   * which is the response to the strain e [1] of the point, and updates its
+   * history by one step. Where the response is elastic, it must be `stress`.
    * It also has, most of them from IsotropicElasticity,
    *
    *     void set_static(const double factor);
@@ -75,15 +74,16 @@ namespace Voussoir
     /**
      * A bound that costs little: above one at the elastic limit or before. A
      * point that has been elastic so far stays it without a call of `respond`
-     * as long as this is not above one. By default every point is asked.
+     * as long as this is not above one. By default `respond` is called for
+     * every point.
      *
      * @param elastic_stress [Pa]
      * @param element_length as in PointSituation [m]
      */
     template <typename Number>
     Number
-    load_level(const SymmetricTensor3<Number> & /*elastic_stress*/,
-               const Number & /*element_length*/) const
+    yield_ratio(const SymmetricTensor3<Number> & /*elastic_stress*/,
+                const Number & /*element_length*/) const
     {
       return 2.;
     }
@@ -107,8 +107,8 @@ namespace Voussoir
               const double /*element_length*/,
               const double static_factor) const;
 
-    /** What the history tells the user, with units; words that several laws
-     *  share make one picture. */
+    /** Names of the results from the history, with units; a name that several
+     *  laws share is one field of the pictures. */
     static std::vector<std::string>
     output_names()
     {
@@ -140,7 +140,7 @@ namespace Voussoir
     double time_step;      // since the last call [s]
   };
 
-  /** What a law with memory answers; to begin with, that of a point without
+  /** Response of a law with memory; to begin with, that of a point without
    *  stress in which nothing is lost. */
   template <typename Number>
   struct PointResponse

@@ -83,22 +83,22 @@ namespace Voussoir
     virtual SymmetricTensor3<double>
     stress(const SymmetricTensor3<double> &strain) const = 0;
 
-    /** Response of a point by itself, whose memory of `n_history` numbers goes
-     *  one step on. */
+    /** Response of a point by itself; updates its memory of `n_history` numbers
+     *  by one step. */
     virtual PointResponse<double>
     respond(const SymmetricTensor3<double> &strain,
             double                         *history,
             const PointSituation<double>   &situation) const = 0;
 
-    /** See LawDefaults::load_level; 0 for a law without memory. */
+    /** See LawDefaults::yield_ratio; 0 for a law without memory. */
     virtual double
-    load_level(const SymmetricTensor3<double> &elastic_stress,
-               const double                    element_length) const = 0;
+    yield_ratio(const SymmetricTensor3<double> &elastic_stress,
+                const double                    element_length) const = 0;
 
     /** Of as many points as there are lanes. */
     virtual Lanes
-    load_level(const SymmetricTensor3<Lanes> &elastic_stress,
-               const Lanes                   &element_length) const = 0;
+    yield_ratio(const SymmetricTensor3<Lanes> &elastic_stress,
+                const Lanes                   &element_length) const = 0;
 
     /**
      * Strain whose elastic stress D : e is that of the equation of motion,
@@ -119,7 +119,7 @@ namespace Voussoir
     virtual bool
     isotropic() const = 0;
 
-    /** What the memory tells the user, with units. */
+    /** Names of the results from the memory, with units. */
     virtual std::vector<std::string>
     output_names() const = 0;
 

@@ -77,21 +77,21 @@ namespace Voussoir
     }
 
     double
-    load_level(const SymmetricTensor3<double> &elastic_stress,
-               const double                    element_length) const override
+    yield_ratio(const SymmetricTensor3<double> &elastic_stress,
+                const double                    element_length) const override
     {
       if constexpr (Law::n_history > 0)
-        return law.load_level(elastic_stress, element_length);
+        return law.yield_ratio(elastic_stress, element_length);
       else
         return 0.;
     }
 
     Lanes
-    load_level(const SymmetricTensor3<Lanes> &elastic_stress,
-               const Lanes                   &element_length) const override
+    yield_ratio(const SymmetricTensor3<Lanes> &elastic_stress,
+                const Lanes                   &element_length) const override
     {
       if constexpr (Law::n_history > 0)
-        return law.load_level(elastic_stress, element_length);
+        return law.yield_ratio(elastic_stress, element_length);
       else
         return 0.;
     }

@@ -14,7 +14,7 @@ namespace Voussoir
   class PointTest
   {
   public:
-    /** What is given of a component: strain, or stress [Pa]. */
+    /** Given value of a component: strain, or stress [Pa]. */
     struct Control
     {
       bool   is_strain = false;

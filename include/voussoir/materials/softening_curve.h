@@ -58,7 +58,7 @@ namespace Voussoir
       double displacement; // inelastic, of the band [m]
     };
 
-    /** What has become of a point at its largest equivalent strain. */
+    /** State of a point at its largest equivalent strain. */
     struct Point
     {
       double stress;       // [Pa]
@@ -130,7 +130,7 @@ namespace Voussoir
      *
      * @param equivalent_stress effective stress of a uniaxial test [Pa]
      * @param band width of the band [m]
-     * @param followed share of the growth that this step takes in
+     * @param followed share of the growth that counts in this step
      */
     DamageProgress<double>
     go_on(const double equivalent_stress,
@@ -165,7 +165,7 @@ namespace Voussoir
      */
     template <typename Number>
     Number
-    load_level(const Number &stress, const Number &band) const
+    yield_ratio(const Number &stress, const Number &band) const
     {
       return inverse_limit * stress *
              std::max(Number(1.), Number(0.5 + half_inverse_widest * band));

@@ -117,8 +117,8 @@ namespace Voussoir
       const Number zero = 0.;
       const Number growth =
         std::min(Number(equivalent - young_modulus * largest),
-                 Number(curve(sign).load_level(equivalent,
-                                               situation.element_length) -
+                 Number(curve(sign).yield_ratio(equivalent,
+                                                situation.element_length) -
                         1.));
       Number now =
         dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(

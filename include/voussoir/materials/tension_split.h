@@ -6,7 +6,7 @@
 
 namespace Voussoir
 {
-  /** What laws that tell the same call it. */
+  /** Names of results that several laws share. */
   namespace OutputName
   {
     inline const std::string tension_damage     = "tension damage",
@@ -45,10 +45,10 @@ namespace Voussoir
   };
 
   /**
-   * Splits the stress C : e into the stress n <= 0 of a material that bears no
-   * tension and the rest C : a, of which an open crack relieves the material:
-   * a >= 0 is the strain of the cracks, n : a = 0 (Del Piero 1989). The two
-   * parts are orthogonal in the energy, so that damage of either has a
+   * Splits the stress C : e into the stress n <= 0 of a material without
+   * tensile strength and the rest C : a, of which an open crack relieves the
+   * material: a >= 0 is the strain of the cracks, n : a = 0 (Del Piero 1989).
+   * The two parts are orthogonal in the energy, so that damage of either has a
    * potential and no closed path of strains makes energy. A split by the signs
    * of principal stresses alone has none unless Poisson's ratio is zero.
    *

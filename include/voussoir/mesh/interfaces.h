@@ -11,7 +11,7 @@ namespace Voussoir
 
   /**
    * The faces where a cell of @p cell_set meets one of @p other_cell_set, named
-   * from the side of @p cell_set. @p place says where the names were read.
+   * from the side of @p cell_set. @p place names where the names were read.
    * Throws UserError if there are none or the two sets share cells.
    */
   std::vector<CoarseMesh::Face>

@@ -36,20 +36,20 @@ namespace Voussoir
              const std::string &place,
              const MPI_Comm     communicator = MPI_COMM_SELF);
 
-  /** What hangs together by vertices and interfaces. */
+  /** A part of the mesh that is connected by vertices and interfaces. */
   struct MeshPart
   {
     std::string place; // "(x, y, z)" of a cell in it
-    bool        is_held;
+    bool        is_fixed;
   };
 
   /**
    * The parts of a mesh that is split along the @p interfaces; those that have
-   * faces in the @p holding_sets are held.
+   * faces in the @p fixed_sets are fixed.
    */
   std::vector<MeshPart>
   find_parts(const CoarseMesh               &mesh,
-             const std::vector<std::string> &holding_sets,
+             const std::vector<std::string> &fixed_sets,
              const std::vector<std::string> &interfaces);
 
   /**

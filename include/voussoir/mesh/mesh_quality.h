@@ -21,7 +21,7 @@ namespace Voussoir
     /** Between two edges of a face [degrees]. */
     double smallest_angle = 90.;
 
-    /** Takes in a cell by its vertices, in deal.II's order. */
+    /** Adds a cell by its vertices, in deal.II's order. */
     void
     take(const std::array<dealii::Point<3>, 8> &vertices);
 

@@ -33,9 +33,9 @@ namespace Voussoir
    *
    * In the cross-section it has the rock above a ledge and on the river's side
    * of an upright column; along the river it reaches from the dam's upstream
-   * face to where the rock before it is cut away. So it is held by
-   * three surfaces, bottom, side and back, and shows on the canyon's wall and
-   * in the cut.
+   * face to where the rock before it is cut away. It is bounded by
+   * three surfaces, base plane (bottom), lateral (side) and rear release plane
+   * (back), and daylights on the canyon's wall and in the cut.
    */
   class AbutmentWedge
   {

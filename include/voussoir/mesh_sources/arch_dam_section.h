@@ -191,7 +191,7 @@ namespace Voussoir
                 const unsigned int u,
                 const bool         inside) const;
 
-    /** A new vertex on the way from @p v to a vertex @p beyond. */
+    /** A new vertex between @p v and a vertex @p beyond. */
     unsigned int
     copy_vertex(const unsigned int v,
                 const unsigned int beyond,

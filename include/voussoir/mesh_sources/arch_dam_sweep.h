@@ -51,7 +51,8 @@ namespace Voussoir
     dealii::Point<2>
     point(const ArchDamSections::Line &line, const double layer) const;
 
-    /** Part of the way through the rock beside the dam after some layers. */
+    /** Share of the distance through the rock beside the dam after some layers.
+     */
     double
     part_of_way(const double layers) const;
 

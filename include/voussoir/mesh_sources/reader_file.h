@@ -27,7 +27,7 @@ namespace Voussoir
     std::string_view
     word(const std::string &expected);
 
-    /** What is left of the current line, without blanks at its ends. */
+    /** The rest of the current line, without blanks at its ends. */
     std::string_view
     line(const std::string &expected);
 

@@ -14,8 +14,8 @@ namespace Voussoir
    * for case and signs such as _, MaterialID, MaterialIDs, Material, BlockID,
    * Block, CellEntityIDs or Region (the first of these that is there), make
    * cell sets "material 3" of the hexahedra and face sets "boundary 3" of the
-   * quadrilaterals. Without such an array there are no sets, which @p report
-   * (may be null) says. Throws UserError. (deal.II's GridIn::read_vtk()
+   * quadrilaterals. Without such an array there are no sets, and @p report
+   * (may be null) notes it. Throws UserError. (deal.II's GridIn::read_vtk()
    * reads neither binary files nor version 5, knows one name of the array only
    * and refuses quadrilaterals inside the mesh, which name interfaces here.)
    */

@@ -14,7 +14,7 @@ namespace Voussoir
    * time of the state. With kinetic energy v^T M v / 2 of the half step and
    * strain energy u_n^T K u_(n-1) / 2 the balance of the undamped scheme is
    * exact, not only to the order of the time step. Every loss is a sum of its
-   * own, none is what is left of the others: what no account explains is the
+   * own, none is the remainder of the others: their residual is the
    * energy-balance error. After a static stage u is the displacement since
    * then: what the static loads do is left out on both sides.
    */
@@ -42,7 +42,7 @@ namespace Voussoir
       return damping + boundary + material + closing;
     }
 
-    /** What is unaccounted for. */
+    /** Energy-balance error [J]. */
     double
     error(const double initial) const
     {

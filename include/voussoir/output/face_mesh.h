@@ -123,7 +123,7 @@ namespace Voussoir
 
     using NodeNumbers = std::map<SetAndNode, unsigned int>;
 
-    /** What is gathered on the way over the faces. */
+    /** Nodes and positions gathered in a loop over the faces. */
     struct Places
     {
       NodeNumbers nodes;
@@ -168,7 +168,7 @@ namespace Voussoir
     std::vector<SetAndNode>           set_and_node;
     std::vector<unsigned int>         set_of_face;
 
-    // numbers of the nodes that do not depend on who looks at them
+    // numbers of the nodes that are the same on all ranks
     std::vector<dealii::types::global_dof_index> numbers;
     dealii::types::global_dof_index n_numbers, first_owned, n_owned;
 

@@ -14,7 +14,7 @@ namespace Voussoir
   };
 
   /** One number for each active cell to write; others than the owned ones are
-   *  not looked at. */
+   *  not sampled. */
   struct CellField
   {
     const dealii::Vector<float> *values;

@@ -48,7 +48,7 @@ namespace Voussoir
   private:
     FilteredDisplacement(const ObservedRun &run, Vector &&layout);
 
-    /** Takes in the owned entries of these. */
+    /** Adds the owned entries of this range. */
     void
     add_range(const unsigned int begin, const unsigned int end);
 

@@ -5,7 +5,7 @@
 
 namespace Voussoir
 {
-  /** What is summed over the points of a surface at a look. */
+  /** Sums over the points of a surface in a sample. */
   namespace InterfaceSum
   {
     enum Quantity
@@ -27,8 +27,8 @@ namespace Voussoir
       force_y,
       force_z,
       cohesion, // with the bond [N]
-      friction, // coefficient of what is closed, times area [m2]
-      moving_x, // velocity of the second side of what is closed against the
+      friction, // coefficient of closed points, times area [m2]
+      moving_x, // velocity of the second side of closed points against the
       moving_y, // first, in global directions, times area [m3/s]
       moving_z,
       n_quantities
@@ -49,7 +49,7 @@ namespace Voussoir
   void
   add_to_sums(const ContactPoint &point, Number *sums);
 
-  /** What interfaces.csv says of a surface at a look. */
+  /** Values of a surface in interfaces.csv. */
   constexpr unsigned int                                n_surface_columns = 9;
   constexpr std::array<const char *, n_surface_columns> surface_columns{
     {"largest opening [mm]",
@@ -78,13 +78,13 @@ namespace Voussoir
   force_on_block(const SlidingBlock::Plane &plane, const double *sums);
 
   /**
-   * Safety of a block: what its planes can bear over what drives it. Its
+   * Safety of a block: resistance of its planes over the driving force. Its
    * balance is M a = D + R with the contact forces R and all others D: weight,
    * water, uplift, thrust of the dam. If it went with its base it would lack
    * the acceleration a_s of its slip, so that limit equilibrium is that of D -
    * M (a - a_s) = -(R - M a_s) . As long as nothing slides this is -R; while it
    * slides, when friction caps R, it shows by how much the driving forces
-   * exceed what the planes bear.
+   * exceed the resistance of the planes.
    *
    * @param sums    over all ranks, of all surfaces one after the other
    * @param areas   of all surfaces [m2]
@@ -96,8 +96,8 @@ namespace Voussoir
                    const std::vector<double>  &areas,
                    const dealii::Tensor<1, 3> &inertia);
 
-  /** Mean velocity of a block's slip, over what is closed of its planes; zero
-   *  if nothing is [m/s]. */
+  /** Mean velocity of a block's slip, over the closed points of its planes;
+   * zero if nothing is [m/s]. */
   dealii::Tensor<1, 3>
   slip_velocity(const SlidingBlock        &block,
                 const double              *sums,

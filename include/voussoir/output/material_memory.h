@@ -8,14 +8,14 @@
 namespace Voussoir
 {
   /**
-   * What the memories of all materials tell (damage, plastic strain, crack
+   * Results from the memories of all materials (damage, plastic strain, crack
    * openings), by name: the mean of the integration points of each active cell;
    * zero in cells whose material has no such thing.
    */
   std::map<std::string, dealii::Vector<float>>
   memory_of_cells(const Solid &solid, const MaterialMemory &memory);
 
-  /** Whether a material tells of the opening of its cracks. */
+  /** Whether the law of a material has crack openings. */
   bool
   tells_of_cracks(const Material &material);
 
@@ -23,11 +23,11 @@ namespace Voussoir
   struct CrackOpening
   {
     double now     = 0.; // band width times the inelastic strain across it
-    double largest = 0.; // ever, as its law remembers it
+    double largest = 0.; // so far, an internal variable of the law
   };
 
   /** Visits the points of this rank's cells that have left the elastic range,
-   * of all materials that tell of cracks, with the width of their band [m]. */
+   * of all materials with crack openings, with the width of their band [m]. */
   void
   for_each_crack(const ObservedRun                                      &run,
                  const std::function<void(const Discretization::Cell &,
@@ -43,15 +43,15 @@ namespace Voussoir
     dealii::Point<3> where;        // middle of that [m]
   };
 
-  /** Of all materials that tell of cracks, now, or @p ever; all ranks must call
+  /** Of all materials with crack openings, now, or @p ever; all ranks must call
    *  this together. */
   WidestCrack
   widest_crack(const ObservedRun &run, const bool ever = false);
 
   /**
    * Of each material with memory: the share of its volume that has left the
-   * elastic range, energy lost in it [J], largest value of what it tells. All
-   * ranks must call this together.
+   * elastic range, energy lost in it [J], largest value of each of its results.
+   * All ranks must call this together.
    *
    * @param names of the materials
    */

@@ -42,7 +42,7 @@ namespace Voussoir
     /** Takes note of results that cannot be written. */
     Log &log;
 
-    /** Between two looks that miss no more than 1.2 % of an extreme of what
+    /** Between two samples that miss no more than 1.2 % of an extreme of what
      *  oscillates as fast as the mesh carries [s]: 20 in a period. */
     double
     resolving_interval() const
@@ -50,18 +50,19 @@ namespace Voussoir
       return 0.05 / carried_frequency;
     }
 
-    /** Between two looks for extremes of what is written at this interval
+    /** Between two samples for extremes of what is written at this interval
      *  [s]. */
     double
-    looking_interval(const double interval) const
+    sampling_interval(const double interval) const
     {
       return std::min(interval, resolving_interval());
     }
 
-    /** Warns of extremes that are looked for at an interval which the entry at
+    /** Warns of extremes that are sampled at an interval which the entry at
      *  @p place sets coarser than that [s]. */
     void
-    warn_of_coarse_looks(const double interval, const std::string &place) const;
+    warn_of_coarse_sampling(const double       interval,
+                            const std::string &place) const;
   };
 
   /** What they may see of its run besides the state. */
@@ -122,7 +123,7 @@ namespace Voussoir
     virtual void
     observe(const State &state) = 0;
 
-    /** Writes what is left and adds to the summary. */
+    /** Writes the remaining results and adds to the summary. */
     void
     finish(const State &state, nlohmann::json &summary);
 
@@ -142,11 +143,11 @@ namespace Voussoir
     checkpoint_values();
 
   protected:
-    /** Makes what the run needs, and keeps what is remembered. */
+    /** Initializes the observer for a run, and keeps its state. */
     virtual void
     prepare() = 0;
 
-    /** Brings what waits in memory into what is kept and into the files; called
+    /** Flushes samples that wait in memory into the state and the files; called
      *  on all ranks, before a checkpoint and at the end. */
     virtual void
     flush()
@@ -182,7 +183,7 @@ namespace Voussoir
         [&value](const nlohmann::json &saved) { saved.get_to(value); });
     }
 
-    /** The same of what has its own way to be saved and loaded. */
+    /** The same of a value with functions of its own that save and load it. */
     void
     keep(const std::string                                 &name,
          const std::function<nlohmann::json()>             &save,

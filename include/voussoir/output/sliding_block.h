@@ -36,7 +36,7 @@ namespace Voussoir
                       const Solid       &solid,
                       const Contact     &contact);
 
-  /** A plane with what it can bear now. */
+  /** A plane with its strength. */
   struct SlidingPlane
   {
     dealii::Tensor<1, 3> normal; // into the block
@@ -55,8 +55,8 @@ namespace Voussoir
    * normal force pulls, and the motion does not lead into another plane.
    *
    * @param planes those with contact; two that are parallel count one by one
-   * @param force  on the block by which they would hold it [N]
-   * @return 0 if the block lifts off, infinity if it is driven nowhere
+   * @param force  on the block in equilibrium with the driving forces [N]
+   * @return 0 if the block lifts off, infinity if there is no driving force
    */
   double
   sliding_safety(const std::vector<SlidingPlane> &planes,
@@ -66,7 +66,7 @@ namespace Voussoir
   class SafetyHistory
   {
   public:
-    /** @param interval since the look before [s]
+    /** @param interval since the sample before [s]
      *  @return whether it is the smallest so far */
     bool
     add(const double time, const double interval, const double safety);

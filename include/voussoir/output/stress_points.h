@@ -8,7 +8,7 @@ namespace Voussoir
 {
   /**
    * Stress at chosen points of this rank's cells. What a point needs of the
-   * mesh is kept as weights of nodes, so that a look touches nothing else.
+   * mesh is kept as weights of nodes, so that a sample needs nothing else.
    */
   class StressPoints
   {

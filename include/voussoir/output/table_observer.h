@@ -9,14 +9,14 @@ namespace Voussoir
 {
   /**
    * An observer with a table over time: the entry "Interval", lines at that
-   * interval, and looks between them for extremes. What looks find waits, so
-   * that the ranks exchange it once for a hundred of them.
+   * interval, and samples between them for extremes. Samples wait, so that the
+   * ranks exchange a hundred of them at once.
    */
   class TableObserver : public Observer
   {
   protected:
-    /** What a look finds. */
-    struct Look
+    /** Values of one moment. */
+    struct Sample
     {
       double              time;      // [s]
       bool                has_line;  // in the table
@@ -45,7 +45,7 @@ namespace Voussoir
     bool
     has_line(const unsigned long long step) const;
 
-    /** Whether a line or a look for extremes is due. */
+    /** Whether a line or a sample for extremes is due. */
     bool
     is_due(const unsigned long long step) const;
 
@@ -53,16 +53,16 @@ namespace Voussoir
     std::vector<Sum>
     no_sums(const std::size_t n) const;
 
-    /** Takes a look in. All ranks call this together, with lists that are
-     *  equally long at each look. */
+    /** Adds a sample. All ranks call this together, with lists that are equally
+     *  long in each sample. */
     void
-    take(Look &&look);
+    take(Sample &&sample);
 
-    /** The line of a look, in the order of the columns, once its sums and
-     *  largest values are those of all ranks; this is the place to look for
-     *  extremes. These are the sums, unless this is overridden. */
+    /** The line of a sample, in the order of the columns, once its sums and
+     *  largest values are those of all ranks; overrides find extremes here. By
+     *  default the line is the sums. */
     virtual std::vector<double>
-    line_of(const Look &look);
+    line_of(const Sample &sample);
 
     void
     flush() override;
@@ -86,9 +86,9 @@ namespace Voussoir
     TimeTable table;
 
   private:
-    const std::string filename;
-    Schedule          lines, looks;
-    std::vector<Look> waiting;
+    const std::string   filename;
+    Schedule            lines, samples;
+    std::vector<Sample> waiting;
   };
 } // namespace Voussoir
 

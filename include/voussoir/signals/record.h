@@ -27,7 +27,7 @@ namespace Voussoir
   }
 
 
-  /** What the file of an accelerogram does not tell about itself. */
+  /** Properties of an accelerogram that its file does not have. */
   struct RecordFormat
   {
     AccelerationUnit unit = AccelerationUnit::g;

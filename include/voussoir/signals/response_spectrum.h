@@ -34,7 +34,7 @@ namespace Voussoir
   /**
    * The response spectrum of a ground acceleration [m/s2] for oscillators of a
    * damping ratio below one, by the solution that is exact for an acceleration
-   * linear between its samples (Nigam and Jennings 1969). Peaks are looked for
+   * linear between its samples (Nigam and Jennings 1969). Peaks are found
    * at least forty times in a period and until one period after the end.
    */
   ResponseSpectrum

@@ -41,31 +41,30 @@ namespace Voussoir
     CentralDifference(const EquationOfMotion &equation,
                       const LeapFrog         &leap_frog);
 
-    /** The static state, at rest. */
+    /** The static state, without motion. */
     State
-    state_at_rest() const;
+    initial_state() const;
 
     /** Advances the state by one step. */
     void
     step(State &state);
 
-    /** What supports and prescribed motions brought at an owned node at the
-     *  beginning of the last step, beyond the static state: besides what
-     *  accelerates the mass of a held node itself, which is not known here
-     *  [N]. */
+    /** Force of supports and prescribed motions on an owned node at the
+     *  beginning of the last step, beyond that of the static state and without
+     *  the inertia of a fixed node itself, which is not known here [N]. */
     dealii::Tensor<1, 3>
     support_force(const State &state, const unsigned int node) const;
 
     const double time_step; // [s]
 
   private:
-    /** What a change of velocity of an owned node takes, divided by that [kg];
-     *  zero where held. */
+    /** Effective mass of an owned node: impulse over change of velocity [kg];
+     *  zero where fixed. */
     dealii::Tensor<2, 3>
     mass_at(const unsigned int node) const;
 
     void
-    tell_projections();
+    initialize_projections();
 
     /** Of the force of the step from a state; none if it is not asked for, or
      *  does not go by the motion. */
@@ -83,11 +82,11 @@ namespace Voussoir
                   const unsigned int          begin,
                   const unsigned int          end);
 
-    /** Lets the projections correct the motion, and the accounts know it. */
+    /** Lets the projections correct the motion, and updates the accounts. */
     void
     project(State &state, const dealii::Tensor<1, 3> &base);
 
-    /** Takes into the accounts what loads and damping did on a node whose
+    /** Adds to the accounts the work of loads and damping on a node whose
      *  velocity the projections changed. */
     void
     account_for_projection(const unsigned int          i,

@@ -27,18 +27,17 @@ namespace Voussoir
                 const LeapFrog   &leap_frog);
 
     /** What the update divides by at an owned node [kg], without rows and
-     *  columns where held, or null if it has no terms. */
+     *  columns where fixed, or null if it has no terms. */
     std::optional<dealii::Tensor<2, 3>>
     mass_at(const unsigned int node) const;
 
-    /** What must act on the held components of a node, besides what the cells
-     *  need, so that they stay as they are in the step that ends with the
-     *  velocity @p next [N]. */
+    /** Reaction of the fixed components of a node, besides that to the forces
+     *  of cells, in the step that ends with the velocity @p next [N]. */
     dealii::Tensor<1, 3>
     holding_force(const unsigned int          slot,
                   const dealii::Tensor<1, 3> &next) const;
 
-    /** Keeps what the correction needs of the state before the step.
+    /** Stores what the correction needs of the state before the step.
      *  @param base acceleration of a rigid base, which the added mass feels
      *   [m/s2] */
     void
@@ -49,8 +48,8 @@ namespace Voussoir
     void
     correct(State &state, const NodalForces &forces);
 
-    /** Takes into the accounts that the velocity at the end of the step was
-     *  changed by @p change after `correct`. */
+    /** Adds to the accounts the work of a @p change of the velocity at the end
+     *  of the step, after `correct`. */
     void
     account_for(const unsigned int          slot,
                 const dealii::Tensor<1, 3> &velocity,

@@ -10,7 +10,7 @@ from .page import Block, Section, Table, Verdicts, comparison, number
 
 DIRECTIONS = {"x": "across the valley", "y": "along the river", "z": "vertical"}
 SIGNS = ("The axes: +x points to the left bank, +y upstream, +z up. Tension is positive, "
-         "pressure negative; an opening is positive where a joint gapes. All units stand "
+         "pressure negative; an opening is positive where a joint opens. All units stand "
          "beside their numbers; g is 9.81 m/s².")
 
 
@@ -154,8 +154,8 @@ def damping_in_words(run):
     moduli = run.summary.get("damping", {})
     words = f"Damping: {model}, {100. * run.number('Damping/Ratio'):g} % of critical"
     if "moduli hold at [Hz]" in moduli and "moduli at rest over given" in moduli:
-        words += (f"; moduli hold at {number(moduli['moduli hold at [Hz]'])} Hz and are "
-                  f"{number(moduli['moduli at rest over given'])} times those at rest")
+        words += (f"; moduli hold at {number(moduli['moduli hold at [Hz]'])} Hz; the relaxed ones are "
+                  f"{number(moduli['moduli at rest over given'])} times these")
     return words + "."
 
 

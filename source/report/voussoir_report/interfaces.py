@@ -239,12 +239,12 @@ def planes_section(runs):
             if most > charts.NOISE:
                 pictures.append(history(run, planes_of(run), quantity, f"{quantity.capitalize()} of each plane",
                                         most))
-    text = ("Of a block: what its planes can bear along its way over what drives it, weight, water, uplift, thrust of "
-            "the dam and its inertia as if it went with its base, by limit equilibrium; below one it slides, and slip "
-            "and slip rate tell what that means. The mobilised ratio is how much of what the planes bear the contact "
-            "forces take: at most one, as friction caps them. Of a plane: what friction and cohesion can bear over its "
-            "shear force, point by point, which does not fall below one either. A gap in a curve means that nothing "
-            "drives the block, or that its way is barred.")
+    text = ("Factor of safety of a block: resistance of its planes over the driving forces (weight, water, uplift, "
+            "thrust of the dam and its inertia as if it went with its base), by limit equilibrium; below one it "
+            "slides, and slip and slip rate show how far. The mobilised ratio is the shear of the contact forces over "
+            "the resistance of the planes: at most one, as friction caps them. Sliding safety of a plane: resistance "
+            "by friction and cohesion over its shear force, point by point, which does not fall below one either. A "
+            "gap in a curve means that the block has no driving force, or that other planes prevent its slip.")
     parts = [text, planes_picture(runs), blocks_table(runs), surfaces_table(runs, planes_of),
              Pictures(pictures, 2)]
     return Section("Slip planes and blocks", [part for part in parts if part])

@@ -223,7 +223,7 @@ def motion_section(runs):
     text = (("Displacements include those of the static state. " if at_rest else "")
             + "Accelerations are without what lies above the frequencies that the mesh carries "
             f"({' or '.join(number(f) for f in sorted(carried))} Hz); those of single steps have all of "
-            "it, and show cracks and joints that clap.")
+            "it, and show the pounding of cracks and joints.")
     return Section("Motion of the crest and other points",
                    [part for part in (text, amplification_table(runs), Pictures(pictures)) if part])
 

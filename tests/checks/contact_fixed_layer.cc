@@ -9,13 +9,13 @@ namespace Voussoir
   namespace
   {
     /**
-     * A thin layer held at its top, with its foot on a plane, and shear
-     * tractions at the foot in static stages: what the plane does not bear of
-     * the shear t the layer does, t = R + k s with k = G / H. It is at rest
-     * while |R| is below c + f p, then slides until it is at that limit, or at
-     * that of the broken bond, which stays broken; p = rho g H / 2.
+     * A thin layer fixed at its top, with its foot on a plane, and shear
+     * tractions at the foot in static stages: the plane resists R of the
+     * shear t and the layer the rest, t = R + k s with k = G / H. The foot
+     * sticks while |R| is below c + f p, then slides until it is at that limit,
+     * or at that of the broken bond, which stays broken; p = rho g H / 2.
      */
-    class HeldLayer : public Check
+    class FixedLayer : public Check
     {
     public:
       void
@@ -45,12 +45,12 @@ namespace Voussoir
         std::string stages = "weight";
         for (unsigned int i = 0; i < tractions.size(); ++i)
           {
-            const double held = tractions[i] - stiffness * slip;
-            if (std::abs(held) > limit(broken))
+            const double shear = tractions[i] - stiffness * slip;
+            if (std::abs(shear) > limit(broken))
               {
                 broken = true;
-                slip =
-                  (tractions[i] - std::copysign(limit(true), held)) / stiffness;
+                slip   = (tractions[i] - std::copysign(limit(true), shear)) /
+                       stiffness;
               }
             stages += "; shear " + std::to_string(i + 1);
             const auto parameters =
@@ -80,8 +80,8 @@ namespace Voussoir
     };
 
     // Reference: closed form
-    const Registry<Check>::Add<HeldLayer>
-      registered("contact held layer",
+    const Registry<Check>::Add<FixedLayer>
+      registered("contact fixed layer",
                  "A layer that is sheared over a plane in static stages.");
   } // namespace
 } // namespace Voussoir

@@ -1,4 +1,4 @@
-#include <voussoir/constraints/contact_path.h>
+#include <voussoir/constraints/contact_homotopy.h>
 
 #include <algorithm>
 #include <array>
@@ -14,14 +14,14 @@ namespace Voussoir
 
   namespace
   {
-    // All in the units of a path, in which the largest gap without forces and
-    // the largest flexibility of a point are one.
+    // All in the units of a homotopy, in which the largest gap without forces
+    // and the largest diagonal entry of the Delassus operator are one.
 
     // A residual this large is round-off.
     constexpr double round_off = 1e-12;
 
-    // Parts of a point's own flexibility by which it is softened, and strengths
-    // that are as good as infinite; tried in turn.
+    // Shares of a point's own Delassus operator by which it is softened, and
+    // strengths that are as good as infinite; tried in turn.
     constexpr std::array<double, 4> softnesses{{1e-6, 1e-8, 1e-7, 1e-10}};
     constexpr std::array<double, 3> caps{
       {1e2, 1e4, std::numeric_limits<double>::infinity()}};
@@ -194,10 +194,8 @@ namespace Voussoir
     /** A point, and on which piece of its law it is. */
     struct Point
     {
-      Point(const ContactLimits &given,
-            const double         flexibility,
-            const double         cap)
-        : stiffness(flexibility > 0. ? 1. / flexibility : 1.)
+      Point(const ContactLimits &given, const double delassus, const double cap)
+        : stiffness(delassus > 0. ? 1. / delassus : 1.)
         , bond(std::min(given.bond, cap))
         , locked(given.locked)
         , tension_capped(given.tension > cap)
@@ -273,17 +271,17 @@ namespace Voussoir
      * The unknowns x are, of each point, the number z of its law's line and the
      * trial y = F_t - stiffness g_t of the shear; the last one is t.
      */
-    class Path
+    class Homotopy
     {
     public:
-      Path(const std::vector<double>        &given_flexibility,
-           const std::vector<Tensor<1, 3>>  &given_gaps,
-           const std::vector<ContactLimits> &limits,
-           const double                      round_off_of_gaps,
-           const double                      cap,
-           std::mt19937                     &generator)
+      Homotopy(const std::vector<double>        &given_delassus,
+               const std::vector<Tensor<1, 3>>  &given_gaps,
+               const std::vector<ContactLimits> &limits,
+               const double                      round_off_of_gaps,
+               const double                      cap,
+               std::mt19937                     &generator)
         : n(3 * limits.size())
-        , flexibility(given_flexibility)
+        , delassus(given_delassus)
         , gaps(n)
         , generator(generator)
       {
@@ -295,14 +293,14 @@ namespace Voussoir
             length =
               std::max(length,
                        i % 3 == 0 ? std::max(-gap, 1e-3 * gap) : std::abs(gap));
-            softest = std::max(softest, flexibility[i * n + i]);
+            softest = std::max(softest, delassus[i * n + i]);
           }
         if (softest == 0.)
           return;
         if (length == 0.)
           length = 1.;
         force_unit = length / softest;
-        for (double &value : flexibility)
+        for (double &value : delassus)
           value /= softest;
         for (unsigned int i = 0; i < n; ++i)
           gaps[i] = given_gaps[i / 3][i % 3] / length;
@@ -310,7 +308,7 @@ namespace Voussoir
           {
             double own = 0.;
             for (unsigned int i = 3 * k; i < 3 * k + 3; ++i)
-              own = std::max(own, flexibility[i * n + i]);
+              own = std::max(own, delassus[i * n + i]);
             ContactLimits scaled = limits[k];
             scaled.tension /= force_unit;
             scaled.bond /= force_unit;
@@ -324,7 +322,7 @@ namespace Voussoir
       find()
       {
         ContactForces best{std::vector<ContactForce>(n / 3), 1.};
-        if (points.empty()) // all nodes are held
+        if (points.empty()) // all nodes are fixed
           best.residual = 0.;
         for (unsigned int i = 0;
              i < (best.residual > unsolved_contact ? max_starts : 2) &&
@@ -335,7 +333,7 @@ namespace Voussoir
             start();
             for (unsigned int j = 0; j < max_corrections; ++j)
               {
-                // a path that gets lost is near its end, more often than not
+                // a homotopy that is lost is near its end, more often than not
                 const bool arrived = follow();
                 finish(best);
                 if (!arrived || best.residual <= round_off)
@@ -347,9 +345,9 @@ namespace Voussoir
       }
 
     private:
-      /** All points are farther open than bonds can pull them, with random
-       * pulls and gaps on the way, so that no two of them reach the end of a
-       * piece at once. */
+      /** The state at t = 0: all points are farther open than bonds can pull
+       * them. Random forces and gaps vanish along the homotopy, so that no two
+       * points reach the end of a piece at once. */
       void
       start()
       {
@@ -360,7 +358,7 @@ namespace Voussoir
         shift.assign(n, 0.);
         for (unsigned int i = 0; i < n; ++i)
           for (unsigned int j = 0; j < n; ++j)
-            shift[i] += flexibility[i * n + j] * pull[j];
+            shift[i] += delassus[i * n + j] * pull[j];
         widening.assign(n, 0.);
         bond_slope = 0.;
         x.assign(n + 1, 0.);
@@ -390,8 +388,8 @@ namespace Voussoir
           }
       }
 
-      /** Lets a path begin where the last one ended, at whose end the forces do
-       *  not soften the points. */
+      /** Lets a homotopy begin where the last one ended, at whose end the
+       *  forces do not soften the points. */
       void
       correct_softness()
       {
@@ -473,9 +471,9 @@ namespace Voussoir
         return result;
       }
 
-      /** H, on the path or of the points themselves. */
+      /** H, with the terms of the homotopy or of the points themselves. */
       Vector
-      residual(const Vector &x, const bool on_path) const
+      residual(const Vector &x, const bool of_homotopy) const
       {
         const auto now = states(x);
         Vector     result(n);
@@ -483,8 +481,8 @@ namespace Voussoir
           {
             result[i] = now[i / 3].gap[i % 3] - gaps[i];
             for (unsigned int j = 0; j < n; ++j)
-              result[i] -= flexibility[i * n + j] * now[j / 3].force[j % 3];
-            if (on_path)
+              result[i] -= delassus[i * n + j] * now[j / 3].force[j % 3];
+            if (of_homotopy)
               result[i] -=
                 (1. - x.back()) * widening[i] + shift[i] +
                 softness / points[i / 3].stiffness * now[i / 3].force[i % 3];
@@ -503,9 +501,9 @@ namespace Voussoir
               for (unsigned int j = 0; j < 4; ++j)
                 {
                   double &entry = matrix[i][j < 3 ? 3 * k + j : n];
-                  entry -= Tensor<1, 3>({flexibility[i * n + 3 * k],
-                                         flexibility[i * n + 3 * k + 1],
-                                         flexibility[i * n + 3 * k + 2]}) *
+                  entry -= Tensor<1, 3>({delassus[i * n + 3 * k],
+                                         delassus[i * n + 3 * k + 1],
+                                         delassus[i * n + 3 * k + 2]}) *
                            now[k].force_by[j];
                   if (k == i / 3)
                     entry +=
@@ -774,7 +772,7 @@ namespace Voussoir
       }
 
       const unsigned int n; // forces
-      Vector             flexibility, gaps;
+      Vector             delassus, gaps;
       std::vector<Point> points;
       double             force_unit = 1.;
 
@@ -789,7 +787,7 @@ namespace Voussoir
 
 
   ContactForces
-  solve_contact(const std::vector<double>        &flexibility,
+  solve_contact(const std::vector<double>        &delassus,
                 const std::vector<Tensor<1, 3>>  &gaps,
                 const std::vector<ContactLimits> &limits,
                 const double                      round_off)
@@ -801,7 +799,8 @@ namespace Voussoir
     for (const double cap : caps)
       if (best.residual > unsolved_contact)
         if (auto found =
-              Path(flexibility, gaps, limits, round_off, cap, generator).find();
+              Homotopy(delassus, gaps, limits, round_off, cap, generator)
+                .find();
             found.residual < best.residual)
           best = std::move(found);
     return best;

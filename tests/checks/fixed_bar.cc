@@ -26,7 +26,7 @@ namespace Voussoir
      *
      * The strength increase belongs to the earthquake and changes none of it.
      */
-    class HeldBar : public Check
+    class FixedBar : public Check
     {
     public:
       void
@@ -100,7 +100,7 @@ namespace Voussoir
         verdicts.near(
           name + "opening", 1e3 * opening, 1e3 * wanted, 2. * tolerance, "mm");
         const double area   = 0.25;
-        const auto  &stages = simulation.rest.summary.at("stages");
+        const auto  &stages = simulation.static_state.summary.at("stages");
         verdicts.near(
           name + "energy of the crack",
           stages.back().at("dissipated by materials [J]").get<double>() / area,
@@ -164,8 +164,9 @@ namespace Voussoir
               if (place < 1e-6 || place > side - 1e-6)
                 weight *= 0.5;
             weights += weight;
-            sum += weight * simulation.rest.initial.displacement.local_element(
-                              3 * node + 2);
+            sum += weight *
+                   simulation.static_state.initial.displacement.local_element(
+                     3 * node + 2);
           }
         const MPI_Comm communicator = discretization.grid.communicator();
         return Utilities::MPI::sum(sum, communicator) /
@@ -238,8 +239,8 @@ namespace Voussoir
     };
 
     // Reference: closed form
-    const Registry<Check>::Add<HeldBar>
-      registered("held bar",
+    const Registry<Check>::Add<FixedBar>
+      registered("fixed bar",
                  "A bar between two walls that cools until a layer cracks.");
   } // namespace
 } // namespace Voussoir

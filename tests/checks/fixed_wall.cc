@@ -11,7 +11,7 @@ namespace Voussoir
   namespace
   {
     /**
-     * A dam on a floor that is held and wet, as the walls of a canyon are:
+     * A dam on a floor that is fixed and wet, as the walls of a canyon are:
      * where the ground rises with unit acceleration, the pressure of the water
      * between walls that all rise is p = rho (H - z), whatever their shape. The
      * modes take part by phi^T M r + int p phi . n dA , n out of the dam, as
@@ -19,7 +19,7 @@ namespace Voussoir
      * water pushes the floor's motion into the modes, which no motion of the
      * dam alone does.
      */
-    class HeldWall : public Check
+    class FixedWall : public Check
     {
     public:
       void
@@ -82,7 +82,7 @@ namespace Voussoir
         return Utilities::MPI::sum(sum, communicator);
       }
 
-      /** int p phi . n dA; held nodes do not move in a mode. */
+      /** int p phi . n dA; fixed nodes do not move in a mode. */
       double
       factor_of_water(const Simulation &simulation,
                       const Case       &parameters,
@@ -117,7 +117,8 @@ namespace Voussoir
     };
 
     // Reference: closed form
-    const Registry<Check>::Add<HeldWall>
-      registered("held wall", "Water that a held floor pushes, in the modes.");
+    const Registry<Check>::Add<FixedWall>
+      registered("fixed wall",
+                 "Water that a fixed floor pushes, in the modes.");
   } // namespace
 } // namespace Voussoir

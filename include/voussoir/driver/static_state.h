@@ -1,16 +1,16 @@
-#ifndef voussoir_driver_rest_state_h
-#define voussoir_driver_rest_state_h
+#ifndef voussoir_driver_static_state_h
+#define voussoir_driver_static_state_h
 
 #include <voussoir/driver/model.h>
 
 namespace Voussoir
 {
-  /** The model before the earthquake, at rest under the loads of the static
-   *  stages. */
-  struct RestState
+  /** The model in equilibrium under the loads of the static stages, before the
+   *  earthquake. */
+  struct StaticState
   {
     /** Without static stages. */
-    explicit RestState(const Model &model);
+    explicit StaticState(const Model &model);
 
     InitialState initial;
 
@@ -22,13 +22,13 @@ namespace Voussoir
   };
 
   /** Applies the static stages of the case, if it has any. */
-  RestState
-  find_rest(const Model &model, Log &log);
+  StaticState
+  find_static_state(const Model &model, Log &log);
 
   /** The same state with the moduli of a run, whose internal force this is; see
    *  hand_over of the static state. */
-  RestState
-  handed_over(RestState          &&found,
+  StaticState
+  handed_over(StaticState        &&found,
               const Model         &model,
               const InternalForce &internal_force,
               Log                 &log);
@@ -37,9 +37,9 @@ namespace Voussoir
   void
   check_modes(const Model &model);
 
-  /** The natural modes that the case asks for, about the state at rest. */
+  /** The natural modes that the case asks for, about the static state. */
   Modes
-  find_modes(const Model &model, const RestState &rest, Log &log);
+  find_modes(const Model &model, const StaticState &static_state, Log &log);
 } // namespace Voussoir
 
 #endif

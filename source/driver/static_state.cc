@@ -1,8 +1,8 @@
-#include <voussoir/driver/rest_state.h>
+#include <voussoir/driver/static_state.h>
 
 namespace Voussoir
 {
-  RestState::RestState(const Model &model)
+  StaticState::StaticState(const Model &model)
   {
     initial.material_memory = model.solid.internal_force.new_memory();
     if (model.contact)
@@ -10,63 +10,67 @@ namespace Voussoir
   }
 
 
-  RestState
-  find_rest(const Model &model, Log &log)
+  StaticState
+  find_static_state(const Model &model, Log &log)
   {
-    RestState   rest(model);
+    StaticState static_state(model);
     const Case &parameters = model.parameters;
     const auto  n_before   = log.warnings().size();
     if (!parameters.static_state.stage_names().empty())
-      rest.initial =
+      static_state.initial =
         find_static_state({model.solid,
                            parameters.boundaries,
                            model.terms,
-                           rest.contact ? &*rest.contact : nullptr},
+                           static_state.contact ? &*static_state.contact :
+                                                  nullptr},
                           parameters.static_state,
                           model.load_list(),
                           log,
-                          rest.summary);
-    // they hold for all runs that begin with it
+                          static_state.summary);
+    // these warnings hold for all runs that begin with this static state
     if (const auto &all = log.warnings(); all.size() > n_before)
-      rest.summary["warnings"] =
+      static_state.summary["warnings"] =
         std::vector<std::string>(all.begin() + n_before, all.end());
-    return rest;
+    return static_state;
   }
 
 
-  RestState
-  handed_over(RestState          &&found,
+  StaticState
+  handed_over(StaticState        &&found,
               const Model         &model,
               const InternalForce &internal_force,
               Log                 &log)
   {
-    RestState    rest(std::move(found));
+    StaticState  static_state(std::move(found));
     const double dissipated = dealii::Utilities::MPI::sum(
-      hand_over(rest.initial, internal_force, model.terms), log.communicator());
-    double at_rest = 0.;
-    if (rest.summary.contains("stages"))
-      at_rest = rest.summary["stages"].back().at("dissipated by materials [J]");
-    if (dissipated > 0.01 * std::max(at_rest, 1.))
+      hand_over(static_state.initial, internal_force, model.terms),
+      log.communicator());
+    double of_stages = 0.;
+    if (static_state.summary.contains("stages"))
+      of_stages =
+        static_state.summary["stages"].back().at("dissipated by materials [J]");
+    if (dissipated > 0.01 * std::max(of_stages, 1.))
       log.warn("as the earthquake begins, materials dissipate ",
                dissipated,
                " J at once, beside ",
-               at_rest,
-               " J in the static state: their laws do not bear its stress");
-    return rest;
+               of_stages,
+               " J in the static state: its stress is beyond their laws");
+    return static_state;
   }
 
 
   namespace
   {
-    /** The interfaces with their gaps at rest, or nothing. */
+    /** The interfaces with their gaps in the static state, or nothing. */
     std::optional<Contact>
-    contact_at(const RestState &rest, const Model &model)
+    contact_at(const StaticState &static_state, const Model &model)
     {
-      if (!rest.contact || rest.initial.displacement.size() == 0)
-        return rest.contact;
-      std::optional<Contact> contact(rest.contact);
+      if (!static_state.contact ||
+          static_state.initial.displacement.size() == 0)
+        return static_state.contact;
+      std::optional<Contact> contact(static_state.contact);
       State                  state;
-      state.displacement = rest.initial.displacement;
+      state.displacement = static_state.initial.displacement;
       state.velocity     = model.solid.discretization.create_vector();
       contact->start(state);
       return contact;
@@ -97,11 +101,11 @@ namespace Voussoir
 
 
   Modes
-  find_modes(const Model &model, const RestState &rest, Log &log)
+  find_modes(const Model &model, const StaticState &static_state, Log &log)
   {
     if (model.parameters.modes.number == 0)
       return {};
-    const std::optional<Contact> contact = contact_at(rest, model);
+    const std::optional<Contact> contact = contact_at(static_state, model);
     return find_modes(modal_model(model, contact ? &*contact : nullptr),
                       model.parameters.modes,
                       log);

@@ -1,4 +1,4 @@
-#include <voussoir/driver/stored_rest.h>
+#include <voussoir/driver/stored_static_state.h>
 #include <voussoir/output/checkpoint.h>
 
 namespace Voussoir
@@ -8,9 +8,9 @@ namespace Voussoir
   namespace
   {
     StateContent
-    content_of(const Model &model, RestState &rest)
+    content_of(const Model &model, StaticState &static_state)
     {
-      InitialState   &initial = rest.initial;
+      InitialState   &initial = static_state.initial;
       const NodalKeys nodes(model.solid.discretization);
       StateContent    content;
       for (const auto &[name, vector] : std::map<std::string, Vector *>{
@@ -26,8 +26,8 @@ namespace Voussoir
           content
             .values["material " + model.parameters.materials.objects[m].first] =
             history->checkpoint_values();
-      if (rest.contact)
-        content.values["contact"] = rest.contact->checkpoint_values();
+      if (static_state.contact)
+        content.values["contact"] = static_state.contact->checkpoint_values();
       return content;
     }
 
@@ -60,32 +60,33 @@ namespace Voussoir
 
 
   void
-  store_rest(const Model          &model,
-             const RestState      &rest,
-             const std::string    &file,
-             const nlohmann::json &identity)
+  store_static_state(const Model          &model,
+                     const StaticState    &static_state,
+                     const std::string    &file,
+                     const nlohmann::json &identity)
   {
-    RestState copy(rest);
-    write_state(file,
-                {{"identity", identity},
-                 {"static state", rest.initial.displacement.size() > 0},
-                 {"grouted", rest.initial.grouted_displacement.size() > 0},
-                 {"contact force", rest.initial.contact_force.size() > 0},
-                 {"contact",
-                  rest.contact ? rest.contact->save() : nlohmann::json()},
-                 {"summary", rest.summary}},
-                content_of(model, copy),
-                model.grid.communicator());
+    StaticState copy(static_state);
+    write_state(
+      file,
+      {{"identity", identity},
+       {"static state", static_state.initial.displacement.size() > 0},
+       {"grouted", static_state.initial.grouted_displacement.size() > 0},
+       {"contact force", static_state.initial.contact_force.size() > 0},
+       {"contact",
+        static_state.contact ? static_state.contact->save() : nlohmann::json()},
+       {"summary", static_state.summary}},
+      content_of(model, copy),
+      model.grid.communicator());
   }
 
 
-  RestState
-  read_rest(const Model &model, const std::string &file)
+  StaticState
+  read_static_state(const Model &model, const std::string &file)
   {
     const MPI_Comm       communicator = model.grid.communicator();
     const nlohmann::json header       = read_state_header(file, communicator);
-    RestState            rest(model);
-    InitialState        &initial = rest.initial;
+    StaticState          static_state(model);
+    InitialState        &initial = static_state.initial;
     if (header.at("static state"))
       initial.displacement = initial.temperature = initial.reaction =
         model.solid.discretization.create_vector();
@@ -94,12 +95,12 @@ namespace Voussoir
     if (header.at("contact force"))
       initial.contact_force = model.solid.discretization.create_vector();
 
-    StateContent content = content_of(model, rest);
+    StateContent content = content_of(model, static_state);
     read_state(file, content, communicator);
-    if (rest.contact)
-      rest.contact->load(header.at("contact"));
-    rest.summary = header.at("summary");
-    return rest;
+    if (static_state.contact)
+      static_state.contact->load(header.at("contact"));
+    static_state.summary = header.at("summary");
+    return static_state;
   }
 
 

@@ -1,5 +1,5 @@
-#ifndef voussoir_constraints_contact_path_h
-#define voussoir_constraints_contact_path_h
+#ifndef voussoir_constraints_contact_homotopy_h
+#define voussoir_constraints_contact_homotopy_h
 
 #include <voussoir/constraints/contact_point.h>
 
@@ -33,9 +33,9 @@ namespace Voussoir
    * 3 n equations H(x) = 0 in as many unknowns.
    *
    * They have a solution. Let the gaps be wider by (1 - t) K, and the shear
-   * that bonds bear across an opening t times as large. For large K all points
-   * are then open at t = 0, which is the only solution. All solutions are
-   * bounded: the state before the step is admissible (nothing penetrates or
+   * that bonds resist across an opening t times as large. For large K all
+   * points are then open at t = 0, which is the only solution. All solutions
+   * are bounded: the state before the step is admissible (nothing penetrates or
    * slips), and from there the forces can do no more work than the bonds store,
    * so that the nodes are, in the norm of their masses, not much farther from
    * the predicted motion than that state is. Hence a connected set of solutions
@@ -47,19 +47,19 @@ namespace Voussoir
    * does where all is linear; it may turn back in t, since Coulomb friction may
    * have several solutions.
    *
-   * W is singular where nodes are held or there are more points than the nodes
+   * W is singular where nodes are fixed or there are more points than the nodes
    * can tell apart; forces are then bounded no more, but the motion still is.
    * The points are softened a little, and the solution then moved until nothing
    * is left of that (proximal point method). Round-off may lose the path; it is
    * then sought from other starts.
    *
-   * @param flexibility W, row by row
+   * @param delassus    W, the Delassus operator, row by row [m/N]
    * @param gaps        b; their tangential parts are the slip since the last
    *   stick
    * @param round_off   of gaps, the residual of which counts as solved
    */
   ContactForces
-  solve_contact(const std::vector<double>               &flexibility,
+  solve_contact(const std::vector<double>               &delassus,
                 const std::vector<dealii::Tensor<1, 3>> &gaps,
                 const std::vector<ContactLimits>        &limits,
                 const double                             round_off);

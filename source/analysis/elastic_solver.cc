@@ -174,7 +174,7 @@ namespace Voussoir
   ElasticSolver::tie(Contact &contact, const Vector &displacement)
   {
     Vector stiffness = diagonal();
-    clear_held(stiffness);
+    clear_constrained(stiffness);
     static_contact.emplace(contact.points_of_interfaces(), stiffness);
     static_contact->tie(displacement);
 
@@ -227,7 +227,7 @@ namespace Voussoir
     multigrid.emplace(
       [this](Vector &force, const Vector &displacement) {
         multiply(force, displacement);
-        clear_held(force);
+        clear_constrained(force);
       },
       matrix,
       diagonal(),
@@ -249,7 +249,7 @@ namespace Voussoir
 
 
   void
-  ElasticSolver::clear_held(Vector &vector) const
+  ElasticSolver::clear_constrained(Vector &vector) const
   {
     for (const unsigned int i : constrained)
       vector.local_element(i) = 0.;
@@ -290,7 +290,7 @@ namespace Voussoir
   ElasticSolver::precondition(Vector &displacement, const Vector &force) const
   {
     multigrid->vmult(displacement, force);
-    clear_held(displacement);
+    clear_constrained(displacement);
   }
 
 
@@ -306,7 +306,7 @@ namespace Voussoir
       vmult(Vector &dst, const Vector &src) const
       {
         solver.apply(dst, src);
-        solver.clear_held(dst);
+        solver.clear_constrained(dst);
       }
     };
     struct Preconditioner
@@ -319,8 +319,8 @@ namespace Voussoir
       }
     };
     Vector right_side = force;
-    clear_held(right_side);
-    clear_held(displacement);
+    clear_constrained(right_side);
+    clear_constrained(displacement);
     const double size = right_side.l2_norm();
     if (size == 0.)
       {

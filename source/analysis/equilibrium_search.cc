@@ -11,7 +11,7 @@ namespace Voussoir
     constexpr unsigned int max_updates = 300;
 
     // of points that all hold together in the tangent: with nothing of it parts
-    // that lie loose move away
+    // without other support move away
     constexpr double tied_share = 1e-3;
 
     constexpr double report_interval = 5.; // [s]
@@ -39,7 +39,7 @@ namespace Voussoir
     , change(force)
     , taken(force)
   {
-    solver.clear_held(residual);
+    solver.clear_constrained(residual);
     size = residual.l2_norm();
   }
 
@@ -129,7 +129,7 @@ namespace Voussoir
   void
   EquilibriumSearch::step()
   {
-    constexpr unsigned int max_looks = 12;
+    constexpr unsigned int max_evaluations = 12;
     constexpr double       max_way = 16., accuracy = 0.1; // of the slope
 
     // Smaller ones cost more than they save, the more so if the elastic
@@ -149,8 +149,8 @@ namespace Voussoir
     taken              = residual;
     const double slope = change * residual;
     double       below = 0., above = 0., slope_below = slope, slope_above = 0.;
-    double       way  = 0.;
-    const auto   look = [&](const double next) {
+    double       way      = 0.;
+    const auto   evaluate = [&](const double next) {
       displacement->add(next - way, change);
       way = next;
       find_residual();
@@ -159,20 +159,20 @@ namespace Voussoir
       (now > 0. ? slope_below : slope_above) = now;
       return now;
     };
-    double now = look(1.);
-    for (unsigned int looks = 1;
-         looks < max_looks && (above > 0. || way < max_way) &&
+    double now = evaluate(1.);
+    for (unsigned int evaluations = 1;
+         evaluations < max_evaluations && (above > 0. || way < max_way) &&
          std::abs(now) > accuracy * slope;
-         ++looks)
+         ++evaluations)
       if (above == 0.)
-        now = look(
+        now = evaluate(
           std::min(max_way,
                    way * (now < 0.75 * slope ? slope / (slope - now) : 4.)));
-      else if (looks % 3 == 0)
-        now = look(0.5 * (below + above));
+      else if (evaluations % 3 == 0)
+        now = evaluate(0.5 * (below + above));
       else
-        now = look(below +
-                   (above - below) * slope_below / (slope_below - slope_above));
+        now = evaluate(below + (above - below) * slope_below /
+                                 (slope_below - slope_above));
     if (memory == nullptr)
       return; // the tangent of contact is known
     taken -= residual;
@@ -196,7 +196,7 @@ namespace Voussoir
     residual.sadd(-1., 1., force);
     if (contact != nullptr)
       contact->respond(residual, *displacement);
-    solver.clear_held(residual);
+    solver.clear_constrained(residual);
     effort.residual = size > 0. ? residual.l2_norm() / size : 0.;
   }
 

@@ -224,7 +224,7 @@ namespace Voussoir
     const unsigned int n = structure.locally_owned_size();
     std::copy_n(motion, n, from.begin());
     solver->apply(to, from);
-    solver->clear_held(to);
+    solver->clear_constrained(to);
     std::copy_n(to.begin(), n, force);
     for (std::size_t i = n; i < size(); ++i)
       force[i] = water->stiffness * motion[i];
@@ -255,7 +255,7 @@ namespace Voussoir
         }
     if (ties)
       ties->collect(to);
-    solver->clear_held(to);
+    solver->clear_constrained(to);
     std::copy_n(to.begin(), n, momentum);
   }
 
@@ -328,7 +328,7 @@ namespace Voussoir
       to, momentum.data() + structure.locally_owned_size(), direction);
     if (ties)
       ties->collect(to);
-    solver->clear_held(to);
+    solver->clear_constrained(to);
     for (unsigned int i = 0; i < structure.locally_owned_size(); ++i)
       momentum[i] += to.local_element(i);
     return momentum;

@@ -128,9 +128,9 @@ namespace Voussoir
       unsigned int
       find_elastic_equilibrium(const Vector &force);
 
-      /** Equilibrium with contact or with memory: by multigrid; damped motion
-       *  finds it where multigrid does not, and looks whether parts between
-       *  interfaces are at rest.
+      /** Equilibrium with contact or with memory: by multigrid; dynamic
+       *  relaxation finds it where multigrid does not, and checks that parts
+       *  between interfaces are at rest.
        *  @param memory of the materials; null: they are elastic */
       unsigned int
       search_equilibrium(const Vector &force, MaterialMemory *memory);
@@ -150,7 +150,7 @@ namespace Voussoir
 
       /** By dynamic relaxation. */
       void
-      come_to_rest(const Vector &force, MaterialMemory &memory);
+      relax(const Vector &force, MaterialMemory &memory);
 
       /** Whether materials have lost more than this [J] on any rank: whether
        *  they have cracked or yielded since. */
@@ -258,7 +258,7 @@ namespace Voussoir
       for (const std::string &name : stage)
         add_load(name, *load_of.at(name), report);
       if (model.contact != nullptr)
-        model.contact->let_water_in(stage);
+        model.contact->apply_uplift(stage);
       const LoadState    end        = load_state();
       const unsigned int iterations = follow_path(start, end);
 
@@ -559,7 +559,7 @@ namespace Voussoir
 
 
     void
-    StaticStages::come_to_rest(const Vector &force, MaterialMemory &memory)
+    StaticStages::relax(const Vector &force, MaterialMemory &memory)
     {
       const Relaxation::Result motion = relaxation->find_equilibrium(
         state.displacement, memory, force, parameters.rest, log);
@@ -568,7 +568,7 @@ namespace Voussoir
         throw LostEquilibrium(
           "The static stage \"" + join(stage, ", ") +
             "\" comes to no equilibrium: after " +
-            std::to_string(motion.steps) + " steps of damped motion " +
+            std::to_string(motion.steps) + " steps of dynamic relaxation " +
             description_of_motion(model.solid.discretization,
                                   model.contact,
                                   before,
@@ -579,7 +579,9 @@ namespace Voussoir
             "\"Stages\" in section \"Static state\".",
           before,
           state.displacement);
-      log.line("    at rest after ", motion.steps, " steps of damped motion");
+      log.line("    at rest after ",
+               motion.steps,
+               " steps of dynamic relaxation");
     }
 
 
@@ -616,13 +618,13 @@ namespace Voussoir
       is_found = effort.found || memory == nullptr || !may_be_halved;
       if (!effort.found)
         text << "; not found, so "
-             << (is_found ? "by damped motion" : "in two load increments");
+             << (is_found ? "by dynamic relaxation" : "in two load increments");
       log.line(text.str());
       if (!is_found)
         return effort.iterations;
       MaterialMemory none;
       if ((model.contact != nullptr && is_last) || !effort.found)
-        come_to_rest(force, memory == nullptr ? none : *memory);
+        relax(force, memory == nullptr ? none : *memory);
       by_multigrid = by_multigrid && effort.found;
       return effort.iterations;
     }
@@ -655,12 +657,12 @@ namespace Voussoir
       report["dissipated by materials [J]"] =
         Utilities::MPI::sum<double>(state.material_memory.losses().material,
                                     model.solid.grid().communicator());
-      report["found by multigrid"]       = by_multigrid;
-      report["steps of damped motion"]   = damped_steps;
-      report["sum of loads so far [N]"]  = to_json(resultant(loads));
-      report["sum of reactions [N]"]     = to_json(reactions);
-      report["largest displacement [m]"] = largest;
-      report["names"]                    = stage;
+      report["found by multigrid"]          = by_multigrid;
+      report["steps of dynamic relaxation"] = damped_steps;
+      report["sum of loads so far [N]"]     = to_json(resultant(loads));
+      report["sum of reactions [N]"]        = to_json(reactions);
+      report["largest displacement [m]"]    = largest;
+      report["names"]                       = stage;
       results.describe(state.displacement, model.contact, report);
     }
 

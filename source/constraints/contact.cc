@@ -37,9 +37,9 @@ namespace Voussoir
 
 
   void
-  Contact::let_water_in(const std::vector<std::string> &loads)
+  Contact::apply_uplift(const std::vector<std::string> &loads)
   {
-    interfaces.let_water_in(loads);
+    interfaces.apply_uplift(loads);
   }
 
 

@@ -232,7 +232,7 @@ namespace Voussoir
 
 
   void
-  InterfacePoints::let_water_in(const std::vector<std::string> &loads)
+  InterfacePoints::apply_uplift(const std::vector<std::string> &loads)
   {
     for (unsigned int i = 0; i < interfaces.list.size(); ++i)
       if (std::find(loads.begin(),

@@ -253,7 +253,7 @@ namespace Voussoir
           model.solid.grid().check_face_set(set, place);
       }
 
-      /** Widest openings all the way from face to face [mm]. */
+      /** Widest openings from face to face [mm]. */
       struct Ways
       {
         Way now;
@@ -352,8 +352,8 @@ namespace Voussoir
       // of each owned cell, whether its corners lie on the two sets of faces
       std::vector<std::array<std::bitset<8>, 2>> touching;
 
-      // largest opening all the way at one moment [mm], when [s], and where it
-      // was narrowest [m]
+      // largest opening from face to face at one moment [mm], when [s], and
+      // where it was narrowest [m]
       std::array<double, 5> most{};
     };
 

@@ -63,7 +63,7 @@ namespace Voussoir
 
     /** Sets constrained entries to zero. */
     void
-    clear_held(Vector &vector) const;
+    clear_constrained(Vector &vector) const;
 
     /** force = K displacement, reactions of supports included. */
     void

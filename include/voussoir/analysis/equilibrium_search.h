@@ -16,9 +16,9 @@ namespace Voussoir
    * Interfaces: semi-smooth Newton steps under multipliers of contact that are
    * updated in turn (Alart and Curnier 1991). The shear limit of points that
    * slide follows their pressure, but not in the tangent, which so stays
-   * symmetric. Materials: secant steps from the elastic stiffness; every look
-   * at them starts from their memory before the search, so that nothing
-   * cracks for good on the way.
+   * symmetric. Materials: secant steps from the elastic stiffness; every
+   * evaluation of them starts from their memory before the search, so that
+   * damage found on the way is not kept.
    */
   class EquilibriumSearch
   {

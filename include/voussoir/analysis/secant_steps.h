@@ -20,15 +20,15 @@ namespace Voussoir
      *  positive definite. */
     using Inverse = std::function<void(Vector &, const Vector &)>;
 
-    /** The step that the residual, forces less what is borne, asks for. */
+    /** The step that the residual, external less internal forces, asks for. */
     void
     find(Vector &step, const Vector &residual, const Inverse &inverse) const;
 
-    /** Takes in what a step has taken from the residual. */
+    /** Keeps by how much a step has changed the residual. */
     void
     add(const Vector &step, const Vector &taken);
 
-    /** Whether no step has been taken in. */
+    /** Whether no step is kept. */
     bool
     empty() const;
 

@@ -32,7 +32,7 @@ namespace Voussoir
     /** Applies the uplift of the interfaces whose water comes with one of these
      *  loads. */
     void
-    let_water_in(const std::vector<std::string> &loads);
+    apply_uplift(const std::vector<std::string> &loads);
 
     /** Joins the interfaces that are grouted after one of these loads; returns
      *  whether there are any. Called on all ranks.

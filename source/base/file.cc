@@ -88,8 +88,9 @@ namespace Voussoir
     };
 
 
-    /** Writes the text to this place, which becomes the end of the file; if
-     *  that fails the file ends at the place. */
+    /** Writes the text to this place and ends the file behind it; if that fails
+     *  the file ends at the place. Killed between, it has not lost what a
+     *  checkpoint counts on. */
     std::string
     put(const std::string   &name,
         const std::string   &text,
@@ -98,7 +99,8 @@ namespace Voussoir
       OpenFile file(name, place == 0 ? O_CREAT : 0);
       if (!file.is_open())
         return reason_of(errno);
-      if (file.cut(place) && file.write(text, place) && file.close())
+      if (file.write(text, place) && file.cut(place + text.size()) &&
+          file.close())
         return "";
       const std::string reason = reason_of(errno);
       if (file.is_open())

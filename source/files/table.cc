@@ -106,8 +106,11 @@ namespace Voussoir
         std::vector<std::string> titles = columns;
         titles.insert(titles.begin(), "time [s]");
         file->append(csv_heading(titles) + '\n');
+        flush();
       }
-    flush();
+    // A table that goes on is left as it is until its first line is written:
+    // that at the start time, which the checkpoint counts, too, is written
+    // anew.
   }
 
 

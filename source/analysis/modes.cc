@@ -109,7 +109,6 @@ namespace Voussoir
         }
       return text.str();
     }
-
   } // namespace
 
 

@@ -4,7 +4,6 @@
 #include <voussoir/analysis/stage_results.h>
 #include <voussoir/analysis/static_state.h>
 #include <voussoir/base/json_entries.h>
-#include <voussoir/base/mpi.h>
 #include <voussoir/base/text.h>
 #include <voussoir/fem/nodal_values.h>
 
@@ -28,7 +27,7 @@ namespace Voussoir
     }
 
 
-    // What a load does before the earthquake, on held nodes too.
+    // What a load does before the earthquake, on fixed nodes too.
     Vector
     force_of(const Load           &load,
              const Discretization &discretization,
@@ -151,6 +150,10 @@ namespace Voussoir
       /** By dynamic relaxation. */
       void
       relax(const Vector &force, MaterialMemory &memory);
+
+      /** Energy that materials have dissipated so far, on all ranks [J]. */
+      double
+      dissipation(const MaterialMemory &memory) const;
 
       /** Whether materials have lost more than this [J] on any rank: whether
        *  they have cracked or yielded since. */
@@ -482,15 +485,11 @@ namespace Voussoir
                                const LoadState      &begin,
                                const LoadState      &end)
     {
-      constexpr double       tolerance = 0.01;
-      constexpr unsigned int max_steps = 64;
-      const auto             material  = [&](const MaterialMemory &of) {
-        return Utilities::MPI::sum<double>(of.losses().material,
-                                           model.solid.grid().communicator());
-      };
-      const double lost_before = material(memory);
-      double       lost        = material(state.material_memory) - lost_before;
-      Vector       force(before), displacement(before);
+      constexpr double       tolerance   = 0.01;
+      constexpr unsigned int max_steps   = 64;
+      const double           lost_before = dissipation(memory);
+      double lost = dissipation(state.material_memory) - lost_before;
+      Vector force(before), displacement(before);
       for (unsigned int n = 2; n <= max_steps; n *= 2)
         {
           MaterialMemory in_steps = memory;
@@ -504,7 +503,7 @@ namespace Voussoir
               internal_force.respond(force, displacement, in_steps);
             }
           state.material_memory.set_losses(in_steps.losses());
-          const double now  = material(in_steps) - lost_before,
+          const double now  = dissipation(in_steps) - lost_before,
                        more = std::abs(now - lost);
           lost              = now;
           if (more <= tolerance * lost)
@@ -630,6 +629,14 @@ namespace Voussoir
     }
 
 
+    double
+    StaticStages::dissipation(const MaterialMemory &memory) const
+    {
+      return Utilities::MPI::sum<double>(memory.losses().material,
+                                         model.solid.grid().communicator());
+    }
+
+
     bool
     StaticStages::dissipated(const MaterialMemory &memory,
                              const double          before) const
@@ -655,8 +662,7 @@ namespace Voussoir
       report["iterations"]      = iterations;
       report["load increments"] = increments;
       report["dissipated by materials [J]"] =
-        Utilities::MPI::sum<double>(state.material_memory.losses().material,
-                                    model.solid.grid().communicator());
+        dissipation(state.material_memory);
       report["found by multigrid"]          = by_multigrid;
       report["steps of dynamic relaxation"] = damped_steps;
       report["sum of loads so far [N]"]     = to_json(resultant(loads));

@@ -4,6 +4,8 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <optional>
+#include <string>
 
 #if defined(__SSE__)
 #  include <xmmintrin.h>
@@ -14,10 +16,10 @@ namespace Voussoir
   namespace
   {
     /**
-     * Without mpirun, Open MPI 4 starts a daemon for each program, in a folder
-     * that all programs of a user share and that each removes at its end: one
-     * that starts at that moment fails (orte/util/session_dir.c). A folder of
-     * its own, and no daemon, which takes half of the start. Empty where
+     * Without mpirun, Open MPI keeps its files in a folder that all programs of
+     * a user share and that each removes at its end: one that starts at that
+     * moment fails (Open MPI 4: orte/util/session_dir.c; 5:
+     * ompi/runtime/ompi_rte.c). So each gets a folder of its own. Empty where
      * mpirun or Slurm starts the ranks, where the user has named a folder, and
      * where none can be made.
      */
@@ -34,10 +36,35 @@ namespace Voussoir
         std::filesystem::temp_directory_path(error) / "voussoir-XXXXXX";
       if (error || mkdtemp(name.data()) == nullptr)
         return {};
-      setenv("OMPI_MCA_orte_tmpdir_base", name.c_str(), 1);
-      setenv("OMPI_MCA_ess_singleton_isolated", "1", 1);
       return name;
     }
+
+    /** Sets a variable of the environment, and sets it back at its end. */
+    class TemporarySetting
+    {
+    public:
+      TemporarySetting(const char *name, const std::string &value)
+        : name(name)
+      {
+        if (const char *const before = std::getenv(name))
+          value_before = before;
+        setenv(name, value.c_str(), 1);
+      }
+
+      ~TemporarySetting()
+      {
+        if (value_before)
+          setenv(name, value_before->c_str(), 1);
+        else
+          unsetenv(name);
+      }
+
+      TemporarySetting(const TemporarySetting &) = delete;
+
+    private:
+      const char                *name;
+      std::optional<std::string> value_before;
+    };
   } // namespace
 
   ParallelSession::ParallelSession(int &, char **&argv)
@@ -59,6 +86,13 @@ namespace Voussoir
     // others wait for it.
     setenv("OMPI_MCA_sharedfp", "individual", 0);
     session_folder = own_session_folder();
+    std::optional<TemporarySetting> folder, without_daemon;
+    if (!session_folder.empty())
+      {
+        folder.emplace("TMPDIR", session_folder.string());
+        // of Open MPI 4, which takes half of the start
+        without_daemon.emplace("OMPI_MCA_ess_singleton_isolated", "1");
+      }
     // Libraries get the program's name alone: PETSc would take arguments for
     // its options and complain that it does not use them.
     int just_the_name = 1;
@@ -66,11 +100,6 @@ namespace Voussoir
       std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(just_the_name,
                                                                  argv,
                                                                  1);
-    // runs that this one starts have their own
-    if (!session_folder.empty())
-      for (const char *ours :
-           {"OMPI_MCA_orte_tmpdir_base", "OMPI_MCA_ess_singleton_isolated"})
-        unsetenv(ours);
   }
 
   ParallelSession::~ParallelSession()

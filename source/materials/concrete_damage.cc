@@ -54,8 +54,8 @@ namespace Voussoir
      */
     struct ConcreteDamage : SplitDamage
     {
-      // after the numbers of both curves e_p
-      static constexpr unsigned int n_history = n_curve_numbers + 6;
+      // after the numbers of a SplitDamage e_p
+      static constexpr unsigned int n_history = n_split_numbers + 6;
 
       double compressive_strength  = 25e6;
       double crushing_energy       = 30e3;
@@ -307,26 +307,27 @@ namespace Voussoir
               Number                         *history,
               const PointSituation<Number>   &situation) const
       {
-        Number                        *flowed  = history + n_curve_numbers;
+        Number                        *flowed  = history + n_split_numbers;
         const SymmetricTensor3<Number> plastic = tensor_of(flowed);
-        const auto split = split_tension(stress(strain - plastic), *this);
+        const SymmetricTensor3<Number> elastic = strain - plastic;
+        const auto           split = split_tension(stress(elastic), *this);
         const OfBoth<Number> equivalent{
           {split.principal.values[0],
            equivalent_compression(split.compression)}};
         const OfBoth<double> irreversible{
           {irreversible_tension, irreversible_crushing}};
-        OfBoth<DamageProgress<Number>>   damage;
-        OfBoth<SymmetricTensor3<Number>> effective = split.parts();
+        OfBoth<DamageProgress<Number>> damage;
         for (const unsigned int sign : {0, 1})
-          {
-            damage[sign]    = grow(sign,
-                                equivalent[sign],
-                                history + n_of_curve * sign,
-                                situation,
-                                followed(situation),
-                                irreversible[sign] > 0.);
-            effective[sign] = damage[sign].effective * effective[sign];
-          }
+          damage[sign] = grow(sign,
+                              equivalent[sign],
+                              history + n_of_curve * sign,
+                              situation,
+                              followed(situation),
+                              irreversible[sign] > 0.);
+        OfBoth<SymmetricTensor3<Number>> effective =
+          parts(elastic, split, history);
+        for (const unsigned int sign : {0, 1})
+          effective[sign] = damage[sign].effective * effective[sign];
         PointResponse<Number> result =
           response(effective,
                    damage,

@@ -22,7 +22,7 @@ namespace Voussoir
      */
     struct RockDamage : SplitDamage, CohesionAndFriction
     {
-      static constexpr unsigned int n_history = n_curve_numbers;
+      static constexpr unsigned int n_history = n_split_numbers;
 
       double shear_energy      = 10e3;
       double residual_cohesion = 0.1;
@@ -105,7 +105,7 @@ namespace Voussoir
                               equivalent[sign],
                               history + n_of_curve * sign,
                               situation);
-        return response(split.parts(), damage, strain);
+        return response(parts(strain, split, history), damage, strain);
       }
 
       static std::vector<std::string>

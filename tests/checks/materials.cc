@@ -94,21 +94,40 @@ namespace Voussoir
           const MPI_Comm       communicator) override
       {
         for (const std::string &name : Registry<Material>::names())
-          {
-            const auto parameters =
-              make_case(file.with({"Materials/stuff/Class=" + name}));
-            const Material &material = *parameters->material_list().at(0);
-            evaluate_point(name, material, verdicts);
-            evaluate_cells(name, *parameters, verdicts, communicator);
-            evaluate_patch(name, *parameters, 1e-5, verdicts, communicator);
-            // cracks depend on the size of the cells
-            const auto regular = make_case(file.with(
-              {"Materials/stuff/Class=" + name, "Mesh/box/Distortion=0"}));
-            evaluate_patch(name, *regular, 1e-3, verdicts, communicator);
-          }
+          evaluate(name, {}, file, verdicts, communicator);
+        for (const char *name : {"concrete damage", "rock damage"})
+          evaluate(name,
+                   {"Materials/stuff/Crack direction=fixed"},
+                   file,
+                   verdicts,
+                   communicator);
       }
 
     private:
+      void
+      evaluate(const std::string              &name,
+               const std::vector<std::string> &entries,
+               const ParameterFile            &file,
+               Verdicts                       &verdicts,
+               const MPI_Comm                  communicator) const
+      {
+        std::vector<std::string> all{"Materials/stuff/Class=" + name};
+        all.insert(all.end(), entries.begin(), entries.end());
+        std::string title = name;
+        for (const std::string &entry : entries)
+          title += ", " + entry.substr(entry.rfind('/') + 1);
+        const auto      parameters = make_case(file.with(all));
+        const Material &material   = *parameters->material_list().at(0);
+        evaluate_point(title, material, verdicts);
+        evaluate_cells(title, *parameters, verdicts, communicator);
+        evaluate_patch(title, *parameters, 1e-5, verdicts, communicator);
+        // cracks depend on the size of the cells
+        all.push_back("Mesh/box/Distortion=0");
+        evaluate_patch(
+          title, *make_case(file.with(all)), 1e-3, verdicts, communicator);
+      }
+
+
       void
       evaluate_point(const std::string &name,
                      const Material    &material,

@@ -1,11 +1,27 @@
 #ifndef voussoir_materials_split_damage_h
 #define voussoir_materials_split_damage_h
 
+#include <voussoir/base/option.h>
 #include <voussoir/materials/softening_curve.h>
 #include <voussoir/materials/tension_split.h>
 
 namespace Voussoir
 {
+  /** What a crack does as the strain turns after it has begun. */
+  enum class CrackDirection
+  {
+    rotating,
+    fixed
+  };
+
+  inline OptionNames<CrackDirection>
+  option_names(const CrackDirection)
+  {
+    return {{CrackDirection::rotating, "rotating"},
+            {CrackDirection::fixed, "fixed"}};
+  }
+
+
   /**
    * What laws with two scalar damages of the effective stress s = C : e_e have
    * in common, which is split into tension and compression (see split_tension):
@@ -14,11 +30,18 @@ namespace Voussoir
    * so that a step needs no iteration, and a crack that closes has its
    * stiffness back.
    *
-   * The history begins with the memories of the two curves.
+   * Cracks turn with the principal strains, or keep the plane in which they
+   * began: then the compressed part is that of split_tension or, where it has
+   * less energy, of stress_beside_crack. The lesser of two potentials is one.
+   *
+   * The history begins with the memories of the two curves and the normal of
+   * the crack.
    */
   struct SplitDamage : IsotropicElasticity, TensileCrack
   {
     SofteningCurve tension, compression;
+    CrackDirection crack_direction = CrackDirection::rotating;
+    double         crack_friction  = 1.;
 
     /** @param sign 0: tension, 1: compression */
     const SofteningCurve &
@@ -32,6 +55,19 @@ namespace Voussoir
     {
       IsotropicElasticity::declare_parameters(prm);
       TensileCrack::declare_parameters(prm);
+      add_option(
+        prm,
+        "Crack direction",
+        crack_direction,
+        "Whether cracks turn with the principal strains, or are fixed "
+        "in the plane in which they began. A fixed crack that runs at "
+        "an angle to the rows of cells does not lock; across it, shear "
+        "and opening go by \"Crack friction\".");
+      prm.add_parameter("Crack friction",
+                        crack_friction,
+                        "Of a fixed crack: shear over pressure where its rough "
+                        "faces slide on each other, and opening over slip.",
+                        dealii::Patterns::Double(0.2, 2.));
     }
 
     void
@@ -84,7 +120,8 @@ namespace Voussoir
 
     /** Numbers of one curve and of both. */
     static constexpr unsigned int n_of_curve      = CurveMemory::n_numbers,
-                                  n_curve_numbers = 2 * n_of_curve;
+                                  normal_at       = 2 * n_of_curve,
+                                  n_split_numbers = normal_at + 3;
 
     static double
     damage_of(const double *history, const unsigned int sign)
@@ -153,6 +190,58 @@ namespace Voussoir
     /** What a step does in tension and in compression, or to their parts. */
     template <typename T>
     using OfBoth = std::array<T, 2>;
+
+    /**
+     * The effective stresses s+ and s- after the damage in tension has gone on.
+     *
+     * @param strain elastic [1]
+     * @param split  of its stress
+     */
+    template <typename Number>
+    OfBoth<SymmetricTensor3<Number>>
+    parts(const SymmetricTensor3<Number> &strain,
+          const TensionSplit<Number>     &split,
+          Number                         *history) const
+    {
+      OfBoth<SymmetricTensor3<Number>> parts = split.parts();
+      if (crack_direction == CrackDirection::rotating ||
+          !any_above(history[0], 0.))
+        return parts;
+      using dealii::compare_and_apply_mask;
+      using Comparison  = dealii::SIMDComparison;
+      const Number zero = 0.;
+
+      dealii::Tensor<1, 3, Number> normal;
+      for (unsigned int d = 0; d < 3; ++d)
+        normal[d] = history[normal_at + d];
+      const Number is_new = 1. - normal * normal;
+      for (unsigned int d = 0; d < 3; ++d)
+        {
+          normal[d] = compare_and_apply_mask<Comparison::less_than>(
+            is_new, Number(0.5), normal[d], split.principal.directions[0][d]);
+          history[normal_at + d] =
+            compare_and_apply_mask<Comparison::less_than_or_equal>(history[0],
+                                                                   zero,
+                                                                   zero,
+                                                                   normal[d]);
+        }
+
+      const SymmetricTensor3<Number> stress = parts[0] + parts[1];
+      const SymmetricTensor3<Number> beside =
+        stress_beside_crack(stress, normal, *this, crack_friction);
+      const Number saved = parts[1] * strain - beside * strain;
+      for (unsigned int i = 0; i < 6; ++i)
+        {
+          Number &left = parts[1].access_raw_entry(i);
+          left         = compare_and_apply_mask<Comparison::less_than_or_equal>(
+            std::min(saved, history[0]),
+            zero,
+            left,
+            beside.access_raw_entry(i));
+          parts[0].access_raw_entry(i) = stress.access_raw_entry(i) - left;
+        }
+      return parts;
+    }
 
     /** @param effective s+ and s- [Pa] */
     template <typename Number>

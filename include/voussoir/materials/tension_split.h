@@ -4,6 +4,8 @@
 #include <voussoir/materials/isotropic_elasticity.h>
 #include <voussoir/materials/spectral.h>
 
+#include <limits>
+
 namespace Voussoir
 {
   /** Names of results that several laws share. */
@@ -116,6 +118,125 @@ namespace Voussoir
                 const IsotropicElasticity      &elasticity)
   {
     return split_tension(spectrum(stress), elasticity);
+  }
+
+  /**
+   * What is left of the stress C : e by a rough crack in a plane, which may lie
+   * at any angle to the strain's own directions, and by cracks across it: the
+   * stress n of
+   *   C : e = n + C : a ,   n : a = 0 ,   a = sym(n_c c) + b ,
+   * with the jump c across the plane of normal n_c, c . n_c >= f |c_t|, and a
+   * positive strain b in the plane. The jump may be oblique, as it is where
+   * rows of cells stand at an angle to the crack they carry: the strain of such
+   * a crack has a negative principal value, which split_tension takes for
+   * compression. A closed crack carries shear up to f times its pressure, and
+   * rides up as it slides: this keeps the parts orthogonal in the energy, so
+   * that they have a potential and no closed path of strains makes energy.
+   *
+   * The plane is open, sliding or stuck; of these convex problems exactly one
+   * has a solution that fits.
+   *
+   * @param normal   of length one
+   * @param friction f > 0
+   */
+  template <typename Number>
+  SymmetricTensor3<Number>
+  stress_beside_crack(const SymmetricTensor3<Number>     &stress,
+                      const dealii::Tensor<1, 3, Number> &normal,
+                      const IsotropicElasticity          &elasticity,
+                      const double                        friction)
+  {
+    using dealii::compare_and_apply_mask;
+    using Comparison    = dealii::SIMDComparison;
+    const double shear  = elasticity.shear_modulus(),
+                 lambda = elasticity.bulk_modulus() - 2. / 3. * shear,
+                 across = lambda + 2. * shear;
+    const Number zero = 0., tiny = std::numeric_limits<double>::min();
+
+    // traction, and the stress in the plane by its principal values
+    const auto                         traction = stress * normal;
+    const Number                       pull     = traction * normal;
+    const dealii::Tensor<1, 3, Number> along    = traction - pull * normal;
+    const Number                       sheared  = std::sqrt(along * along);
+    const SymmetricTensor3<Number>     normals =
+      symmetrize(outer_product(normal, normal));
+    const SymmetricTensor3<Number> in_plane =
+      stress - 2. * symmetrize(outer_product(normal, traction)) +
+      pull * normals;
+    const Number half_trace = 0.5 * (trace(stress) - pull);
+    const Number radius     = std::sqrt(
+      std::max(zero,
+               Number(0.5 * (in_plane * in_plane) - half_trace * half_trace)));
+
+    // the jump across the plane opens by by_pull pull + by_shear sheared
+    struct Plane
+    {
+      Number by_plane, across_plane; // R' = by_plane R + across_plane (I - nn)
+      Number pull, opening;
+    };
+    const auto solve = [&](const double by_pull, const double by_shear) {
+      const double of_plane = lambda - lambda * lambda * by_pull,
+                   one_way  = of_plane + 2. * shear;
+      const Number shift    = lambda * (by_pull * pull + by_shear * sheared);
+      const Number first    = half_trace + radius - shift,
+                   second   = half_trace - radius - shift;
+      const Number beside   = second - of_plane / one_way * first;
+      const auto   pick =
+        [&](const Number &none, const Number &one, const Number &two) {
+          return compare_and_apply_mask<Comparison::less_than_or_equal>(
+            first,
+            zero,
+            none,
+            compare_and_apply_mask<Comparison::less_than_or_equal>(
+              beside, zero, one, two));
+        };
+      Plane        plane;
+      const Number share = -beside / (2. * radius + tiny);
+      plane.by_plane     = pick(1., share, zero);
+      plane.across_plane = pick(-shift, -share * (half_trace + radius), zero);
+      plane.pull =
+        pull - lambda * pick(zero,
+                             first / one_way,
+                             (first + second) / (2. * (of_plane + shear)));
+      plane.opening = by_pull * plane.pull + by_shear * sheared;
+      return plane;
+    };
+    const double sliding = friction * friction * across + shear;
+    const Plane  open    = solve(1. / across, 0.),
+                slides =
+                  solve(friction * friction / sliding, friction / sliding),
+                stuck = solve(0., 0.);
+
+    const auto choose = [&](const Number &if_open,
+                            const Number &if_it_slides,
+                            const Number &if_stuck) {
+      return compare_and_apply_mask<Comparison::less_than_or_equal>(
+        Number(friction * across / shear * sheared),
+        open.pull,
+        if_open,
+        compare_and_apply_mask<Comparison::less_than_or_equal>(
+          Number(friction * stuck.pull + sheared),
+          zero,
+          if_stuck,
+          if_it_slides));
+    };
+    const Number by_plane =
+      choose(open.by_plane, slides.by_plane, stuck.by_plane);
+    const Number across_plane =
+      choose(open.across_plane, slides.across_plane, stuck.across_plane);
+    const Number left_pull =
+      choose(zero, slides.pull - across * slides.opening, stuck.pull);
+    const Number left_shear =
+      choose(zero,
+             1. - shear / friction * slides.opening / (sheared + tiny),
+             Number(1.));
+
+    SymmetricTensor3<Number> left =
+      by_plane * in_plane + (left_pull - across_plane) * normals +
+      2. * left_shear * symmetrize(outer_product(normal, along));
+    for (unsigned int d = 0; d < 3; ++d)
+      left[d][d] += across_plane;
+    return left;
   }
 } // namespace Voussoir
 

@@ -37,6 +37,13 @@ subsection Discretization
   set Quadrature = one point
 end
 """
+FIXED = """\
+subsection Materials
+  subsection concrete
+    set Crack direction = fixed
+  end
+end
+"""
 # slope of the rows [degrees], how many, shift of the nodes over the size of a
 # cell, further entries of the case
 RUNS = {
@@ -49,8 +56,15 @@ RUNS = {
     "30 degrees, larger cells": (30., 21, 0., ""),
     "level, one point": (0., 31, 0., ONE_POINT),
     "30 degrees, one point": (30., 31, 0., ONE_POINT),
+    "level, fixed cracks": (0., 31, 0., FIXED),
+    "15 degrees, fixed cracks": (15., 31, 0., FIXED),
+    "30 degrees, fixed cracks": (30., 31, 0., FIXED),
+    "30 degrees, irregular, fixed cracks": (30., 31, 0.25, FIXED),
+    "30 degrees, larger cells, fixed cracks": (30., 21, 0., FIXED),
+    "30 degrees, one point, fixed cracks": (30., 31, 0., ONE_POINT + FIXED),
 }
-DRAWN = ("level", "15 degrees", "30 degrees", "30 degrees, irregular", "30 degrees, one point")
+DRAWN = ("level", "15 degrees", "30 degrees", "30 degrees, fixed cracks",
+         "30 degrees, irregular")
 
 CASE = """\
 # A notched plate that is pulled apart; written by doc/mesh_bias.py.

@@ -148,36 +148,33 @@ namespace Voussoir
       }
 
 
-      /** What has cracked is elastic as long as no damage grows: a closed path
-       *  of strains does no work. */
+      /** A closed path of strains does the work that is stored and lost at its
+       *  end, and none as long as no damage grows. */
       void
       close(const Material &material, Verdicts &verdicts) const
       {
-        const double modulus = material.elastic_constants().young_modulus;
-        const PointSituation<double>     situation{0.5, 1e-3};
+        const PointSituation<double> situation{0.5, 1e-3};
+        const double                 largest =
+          40. * strength / material.elastic_constants().young_modulus;
         std::mt19937                     random(5);
         std::normal_distribution<double> normal_distribution;
-        double                           made = 0.;
+        double                           missing = 0.;
         for (unsigned int repetition = 0; repetition < 20; ++repetition)
           {
             std::vector<double> history(material.n_history());
-            const double        largest = 40. * strength / modulus;
             Tensor2             strain;
             for (unsigned int i = 1; i <= 400; ++i)
               {
                 strain[0][0] = largest * i / 400.;
                 material.respond(strain, history.data(), situation);
               }
-            std::vector<Tensor2> corners{Tensor2()};
-            for (unsigned int i = 0; i < 4; ++i)
-              {
-                corners.emplace_back();
-                for (unsigned int k = 0; k < 6; ++k)
-                  corners.back().access_raw_entry(k) =
-                    0.05 * largest * normal_distribution(random);
-              }
+            std::vector<Tensor2> corners(5);
+            for (unsigned int i = 1; i < 5; ++i)
+              for (unsigned int k = 0; k < 6; ++k)
+                corners[i].access_raw_entry(k) =
+                  0.05 * largest * normal_distribution(random);
             corners.push_back(corners[1]);
-            double  work = 0., stored = 0., lost = 0.;
+            double  work = 0., most = 0., last_stored = 0.;
             Tensor2 last_strain, last_stress;
             for (unsigned int i = 0; i + 1 < corners.size(); ++i)
               for (unsigned int step = 1; step <= 4000; ++step)
@@ -186,20 +183,20 @@ namespace Voussoir
                     corners[i] + step / 4000. * (corners[i + 1] - corners[i]);
                   const auto response =
                     material.respond(now, history.data(), situation);
-                  if (i > 0)
-                    {
-                      work += 0.5 * ((response.stress + last_stress) *
-                                     (now - last_strain));
-                      lost += response.dissipation;
-                      keep_largest(stored, 0.5 * (response.stress * now));
-                    }
+                  const double stored = 0.5 * (response.stress * now);
+                  work += 0.5 * ((response.stress + last_stress) *
+                                 (now - last_strain)) -
+                          (stored - last_stored) - response.dissipation;
+                  keep_largest(most, stored);
                   last_strain = now;
                   last_stress = response.stress;
+                  last_stored = stored;
                 }
-            keep_largest(made, std::abs(work - lost) / stored);
+            keep_largest(missing, std::abs(work) / most);
           }
-        verdicts.below("work on a closed path, over the largest energy stored",
-                       made,
+        verdicts.below("work less what is stored and lost, over the largest "
+                       "energy stored",
+                       missing,
                        2e-3);
       }
 

@@ -41,7 +41,7 @@ namespace Voussoir
   {
     SofteningCurve tension, compression;
     CrackDirection crack_direction = CrackDirection::rotating;
-    double         crack_friction  = 1.;
+    double         crack_friction  = 0.4;
 
     /** @param sign 0: tension, 1: compression */
     const SofteningCurve &

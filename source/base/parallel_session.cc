@@ -46,7 +46,7 @@ namespace Voussoir
     _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
     _mm_setcsr(_mm_getcsr() | 0x0040);
 #endif
-    // A file that grows beyond the limit of its size is an error like others.
+    // Exceeding the limit of file size is an error of the write, not a signal.
     std::signal(SIGXFSZ, SIG_IGN);
     // Ranks do not outlive an mpirun that is killed: Open MPI lets them go on,
     // and write, for a second.
@@ -54,9 +54,9 @@ namespace Voussoir
       prctl(PR_SET_PDEATHSIG, SIGKILL);
     // Shared file pointers are not used. Of Open MPI's components for them "sm"
     // keeps a file in the session's folder, which two programs without mpirun
-    // at the same time take from each other, and "lockedfile" one beside each
-    // file that is opened: on a full disk the first rank gives up and the
-    // others wait for it.
+    // remove from each other, and "lockedfile" one beside each file that is
+    // opened: on a full disk the first rank gives up and the others wait for
+    // it.
     setenv("OMPI_MCA_sharedfp", "individual", 0);
     session_folder = own_session_folder();
     // Libraries get the program's name alone: PETSc would take arguments for
@@ -66,7 +66,7 @@ namespace Voussoir
       std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(just_the_name,
                                                                  argv,
                                                                  1);
-    // runs that this one starts have their own
+    // runs that this program starts have folders of their own
     if (!session_folder.empty())
       for (const char *ours :
            {"OMPI_MCA_orte_tmpdir_base", "OMPI_MCA_ess_singleton_isolated"})

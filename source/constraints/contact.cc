@@ -139,7 +139,7 @@ namespace Voussoir
             const double momentum = time_step * applied[i][d];
             u[d] += motion[d];
             v[d] += motion[d] * frequency;
-            // what holds a node takes the momentum on it
+            // a support takes the momentum on a fixed node
             if (simple ? compliance[i] > 0. : full_compliance[i][d][d] > 0.)
               {
                 result.impulse[d] += momentum;

@@ -173,7 +173,7 @@ namespace Voussoir
              << record.position[0] << ", " << record.position[1] << ", "
              << record.position[2]
              << ") m, so that not every node has a partner on the other side; "
-                "refine all cells on both sides of it alike by \"Local "
+                "refine all cells on both sides of it equally by \"Local "
                 "refinement\" in section \"Mesh\", or none.";
         const auto problem = std::make_pair(record.key, text.str());
         if (first.second.empty() || problem < first)

@@ -20,8 +20,8 @@ namespace Voussoir
     // A residual this large is round-off.
     constexpr double round_off = 1e-12;
 
-    // Shares of a point's own Delassus operator by which it is softened, and
-    // strengths that are as good as infinite; tried in turn.
+    // Compliances of a point as shares of its own Delassus operator, and limits
+    // of strength in place of infinity; tried in turn.
     constexpr std::array<double, 4> softnesses{{1e-6, 1e-8, 1e-7, 1e-10}};
     constexpr std::array<double, 3> caps{
       {1e2, 1e4, std::numeric_limits<double>::infinity()}};
@@ -69,7 +69,7 @@ namespace Voussoir
     }
 
 
-    /** What n equations in n + 1 unknowns leave free. */
+    /** The null vector of n equations in n + 1 unknowns. */
     struct Line
     {
       Vector nearest;   // to zero
@@ -220,7 +220,8 @@ namespace Voussoir
         return segments[segment];
       }
 
-      /** Whether it is where its law has been cut off. */
+      /** Whether its unknown is at the limit of strength in place of infinity.
+       */
       bool
       at_cap() const
       {
@@ -333,7 +334,7 @@ namespace Voussoir
             start();
             for (unsigned int j = 0; j < max_corrections; ++j)
               {
-                // a homotopy that is lost is near its end, more often than not
+                // a homotopy that loses its path is mostly near its end
                 const bool arrived = follow();
                 finish(best);
                 if (!arrived || best.residual <= round_off)
@@ -346,8 +347,8 @@ namespace Voussoir
 
     private:
       /** The state at t = 0: all points are farther open than bonds can pull
-       * them. Random forces and gaps vanish along the homotopy, so that no two
-       * points reach the end of a piece at once. */
+       *  them. Random forces and gaps vanish along the homotopy, so that no two
+       *  points reach the end of a piece at once. */
       void
       start()
       {
@@ -372,7 +373,7 @@ namespace Voussoir
         double reach = 1.;
         for (const Point &point : points)
           reach += point.bond - point.now().force;
-        // this is linear, and t takes no part
+        // this is linear, and independent of t
         x          = sum(x, 1., linearize(x).nearest);
         x.back()   = 0.;
         widening   = shift;
@@ -388,8 +389,8 @@ namespace Voussoir
           }
       }
 
-      /** Lets a homotopy begin where the last one ended, at whose end the
-       *  forces do not soften the points. */
+      /** Makes a homotopy begin at the solution of the last one, such that its
+       *  solution has no effect of the compliance of the points. */
       void
       correct_softness()
       {
@@ -401,7 +402,7 @@ namespace Voussoir
         x.back() = 0.;
       }
 
-      /** What the softness does now, to be undone. */
+      /** Gaps by the compliance of the points now, to be removed. */
       Vector
       softening() const
       {
@@ -471,7 +472,7 @@ namespace Voussoir
         return result;
       }
 
-      /** H, with the terms of the homotopy or of the points themselves. */
+      /** The equations H, with the terms of the homotopy or without them. */
       Vector
       residual(const Vector &x, const bool of_homotopy) const
       {
@@ -534,7 +535,7 @@ namespace Voussoir
         return result;
       }
 
-      /** Positive on the piece at hand. */
+      /** Positive on the present piece. */
       double
       way_to(const End &end, const Vector &x, Vector &gradient) const
       {
@@ -570,7 +571,8 @@ namespace Voussoir
         return way_to(end, x, gradient);
       }
 
-      /** To which the unknowns can be found where only softness holds them. */
+      /** Accuracy of unknowns that only the compliance of the points
+       *  determines. */
       double
       tolerance(const Vector &x) const
       {
@@ -620,7 +622,8 @@ namespace Voussoir
       }
 
       /** Goes a step along the path, or to the end of its piece if that comes
-       *  first; returns whether the step was short enough to be sure. */
+       *  first; returns whether the step was short enough to stay on the path.
+       */
       bool
       advance(const Vector       &direction,
               const double        step,
@@ -724,7 +727,8 @@ namespace Voussoir
       }
 
       /** Newton's iteration from the end of a path, on the pieces where the
-       *  points are, until softness and round-off of the path are gone. */
+       *  points are, until the effects of compliance and round-off of the path
+       *  are removed. */
       void
       finish(ContactForces &best)
       {
@@ -793,8 +797,8 @@ namespace Voussoir
                 const double                      round_off)
   {
     ContactForces best{{}, std::numeric_limits<double>::infinity()};
-    // the same for each cluster, but other starts for each cap, most of which
-    // cut nothing off
+    // the same random numbers for each cluster, but different ones for each
+    // limit of strength, most of which are not reached
     std::mt19937 generator;
     for (const double cap : caps)
       if (best.residual > unsolved_contact)

@@ -30,15 +30,15 @@ namespace Voussoir
     using Bytes = std::vector<std::uint8_t>;
 
 
-    /** What went wrong on one rank, before the others know. */
+    /** An error of one rank, of which the others are not informed yet. */
     struct Problem
     {
       std::string what;
     };
 
 
-    /** Does it on all ranks; returns the problem of the first rank that has
-     *  one, or an empty text. */
+    /** Runs an action on all ranks; returns the error of the first rank that
+     *  has one, or an empty text. */
     std::string
     problem_of(const MPI_Comm communicator, const std::function<void()> &action)
     {
@@ -59,7 +59,7 @@ namespace Voussoir
     }
 
 
-    // splitmix64: neighbouring words have nothing in common afterwards
+    // splitmix64: neighbouring words become uncorrelated
     std::uint64_t
     mixed(std::uint64_t word)
     {
@@ -93,7 +93,7 @@ namespace Voussoir
         return numbers.data() + i * width;
       }
 
-      /** Of those of all ranks, in whatever order they are. */
+      /** Checksum of the rows of all ranks, independent of their order. */
       std::uint64_t
       checksum(const MPI_Comm communicator) const
       {
@@ -179,7 +179,7 @@ namespace Voussoir
     }
 
 
-    /** About as many for each rank. */
+    /** About the same number for each rank. */
     Part
     even_part(const hsize_t all, const MPI_Comm communicator)
     {
@@ -200,7 +200,7 @@ namespace Voussoir
     }
 
 
-    /** Something of the HDF5 library, which is closed at the end. */
+    /** A handle of the HDF5 library, which is closed at the end. */
     class Handle
     {
     public:
@@ -238,9 +238,9 @@ namespace Voussoir
     }
 
 
-    constexpr char not_written[] = "not all of it could be written; look "
-                                   "whether the disk is full",
-                   not_whole[]   = "it is cut or damaged";
+    constexpr char not_written[] =
+      "it could not be written completely; check whether the disk is full",
+                   not_whole[] = "it is cut or damaged";
 
 
     /** Rows of a dataset in the file and in memory, for a transfer. */
@@ -288,7 +288,7 @@ namespace Voussoir
             const Part                &part,
             const unsigned int         width)
       {
-        // the ranks go on together or not at all, as the next call needs all
+        // either all ranks continue or none, as the next call is collective
         const Selection selection(part, width, not_written);
         const Handle    data(H5Dcreate2(file,
                                      name.c_str(),
@@ -335,9 +335,9 @@ namespace Voussoir
         return H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
       }
 
-      /** Throws on all ranks if one has a problem. What has been written is
-       *  given up then, as the library cannot close a file whose end finds no
-       *  room, and crashes later. */
+      /** Throws on all ranks if one has an error. The file is then abandoned,
+       *  as the library cannot close a file on a full disk, and crashes later.
+       */
       void
       together(const std::function<void()> &action)
       {
@@ -409,7 +409,7 @@ namespace Voussoir
       static hid_t
       open(const std::string &name)
       {
-        // a pipe would be waited for
+        // opening a pipe would block
         std::error_code none;
         if (!std::filesystem::is_regular_file(name, none))
           throw Problem{"it is not a regular file"};
@@ -549,8 +549,8 @@ namespace Voussoir
     }
 
 
-    /** Brings the rows, spread anyhow over the ranks, to those who have their
-     *  keys; what has no row becomes zero. */
+    /** Sends the rows from any ranks to those that have their keys; numbers
+     *  without a row become zero. */
     void
     distribute(const Rows        &rows,
                const KeyedValues &values,
@@ -636,7 +636,7 @@ namespace Voussoir
     }
 
 
-    /** Lets the file appear under its name once it is on the disk. */
+    /** Renames the file to its final name once it is on the disk. */
     void
     put_in_place(const std::string &unfinished, const std::string &file)
     {
@@ -646,7 +646,7 @@ namespace Voussoir
         close(open_file);
       if (!on_disk || std::rename(unfinished.c_str(), file.c_str()) != 0)
         throw Problem{std::strerror(errno)};
-      // the name itself, where the file system lets folders be synchronised
+      // the name itself, where the file system can synchronise folders
       const std::string folder = std::filesystem::path(file).parent_path();
       const int open_folder    = open(folder.c_str(), O_RDONLY | O_DIRECTORY);
       if (open_folder >= 0)
@@ -666,7 +666,7 @@ namespace Voussoir
   {
     const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
     const std::string unfinished = file + ".unfinished";
-    std::error_code   ignored; // shows when the file is written
+    std::error_code   ignored; // stands for an error when the file is written
     if (first)
       std::filesystem::create_directory(
         std::filesystem::path(file).parent_path(), ignored);
@@ -709,7 +709,7 @@ namespace Voussoir
                    1);
       writer.flush();
     });
-    // only what can be read again is written
+    // only documents that can be read again are written
     if (problem.empty())
       problem = damage_of_state(unfinished, communicator);
     if (problem.empty())

@@ -122,8 +122,7 @@ namespace Voussoir
     }
 
 
-    // New vertices of what lies on a curved surface, in the coordinates of a
-    // chart.
+    // New vertices of faces on a curved surface, in the coordinates of a chart.
     class CurvedSurface : public FlatManifold<3>
     {
     public:
@@ -188,8 +187,8 @@ namespace Voussoir
     }
 
 
-    // Coarse ones before fine ones, since what a vertex hangs on may have ends
-    // that hang themselves. Returns which were moved.
+    // Coarse edges before fine ones, since an edge with a hanging vertex may
+    // end at hanging vertices itself. Returns which vertices were moved.
     std::vector<bool>
     move_hanging_vertices(const Triangulation<3> &triangulation,
                           std::vector<Point<3>>  &places)
@@ -220,8 +219,7 @@ namespace Voussoir
     }
 
 
-    // From the coordinates of the chart into space. Nothing is refined after
-    // that.
+    // From the coordinates of the chart into space. No refinement must follow.
     void
     place_vertices(const CoarseMesh::Chart &chart,
                    Grid::Triangulation     &triangulation)
@@ -250,15 +248,14 @@ namespace Voussoir
   void
   GridParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter("Global refinement",
-                      global_refinement,
-                      "How many times each cell is cut into eight. The new "
-                      "nodes of an arch dam without wedges lie on its true "
-                      "faces, joints and canyon; other meshes are refined by "
-                      "the middles of their edges. Every rank holds the mesh "
-                      "before it is refined, and only its part of the mesh "
-                      "after that: so large meshes are given as coarse ones.",
-                      Patterns::Integer(0, 6));
+    prm.add_parameter(
+      "Global refinement",
+      global_refinement,
+      "How many times each cell is cut into eight. The new "
+      "nodes of an arch dam without wedges lie on its true "
+      "faces, joints and canyon; other meshes are refined by "
+      "the middles of their edges. Every rank stores the whole mesh before refinement, and only its part afterwards, so give large meshes as coarse ones.",
+      Patterns::Integer(0, 6));
     prm.add_parameter(
       "Local refinement",
       local_refinement,
@@ -268,20 +265,18 @@ namespace Voussoir
     prm.add_parameter(
       "Nodes per wavelength",
       nodes_per_wavelength,
-      "Cells are refined, material by material, until the S waves of \"Highest "
-      "frequency\" have so many nodes on their length; 8 are enough where "
-      "amplitudes count, none leave the mesh as it is. Hanging nodes result, "
+      "Cells are refined, material by material, until the S waves of \"Highest frequency\" have this number of nodes per wavelength; 8 suffice for amplitudes, 0 leaves the mesh unchanged. Hanging nodes result, "
       "so that far rock may be given in cells as large as these waves allow.",
       Patterns::Double(0., 100.));
     prm.add_parameter("Highest frequency",
                       highest_frequency,
-                      "The one that \"Nodes per wavelength\" is for [Hz].",
+                      "Frequency for \"Nodes per wavelength\" [Hz].",
                       Patterns::Double(0.01, 1000.));
-    add_option(prm,
-               "Partition",
-               partition,
-               "How the cells are dealt to the ranks; the results are "
-               "the same.");
+    add_option(
+      prm,
+      "Partition",
+      partition,
+      "How the cells are distributed to the ranks; the results are the same.");
     prm.add_parameter(
       "Count partitions",
       counted_ranks,

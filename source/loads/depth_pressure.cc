@@ -16,7 +16,7 @@ namespace Voussoir
     class DepthPressure : public Load
     {
     public:
-      /** @param surface what lies at the level */
+      /** @param surface noun for the description of the level */
       explicit DepthPressure(const std::string &surface)
         : surface(surface)
       {}
@@ -24,10 +24,10 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Face sets",
-                          face_sets,
-                          "Face sets it presses on, at right angles to them: "
-                          "one side of the dam, and the canyon by choice.");
+        prm.add_parameter(
+          "Face sets",
+          face_sets,
+          "Face sets under the pressure, which is normal to them: one side of the dam, and optionally the canyon.");
         prm.add_parameter("Level",
                           level,
                           "Elevation of the " + surface +
@@ -139,14 +139,15 @@ namespace Voussoir
           "Buoyant unit weight",
           unit_weight,
           "Weight of the silt under water less its buoyancy [N/m3]; 8e3 to "
-          "11e3. The water in it belongs to the load of the water." +
+          "11e3. Pore water belongs to the load of the water." +
             usually(Usual::silt_weight),
           Patterns::Double(0.));
-        prm.add_parameter("Friction angle",
-                          friction_angle,
-                          "Of the silt [degrees]; 10 to 20, 0 for a liquid." +
-                            usually(Usual::silt_friction_angle),
-                          Patterns::Double(0., 60.));
+        prm.add_parameter(
+          "Friction angle",
+          friction_angle,
+          "Angle of friction of the silt [degrees]; 10 to 20, 0 for a liquid." +
+            usually(Usual::silt_friction_angle),
+          Patterns::Double(0., 60.));
       }
 
     private:

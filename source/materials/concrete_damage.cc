@@ -54,7 +54,7 @@ namespace Voussoir
      */
     struct ConcreteDamage : SplitDamage
     {
-      // after the numbers of both curves e_p
+      // e_p after the internal variables of both curves
       static constexpr unsigned int n_history = n_curve_numbers + 6;
 
       double compressive_strength  = 25e6;
@@ -80,28 +80,28 @@ namespace Voussoir
                           "Uniaxial compressive strength fc [Pa]." +
                             usually(Usual::compressive_strength),
                           Patterns::Double(1.));
-        prm.add_parameter("Crushing energy",
-                          crushing_energy,
-                          "Energy that crushing takes per area beyond the peak "
-                          "[N/m]." +
-                            usually(Usual::crushing_energy),
-                          Patterns::Double(1e-3));
+        prm.add_parameter(
+          "Crushing energy",
+          crushing_energy,
+          "Fracture energy in crushing, per area beyond the peak [N/m]." +
+            usually(Usual::crushing_energy),
+          Patterns::Double(1e-3));
         prm.add_parameter("Biaxial ratio",
                           biaxial_ratio,
                           "Strength under equal compression in two directions "
                           "over the uniaxial one.",
                           Patterns::Double(1.01, 1.5));
-        prm.add_parameter("Strength increase",
-                          strength_increase,
-                          "Factor on strengths and energies under an "
-                          "earthquake; codes give 1.2 to 1.3.",
-                          Patterns::Double(1., 5.));
-        prm.add_parameter("Relaxation time",
-                          relaxation_time,
-                          "Time that damage lags behind by, which strengthens "
-                          "under fast loading [s]; 0 for no effect of rate." +
-                            usually(Usual::relaxation_time),
-                          Patterns::Double(0.));
+        prm.add_parameter(
+          "Strength increase",
+          strength_increase,
+          "Factor on strengths and fracture energies in an earthquake; codes give 1.2 to 1.3.",
+          Patterns::Double(1., 5.));
+        prm.add_parameter(
+          "Relaxation time",
+          relaxation_time,
+          "Delay of damage, which raises the strength under fast loading [s]; 0: rate-independent." +
+            usually(Usual::relaxation_time),
+          Patterns::Double(0.));
         add_option(prm,
                    "Tension law",
                    tension_law,
@@ -291,7 +291,8 @@ namespace Voussoir
                 3. * pressed[0]);
       }
 
-      /** Share of what damage lags behind by that this step makes up for. */
+      /** Share of the delayed growth of damage that takes place in this step.
+       */
       template <typename Number>
       double
       followed(const PointSituation<Number> &situation) const
@@ -336,7 +337,7 @@ namespace Voussoir
         return result;
       }
 
-      /** Adds to the plastic strain where the step has made some. */
+      /** Adds the plastic strain of the step. */
       template <typename Number>
       static void
       flow(const SymmetricTensor3<Number>       &strain,

@@ -56,9 +56,7 @@ namespace Voussoir
           prm,
           "Fit",
           fit,
-          "Where the cone is as strong as the Mohr-Coulomb law with its "
-          "cohesion and angles: in triaxial compression, or in plane strain, "
-          "there with equal angles of friction and dilation. The second cone "
+          "State of stress in which the cone is as strong as the Mohr-Coulomb law of the same cohesion and angles: triaxial compression, or plane strain with equal angles of friction and dilation. The second cone "
           "is nowhere stronger.");
       }
 

@@ -37,7 +37,7 @@ namespace Voussoir
     constexpr double coincidence = 1e-6;
 
 
-    // What a run takes at its peak, per unknown of elastic cells [bytes].
+    // Peak memory of a run per unknown of elastic cells [bytes].
     constexpr double memory_per_unknown = 1000.;
 
 
@@ -216,8 +216,8 @@ namespace Voussoir
     }
 
 
-    // A number for each cell that is the same for all cells that hang together
-    // by their faces.
+    // A number for each cell, the same for all cells that are connected by
+    // faces.
     std::vector<std::size_t>
     parts_of_cells(const CoarseMesh &mesh)
     {
@@ -538,7 +538,7 @@ namespace Voussoir
       return;
     std::ostringstream text;
     text << std::setprecision(2) << place << ": about " << n_cells
-         << " cells with " << n_unknowns << " unknowns would come of this, "
+         << " cells with " << n_unknowns << " unknowns would result, "
          << needed / 1e9 << " GB, but there are only " << memory / 1e9
          << " GB of memory; use larger or fewer cells.";
     throw UserError(text.str());

@@ -32,7 +32,7 @@ namespace Voussoir
           layers_text,
           "Cell sets by height, from below, \"name: top elevation\" [m] "
           "separated by \";\"; the last one reaches to the top and needs no "
-          "elevation. Cells go by their centres.");
+          "elevation. Cells belong to sets by their centres.");
         prm.add_parameter(
           "Distortion",
           distortion,

@@ -117,7 +117,7 @@ namespace Voussoir
       std::string   quantities = "displacement, principal stress";
       PictureSeries pictures{"fields", "Output/fields"};
 
-      // of the cells, once a picture wants them
+      // of the cells, once a picture needs them
       dealii::Vector<float> scaled_jacobian, aspect_ratio;
     };
 

@@ -22,8 +22,7 @@ namespace Voussoir
       {
         recorder.declare_parameters(
           prm,
-          "Name of the point whose largest acceleration the amplification in "
-          "the summary is relative to; empty for none.");
+          "Name of the point by whose largest acceleration the summary divides spectra for the amplification; empty for none.");
         prm.add_parameter("Components",
                           components,
                           "Directions of motion.",

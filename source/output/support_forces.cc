@@ -34,8 +34,7 @@ namespace Voussoir
         prm.add_parameter(
           "Face sets",
           face_sets,
-          "Faces that a support of section \"Boundaries\" or a prescribed "
-          "motion holds; for each of them support_forces.csv has the force "
+          "Faces that a support of section \"Boundaries\" or a prescribed motion constrains; for each of them support_forces.csv has the force "
           "of the support on the model, x, y, z [MN]; static state, loads and "
           "inertia of its nodes included. An edge of several sets counts for "
           "the first of them.");
@@ -202,8 +201,7 @@ namespace Voussoir
               throw UserError(
                 place + " names \"" + set +
                 "\", on which neither a support of section "
-                "\"Boundaries\" nor a prescribed motion holds all "
-                "nodes; name faces that are fixed.");
+                "\"Boundaries\" nor a prescribed motion constrains all nodes; name faces that are fixed.");
             if (Utilities::MPI::logical_or(meets_interface, communicator))
               throw UserError(place + " names \"" + set +
                               "\", whose nodes an interface touches, the "
@@ -214,8 +212,8 @@ namespace Voussoir
         return result;
       }
 
-      /** Of each owned node, as if none were fixed; what a rigid base does not
-       *  move as inertia has none [kg]. */
+      /** Mass of each owned node, as if none were fixed; zero where a rigid
+       *  base exerts no inertial force [kg]. */
       std::vector<double>
       driven_mass() const
       {

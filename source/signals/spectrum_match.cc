@@ -20,7 +20,8 @@
 // once (Lilhanand and Tseng 1988; wavelet and its width after Al Atik and
 // Abrahamson, Earthquake Spectra 26, 2010). As peaks move, this is repeated.
 // The wavelets hold enough cycles to leave velocity and displacement at rest;
-// what the start of the record cuts off is left to the baseline correction.
+// parts before the start of the record are cut off, and the baseline correction
+// compensates for that.
 
 namespace Voussoir
 {
@@ -227,11 +228,11 @@ namespace Voussoir
       "none: a record is scaled to the Peak acceleration only.");
     prm.add_parameter("Shortest period",
                       shortest_period,
-                      "Of the oscillators whose responses are fitted [s].",
+                      "Shortest natural period whose response is fitted [s].",
                       Double(0.01));
     prm.add_parameter("Longest period",
                       longest_period,
-                      "Of the oscillators whose responses are fitted [s].",
+                      "Longest natural period whose response is fitted [s].",
                       Double(0.01, 20.));
   }
 

@@ -88,7 +88,7 @@ namespace Voussoir
 
         const std::string rest =
           std::string(" (see the warnings) could not be written because ") +
-          too_large + "; see to it and run the case again.";
+          too_large + "; remove the cause and run the case again.";
         verdicts.same_text("with room", march("room", "9", "9"), "done");
         verdicts.same_text(
           "full for a while",

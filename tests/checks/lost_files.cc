@@ -137,7 +137,7 @@ namespace Voussoir
                           checkpoints = "restart/checkpoint/step-00000000";
         const std::string since =
           " since the checkpoint \"" + checkpoints +
-          "2000.h5\" was written; put it back, or start the case afresh.";
+          "2000.h5\" was written; restore the file, or start the case anew.";
         go_on(
           "table removed",
           [&] { fs::remove(table); },
@@ -196,7 +196,7 @@ namespace Voussoir
         const auto lost = [](const std::string &files,
                              const std::string &reason) {
           return "Done, but \"" + files + " could not be written because " +
-                 reason + "; see to it and run the case again.";
+                 reason + "; remove the cause and run the case again.";
         };
         const std::string removed = "it was removed while the run went on";
         if (kind == "nothing")

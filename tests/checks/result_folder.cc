@@ -55,8 +55,7 @@ namespace Voussoir
           verdicts.same_text(
             "--overwrite meanwhile",
             refusal(overwrite),
-            "refused: The output folder \"results\" is that of a run which is "
-            "still going on; choose another \"Folder\" in section \"Output\".");
+            "refused: The output folder \"results\" belongs to a run that is still going on; choose another \"Folder\" in section \"Output\".");
         }
 
         on_first(communicator, [] {

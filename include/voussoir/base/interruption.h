@@ -39,8 +39,8 @@ namespace Voussoir
   [[noreturn]] void
   stop(const std::string &sentence);
 
-  /** Stops if any rank has been asked to, in set-up or static state, which
-   *  leave nothing to go on from. Called on all ranks. */
+  /** Stops if any rank has been asked to, during set-up or static stages, from
+   * which no run can continue. Called on all ranks. */
   void
   stop_if_requested(const MPI_Comm communicator);
 } // namespace Voussoir

@@ -21,7 +21,8 @@ namespace Voussoir
     ~ParallelSession();
 
   private:
-    /** Of a run without mpirun: its own, for what Open MPI keeps meanwhile. */
+    /** Of a run without mpirun: a folder of its own for the session files of
+     * Open MPI. */
     std::filesystem::path                                     session_folder;
     std::unique_ptr<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
   };

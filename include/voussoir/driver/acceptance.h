@@ -80,8 +80,7 @@ namespace Voussoir
   nlohmann::json
   without_limit(const double value);
 
-  /** Names of the lines of a table that are not met, or of which nobody
-   *  knows. */
+  /** Names of the lines of a table that are not met, or are not assessed. */
   std::vector<std::string>
   not_met(const nlohmann::json &table);
 

@@ -8,8 +8,8 @@
 namespace Voussoir
 {
   /**
-   * What a run is made of besides the static state: its plan, damping and what
-   * goes with that, as the moduli and the time step.
+   * The parts of a run besides the static state: its plan, its damping, and the
+   * moduli and the time step, which depend on damping.
    */
   class RunSetup
   {
@@ -56,8 +56,8 @@ namespace Voussoir
     const std::unique_ptr<WaterMotion> water; // compressible, or null
   };
 
-  /** Refuses time steps of a case that no damping would allow, and says which
-   *  are the longest. */
+  /** Refuses time steps of a case that are unstable under any damping, with the
+   *  longest stable ones. */
   void
   check_without_damping(const RunPlan      &plan,
                         const ResultFolder &folder,

@@ -65,7 +65,7 @@ namespace Voussoir
     double             stored, lost; // energy [J]
   };
 
-  /** What the time steps came to. */
+  /** Results of the time steps. */
   struct MarchSummary
   {
     unsigned long long                n_steps;
@@ -98,7 +98,7 @@ namespace Voussoir
     std::optional<StepSummary>  step;  // none before its damping was known
     std::optional<MarchSummary> march; // none before its first step
 
-    /** What observers found, under the names they gave it. */
+    /** Results of observers, under the names that they gave them. */
     nlohmann::json observers = nlohmann::json::object();
 
     /** Tables of lines with "met", see verdict_tables.h and
@@ -120,7 +120,7 @@ namespace Voussoir
   };
 
   /** The contents of summary.json, which are written and read here alone. A
-   *  study reads what earlier runs have left. */
+   *  study reads the summaries of earlier runs. */
   void
   to_json(nlohmann::json &json, const RunSummary &summary);
 

@@ -17,7 +17,7 @@ namespace Voussoir
    * @param inverse_mass diagonal of M^-1, zero where fixed
    * @param apply        first argument = A times the second
    * @param reproducible whether the result must be the same on any number of
-   *   ranks, bit for bit, as far as it is up to sums here
+   *   ranks, bit for bit, as far as sums in this function decide
    */
   double
   largest_eigenvalue(const Vector &start,

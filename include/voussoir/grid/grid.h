@@ -55,7 +55,7 @@ namespace Voussoir
   double
   longest_edge(const dealii::Triangulation<3>::cell_iterator &cell);
 
-  /** What a cell is made of and where it belongs. */
+  /** Material and cell sets of a cell. */
   struct CellTag
   {
     unsigned int              material; // number
@@ -87,7 +87,8 @@ namespace Voussoir
     {
       std::vector<unsigned int> of_cell; // number, of each coarse cell
       std::vector<double>       costs;   // of a cell of each, to balance ranks
-      std::vector<double> longest_edges; // that cells of each may have [m]
+      std::vector<double>
+        longest_edges; // of the edges that cells of each may have [m]
     };
 
     Grid(const CoarseMesh     &mesh,

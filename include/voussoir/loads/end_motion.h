@@ -10,7 +10,7 @@
 namespace Voussoir
 {
   /**
-   * What leaves the water through its radiating end, by steps as those of
+   * The flux through the radiating end of the water, in steps like those of
    * WaterMotion. The motion of the walls at the end makes a pressure p_f that
    * does not change along the far reservoir (with vertical motion that of a
    * column of water),
@@ -35,14 +35,14 @@ namespace Voussoir
     /**
      * Advances to p_(n+1) of the free field.
      * @param pressure of the water at the beginning of the step [Pa]
-     * @param flux     of the walls at the half step [m3/s]; gets at the nodes
-     *   of the end what leaves there besides M p / (rho c) at the middle of the
-     *   step
+     * @param flux     of the walls at the half step [m3/s]; at the nodes of the
+     * end the flux through the end is added, except M p / (rho c) at the middle
+     * of the step
      */
     void
     advance(const Vector &pressure, Vector &flux);
 
-    /** What the last step added to the flux, by owned node of the end [m3/s].
+    /** Flux that the last step added, by owned node of the end [m3/s].
      */
     std::vector<double> added;
 

@@ -8,7 +8,7 @@
 
 namespace Voussoir
 {
-  /** What g means in records and in peak accelerations [m/s2]. */
+  /** The value of g in records and in peak accelerations [m/s2]. */
   constexpr double standard_gravity = 9.81;
 
   enum class AccelerationUnit

@@ -77,7 +77,7 @@ namespace Voussoir
     std::pair<double, double>
     largest_misfit() const;
 
-    /** Makes motion and spectra so many times stronger. */
+    /** Multiplies motion and spectra by a factor. */
     void
     multiply(const double by);
   };

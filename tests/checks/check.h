@@ -44,7 +44,7 @@ namespace Voussoir
               const std::string &text,
               const std::string &expected);
 
-    /** What the lines below are about; no verdict. */
+    /** A heading for the lines below; no verdict. */
     void
     heading(const std::string &text);
 
@@ -81,7 +81,7 @@ namespace Voussoir
   }
 
 
-  /** Zero for what is below; a NaN stays. */
+  /** Zero for a value below; a NaN stays. */
   inline double
   positive_part(const double value)
   {

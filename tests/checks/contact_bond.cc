@@ -96,7 +96,7 @@ namespace Voussoir
     }
 
 
-    /** Base class: what the laws have in common. */
+    /** Base class: common part of the laws. */
     class LayerCheck : public Check
     {
     protected:

@@ -120,7 +120,7 @@ namespace Voussoir
 
     /**
      * A block that the water in its joint lifts, unless that on its top presses
-     * it down: the uplift must not be there before the reservoir is.
+     * it down: the uplift must not act before the reservoir.
      */
     class UpliftByStage : public Check
     {

@@ -11,7 +11,7 @@ namespace Voussoir
     /**
      * A bar along z with a weak layer is pulled apart slowly, without damping,
      * between linear elastic parts that show its traction by their elongation.
-     * What the law says that it loses is the work of the traction on the
+     * The loss that the law reports is the work of the traction on the
      * opening of the layer.
      */
     class CrackWork : public Check

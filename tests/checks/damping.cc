@@ -77,7 +77,7 @@ namespace Voussoir
                 a = b;
                 b = c;
               }
-            // the first peak still feels the start of the memory
+            // the first peak is still influenced by the start of the filters
             const double decrement =
               std::log(peaks[1] / peaks[6]) / (5. * 2. * numbers::PI);
             const double period = (times[6] - times[1]) / 5.;

@@ -26,7 +26,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("From", from, "When it is full [s].");
+        prm.add_parameter("From",
+                          from,
+                          "Time from which the disk is full [s].");
         prm.add_parameter("To", to, "When there is room again [s].");
         prm.add_parameter("Size", size, "To which files may grow [bytes].");
       }
@@ -49,7 +51,7 @@ namespace Voussoir
 
     /**
      * A disk that is full for a while costs pictures of that time, and nothing
-     * else; one that stays full is said, and the run does not end well.
+     * else; one that stays full is reported, and the run ends with an error.
      */
     class FailedWrites : public Check
     {
@@ -233,6 +235,6 @@ namespace Voussoir
 
     // Reference: ourselves
     const Registry<Check>::Add<FailedWrites>
-      registered("failed writes", "What becomes of results without room.");
+      registered("failed writes", "Results on a full disk.");
   } // namespace
 } // namespace Voussoir

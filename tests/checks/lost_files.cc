@@ -17,7 +17,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Does harm to the results in the middle of a run. */
+    /** Damages the results in the middle of a run. */
     class Harm : public TestObserver
     {
     public:
@@ -78,8 +78,8 @@ namespace Voussoir
 
     /**
      * Results that are taken away during a run are not made anew without their
-     * beginning: the run says what is missing and does not end well. And no
-     * run goes on without them.
+     * beginning: the run names the missing files and ends with an error. And no
+     * run continues without them.
      */
     class LostFiles : public Check
     {
@@ -117,8 +117,8 @@ namespace Voussoir
           1,
           0.);
 
-        // going on from a checkpoint, whose size of each table counts, and
-        // which is a file
+        // restart from a checkpoint: it stores the size of each table, and must
+        // be a file
         const auto go_on = [&](const std::string           &name,
                                const std::function<void()> &change,
                                const std::string           &sentence) {

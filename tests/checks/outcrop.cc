@@ -8,11 +8,11 @@ namespace Voussoir
   namespace
   {
     /**
-     * Where a motion is given: one for the free surface comes out there, after
-     * twice the travel time of an S wave (see `incident_for_surface`), in
-     * layers with damping; one for an outcrop is twice the incident wave. Both
-     * use the same column: that it is right, the surface over the outcrop shows
-     * against plane waves in closed form.
+     * The place of a given motion: one for the free surface is reproduced
+     * there, after twice the travel time of an S wave (see
+     * `incident_for_surface`), in layers with damping; one for an outcrop is
+     * twice the incident wave. Both use the same column: that it is right, the
+     * surface over the outcrop shows against plane waves in closed form.
      */
     class Outcrop : public Check
     {
@@ -31,7 +31,7 @@ namespace Voussoir
         prm.add_parameter(
           "Frequencies",
           frequencies,
-          "Where to compare the surface with the outcrop [Hz].");
+          "Frequencies at which the surface is compared with the outcrop [Hz].");
       }
 
       void

@@ -50,7 +50,7 @@ namespace Voussoir
         return shear ? rock.s_wave_speed() : rock.p_wave_speed();
       }
 
-      /** Of the energy that comes, the shares that go back as the same kind of
+      /** Shares of the incident energy that are reflected as the same kind of
        *  wave and, of P and SV, as the other. */
       std::array<double, 2>
       shares(const double w, const double k) const
@@ -98,12 +98,11 @@ namespace Voussoir
 
 
     /**
-     * A packet of waves runs down a strip of rock and meets its absorbing
-     * bottom at an angle: on sides that only slide, or where shear waves have
-     * none to hold them, two waves that cross make a mode cos(k x), and k
-     * = pi / width and the frequency say the angle. The share of the energy
-     * that comes back, against the closed form for plane waves, over the
-     * packet's components.
+     * A packet of waves travels down a strip of rock and meets its absorbing
+     * bottom at an angle: on sides that only slide, or are free for SH waves,
+     * two crossing waves form a mode cos(k x), and k = pi / width and the
+     * frequency determine the angle. The reflected share of the energy, against
+     * the closed form for plane waves, over the packet's components.
      */
     class ReflectionAngle : public Check
     {
@@ -296,6 +295,6 @@ namespace Voussoir
     // Reference: closed form
     const Registry<Check>::Add<ReflectionAngle>
       registered("reflection at an angle",
-                 "Energy that the absorbing boundary throws back.");
+                 "Energy that the absorbing boundary reflects.");
   } // namespace
 } // namespace Voussoir

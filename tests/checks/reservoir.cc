@@ -124,8 +124,8 @@ namespace Voussoir
 
 
     /**
-     * A plane pulse in a channel without free surface: what comes back from
-     * the radiating end, and from an absorbing wall.
+     * A plane pulse in a channel without free surface: the reflection of the
+     * radiating end, and from an absorbing wall.
      */
     class ReservoirReflection : public Check
     {
@@ -195,8 +195,8 @@ namespace Voussoir
     };
 
 
-    /** Without losses the discrete energy of the water stays what it is, and
-     *  otherwise it is what work and losses leave. */
+    /** Without losses the discrete energy of the water is constant, and
+     *  otherwise it is the work less the losses. */
     class ReservoirEnergy : public Check
     {
     public:

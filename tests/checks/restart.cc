@@ -45,8 +45,8 @@ namespace Voussoir
 
 
     /**
-     * A run that is interrupted and goes on from its checkpoint is the run that
-     * was not: bit for bit on as many ranks, to round-off on others.
+     * A run that is interrupted and continues from its checkpoint equals the
+     * uninterrupted run: bit for bit on as many ranks, to round-off on others.
      */
     class Restart : public Check
     {
@@ -208,7 +208,7 @@ namespace Voussoir
              const bool           interrupted)
       {
         return file.with({"Output/Folder=" + name,
-                          "Static state/Keep in=", // each finds its own
+                          "Static state/Keep in=", // each rank finds its own
                           std::string("Output/interruption/Times=") +
                             (interrupted ? "0.2" : "1e9")});
       }
@@ -291,7 +291,7 @@ namespace Voussoir
           }
         catch (const UserError &error)
           {
-            // when it was interrupted is not the same twice
+            // the time of interruption differs from run to run
             sentence = std::regex_replace(error.what(),
                                           std::regex("step-[0-9]+"),
                                           "step-N");

@@ -12,8 +12,8 @@ namespace Voussoir
   {
     /**
      * A table whose run goes on from a checkpoint at the time of one of its
-     * lines: killed before it has written that line anew, it has lost nothing
-     * of what the checkpoint counts; then it has each line once.
+     * lines: killed before it has written that line anew, it has lost no line
+     * that the checkpoint counts; then it has each line once.
      */
     class TableGoesOn : public Check
     {

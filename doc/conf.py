@@ -1,6 +1,5 @@
 """Sphinx configuration of the manual: ./bootstrap manual. Entries and classes of
-the reference come from the program itself, and what the pages name is looked
-for; all that is missing is a warning, which ./bootstrap manual makes an error.
+the reference come from the program itself, and files that the pages name must exist; missing ones give a warning, which ./bootstrap manual makes an error.
 """
 import json
 import os
@@ -32,7 +31,7 @@ myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 4
 suppress_warnings = ["myst.header"]  # an included page begins at its own level
 nitpicky = True
-smartquotes = False  # what stands in quotation marks is often to be typed
+smartquotes = False  # texts in quotation marks are often typed
 
 
 # ------------------------------------------------------ entries of the program
@@ -54,7 +53,7 @@ def is_entry(node):
 
 
 def without_case(node):
-    """A node without what depends on the case in which the program shows it."""
+    """A node without members that depend on the printed case."""
     if is_entry(node):
         node = {**node, "value": node["default_value"], "pattern": ""}
     return node
@@ -66,7 +65,7 @@ def plain(text):
 
 
 def allowed(pattern):
-    """What may stand for an entry, from deal.II's description of its pattern."""
+    """Allowed values of an entry, from deal.II's description of its pattern."""
     number = re.match(r"\[(Double|Integer)(?: range)? (\S+?)\.\.\.(\S+)", pattern)
     if number:
         word = {"Double": "number", "Integer": "whole number"}[number[1]]
@@ -176,7 +175,7 @@ def heading(case):
 
 
 def cases():
-    """What each shipped case says of itself."""
+    """Title and head of each shipped case."""
     text = ""
     for case in sorted((ROOT / "prm").rglob("*.prm")):
         title, parts = heading(case)

@@ -17,8 +17,8 @@ namespace Voussoir
 
   namespace
   {
-    /** Modes wanted and some more, which speed up the iteration. The model must
-     *  have three times as many unknowns. */
+    /** The wanted modes and some more, which speed up the iteration. The model
+     *  must have three times as many unknowns. */
     unsigned int
     block_size(const ModalSystem &system, const unsigned int number)
     {

@@ -80,7 +80,7 @@ namespace Voussoir
       }
     solver.prepare_step(interfaces, at_clusters, time_step);
 
-    // the bars are springs that the stable time step does not know
+    // the bars are springs that the stable time step does not include
     double share = 0.;
     for (unsigned int k = 0; k < interfaces.points.size(); ++k)
       share = std::max(share, solver.bar_share_of_stable_step(interfaces, k));

@@ -298,7 +298,7 @@ namespace Voussoir
         result.largest = std::max(result.largest, point.force.norm());
         sum += size;
       }
-    if (!std::isfinite(sum)) // std::max drops what is not a number
+    if (!std::isfinite(sum)) // std::max drops NaN
       result.change = result.moved = result.largest =
         std::numeric_limits<double>::infinity();
     return result;

@@ -81,7 +81,7 @@ namespace Voussoir
     prm.add_parameter(
       "Load cases",
       load_cases,
-      "What this run is, as \"static usual, MCE, after the earthquake\": "
+      "Load cases of this run, as \"static usual, MCE, after the earthquake\": "
       "criteria of other load cases are left out, so that one file can hold "
       "those of all. Empty: all.",
       Patterns::MultipleSelection(

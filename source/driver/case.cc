@@ -218,8 +218,7 @@ namespace Voussoir
     prm.add_parameter(
       "Energy limit",
       energy_limit,
-      "Energy-balance error at which the run stops, over what came in; from a "
-      "hundredth on the run warns.",
+      "Energy-balance error at which the run stops, over the energy that came in; from a hundredth on the run warns.",
       Patterns::Double(0., 1.));
     prm.add_parameter(
       "Checkpoint interval",
@@ -455,7 +454,7 @@ namespace Voussoir
       refuse("compressible water",
              "set \"Model = added mass\" in section \"Reservoir\"");
     if (modes.number > 0 && damping.depends_on_modes())
-      refuse("damping that goes by modes, as \"" +
+      refuse("damping that is fitted to modes, as \"" +
                std::string(damping.modes.empty() ? "Reference frequency" :
                                                    "From modes") +
                "\" in section \"Damping\" says",

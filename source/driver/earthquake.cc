@@ -213,7 +213,7 @@ namespace Voussoir
     }
 
 
-    // A vertical wave is that of one column of layers.
+    // A vertical wave is computed in one column of layers.
     void
     check_layers(const Model &model, Log &log)
     {

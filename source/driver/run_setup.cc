@@ -71,7 +71,7 @@ namespace Voussoir
 
 
     // The bars across interfaces are springs that the stable step does not
-    // know.
+    // include.
     void
     refuse_stiff_bars(const Model &model, const double time_step)
     {

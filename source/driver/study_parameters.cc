@@ -55,7 +55,8 @@ namespace Voussoir
       "Materials/rock/Young's modulus = 15e9, 20e9\". Each combination is a run "
       "of its own. \"&\" instead of a semicolon pairs two entries: the first "
       "values of both together, then the second. \"" +
-        strength_reduction + "\" divides what \"Reduced strengths\" names.");
+        strength_reduction +
+        "\" divides the entries of \"Reduced strengths\".");
     prm.add_parameter(
       "Spread over",
       spread,

@@ -473,7 +473,7 @@ namespace Voussoir
 
 
     /** Sends items of @p width numbers, @p n_to [r] of them to rank r, in the
-     *  order of ranks; returns what comes likewise. */
+     *  order of ranks; returns the received items in the same order. */
     template <typename Number>
     std::vector<Number>
     exchange(const std::vector<Number> &numbers,

@@ -259,7 +259,7 @@ namespace Voussoir
     prm.add_parameter(
       "Local refinement",
       local_refinement,
-      "Further refinement where it is wanted, items separated by \";\": "
+      "Local refinement, items separated by \";\": "
       "\"set: levels\" for a cell set, or \"box x0 y0 z0 x1 y1 z1: levels\" "
       "[m] for the cells whose centre lies in the box. Hanging nodes result.");
     prm.add_parameter(
@@ -280,8 +280,7 @@ namespace Voussoir
     prm.add_parameter(
       "Count partitions",
       counted_ranks,
-      "Numbers of ranks, separated by commas, for which the log "
-      "says what a partition by p4est would be: balance, "
+      "Numbers of ranks, separated by commas, for which the log describes a partition by p4est: balance, "
       "neighbours of a rank and nodes that it exchanges with "
       "them. The run itself needs no such ranks.",
       Patterns::List(Patterns::Integer(1, 1000000)));

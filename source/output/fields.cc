@@ -19,7 +19,7 @@ namespace Voussoir
       {
         prm.add_parameter("Quantities",
                           quantities,
-                          "What to write: displacement [m], also since the "
+                          "Fields to write: displacement [m], also since the "
                           "static state or the last grouting of joints, "
                           "velocity [m/s], principal stress [MPa], mesh "
                           "quality (scaled Jacobian and aspect ratio of the "

@@ -43,7 +43,7 @@ namespace Voussoir
           "for absolute motion.");
         prm.add_parameter("Quantities",
                           quantities,
-                          "What to write: displacement [m], velocity [m/s], "
+                          "Columns to write: displacement [m], velocity [m/s], "
                           "acceleration [m/s2], in which pounding of cracks "
                           "and joints shows as single steps, and the same "
                           "below the filter frequency; displacement also since "

@@ -173,7 +173,7 @@ namespace Voussoir
         smallest         = safety;
         time_of_smallest = time;
       }
-    // what slides is at its limit, up to the waves inside
+    // sliding planes are at their limit, except for waves inside the block
     if (safety < 1. + 1e-3)
       time_at_one += interval;
     return is_smallest;

@@ -8,9 +8,9 @@
 namespace Voussoir
 {
   /**
-   * The lines a test prints: one quantity each, with what it is compared with
-   * and a verdict. Values are rounded to four digits, so that the reference
-   * output holds on other processors.
+   * The lines a test prints: one quantity each, with its reference and a
+   * verdict. Values are rounded to four digits, so that the reference output
+   * holds on other processors.
    */
   class Verdicts
   {
@@ -38,7 +38,7 @@ namespace Voussoir
     void
     is_true(const std::string &name, const bool value);
 
-    /** A text beside what it must be. */
+    /** A text beside the expected one. */
     void
     same_text(const std::string &name,
               const std::string &text,

@@ -86,7 +86,7 @@ namespace Voussoir
                        section[0] * section[1] *
                        std::stod(file.given("Materials/stone/Young's modulus")),
                      force = traction * section[0] * section[1];
-        // what a change of the force adds
+        // increment by a change of the force
         const auto change = [&](const double by, const double d) {
           const double size = std::abs(by);
           return Slip{by * size / (2. * d * stiffness * resistance),

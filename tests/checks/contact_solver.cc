@@ -492,7 +492,7 @@ namespace Voussoir
         return difference < 1e-9;
       }
 
-      /** What is worst over several steps of many clusters. Each step is also
+      /** Largest errors over several steps of many clusters. Each step is also
        *  solved from forces a thousand times as large. Friction may then
        *  prevent a slip that it does not prevent otherwise; but where the
        *  motion is the same, the forces must not depend on their start. */

@@ -254,7 +254,7 @@ namespace Voussoir
         excitation.values[i] = wavelet.acceleration(i * dt);
       const TimeSeries response{dt, layer(excitation.values)};
 
-      // the record without what lies above the frequencies asked for
+      // the record without frequencies above the given one
       const Tabulated table(
         {elcentro.time_step,
          BaselineCorrection().apply(elcentro).acceleration});

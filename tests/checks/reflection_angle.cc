@@ -111,7 +111,9 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Wave", wave, "", Patterns::Selection("SH|P|SV"));
-        prm.add_parameter("Angles", angles, "From the vertical [degrees].");
+        prm.add_parameter("Angles",
+                          angles,
+                          "Angle from the vertical [degrees].");
         prm.add_parameter("Sets", sets, "Of coefficients, or viscous.");
         prm.add_parameter("Distances",
                           distances,

@@ -16,9 +16,9 @@ namespace Voussoir
 
 
     /**
-     * A rigid wall in slow accelerated motion feels an incompressible
-     * reservoir:
-     *   p(h) = 8/pi^2 rho a H sum_odd sin(n pi h / 2H) / n^2 at depth h.
+     * A rigid wall in slowly growing acceleration has the pressure of an
+     * incompressible reservoir: p(h) = 8/pi^2 rho a H sum_odd sin(n pi h / 2H)
+     * / n^2 at depth h.
      */
     class ReservoirPressure : public Check
     {

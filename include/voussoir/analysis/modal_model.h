@@ -55,7 +55,7 @@ namespace Voussoir
     declare(dealii::ParameterHandler &prm);
 
     /** Whether the modes need the cells of water, under this `Model` of section
-     * "Reservoir". */
+     *  "Reservoir". */
     bool
     want_cells_of_water(const ReservoirParameters &reservoir) const;
 
@@ -65,7 +65,7 @@ namespace Voussoir
           const BoundaryParameters       &boundaries) const;
   };
 
-  /** What the modes are computed from. */
+  /** Input of the modes. */
   struct ModalModel
   {
     const Solid              &solid;

@@ -90,7 +90,7 @@ namespace Voussoir
                                     Vector,
                                     dealii::DiagonalMatrix<Vector>>;
 
-    /** dst += what the coarser levels make of the residual. */
+    /** dst += correction by the coarser levels for the residual. */
     void
     correct(Vector &dst, const Vector &residual) const;
 

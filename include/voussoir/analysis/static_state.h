@@ -59,7 +59,7 @@ namespace Voussoir
           const InterfacesParameters &interfaces) const;
   };
 
-  /** What the static stage is computed from. */
+  /** Input of the static stages. */
   struct StaticModel
   {
     const Solid              &solid;

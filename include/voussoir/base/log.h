@@ -25,7 +25,7 @@ namespace Voussoir
     ~Log();
 
     /** Writes to this file from now on, earlier messages first; clears the list
-     * of missing files. Continues an existing file, or begins a new one. */
+     *  of missing files. Continues an existing file, or begins a new one. */
     void
     open(const std::string &filename, const bool append);
 
@@ -48,13 +48,13 @@ namespace Voussoir
     progress_is_due() const;
 
     /** Reports the progress of a long task by its name: a bar in the last
-     * line of a terminal, which the next message overwrites; elsewhere and
-     * in log.txt a line, not more often than every five seconds. */
+     *  line of a terminal, which the next message overwrites; elsewhere and
+     *  in log.txt a line, not more often than every five seconds. */
     void
     progress(const double share_done, const std::string &text);
 
     /** Writes a warning, and again at the end and in the summary of a run.
-     * Warnings are not repeated.
+     *  Warnings are not repeated.
      */
     template <typename... Parts>
     void
@@ -87,7 +87,7 @@ namespace Voussoir
 
     /**
      * A file of the results that grows, on the first rank, from these bytes on.
-     * What was appended to it is on the disk before each checkpoint, see
+     * Appended text is on the disk before each checkpoint, see
      * write_growing_files().
      */
     std::shared_ptr<GrowingFile>
@@ -98,12 +98,12 @@ namespace Voussoir
     write(GrowingFile &grown);
 
     /** Writes the text that waits in memory for all of them; returns whether
-     * all of it is written. All ranks must call this together. */
+     *  all of it is written. All ranks must call this together. */
     bool
     write_growing_files();
 
     /** Sizes of the growing files, from which a run can continue [bytes], by
-     * name; all ranks must call this together. */
+     *  name; all ranks must call this together. */
     std::map<std::string, std::uint64_t>
     sizes_of_growing_files() const;
 

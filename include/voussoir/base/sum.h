@@ -115,7 +115,7 @@ namespace Voussoir
               static_cast<double>(beyond)};
     }
 
-    /** Adds what `save` gave. */
+    /** Adds a state that `save` returned. */
     void
     add_saved(const std::vector<double> &saved)
     {

@@ -31,7 +31,7 @@ namespace Voussoir
   }
 
 
-  /** What a number of the summary must not exceed or fall below. */
+  /** A limit of a number of the summary. */
   struct AcceptanceCriterion
   {
     std::string name, clause, source, quantity, at_most, at_least;
@@ -64,8 +64,9 @@ namespace Voussoir
     table(const nlohmann::json &summary) const;
 
   private:
-    std::string                    names, load_cases;
-    std::list<AcceptanceCriterion> criteria; // whose places prm knows
+    std::string names, load_cases;
+    std::list<AcceptanceCriterion>
+      criteria; // of which prm stores the addresses
   };
 
   /** A number beside its limit, as a line of a table: "value", "at most" or "at

@@ -11,8 +11,8 @@ namespace Voussoir
   /** The motion of the ground that a case gives or has made. */
   struct EarthquakeMotion
   {
-    /** Reads or makes the motion and reports it. Throws UserError for one that
-     *  cannot enter the model as the case wants. */
+    /** Reads or makes the motion and reports it. Throws UserError for a motion
+     *  that cannot enter the model in the given way. */
     EarthquakeMotion(const Model &model, Log &log);
 
     /** None where the ground does not move; the earthquake takes them. */

@@ -17,8 +17,8 @@ namespace Voussoir
     /**
      * Throws UserError if there is no such time step.
      *
-     * @param modes  to which damping is adapted, if the case wants that; before
-     *   they are known there is none, which allows for the longest step
+     * @param modes  to which damping is fitted, if the case asks for that;
+     * before they are known there is no damping, which allows the longest step
      * @param folder whose checkpoint, if the run goes on from one, has the step
      */
     RunSetup(RunPlan           &&plan,

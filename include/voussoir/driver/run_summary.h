@@ -15,7 +15,7 @@ namespace Voussoir
     double scaled_jacobian, aspect_ratio, smallest_angle; // [degrees]
   };
 
-  /** What a run is computed on. */
+  /** Size of a run: program, ranks, mesh. */
   struct ModelSummary
   {
     std::string                        version, title;

@@ -61,7 +61,7 @@ namespace Voussoir
       nlohmann::json numbers; // of the summary, by their paths
     };
 
-    /** What the search found: the criterion is met at `meets`, not at
+    /** Result of a search: the criterion is met at `meets`, not at
      *  `fails`. */
     struct Limit
     {

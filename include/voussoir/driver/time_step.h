@@ -11,7 +11,7 @@ namespace Voussoir
   double
   undamped_step(const Model &model, const InternalForce &internal_force);
 
-  /** The time step of a run, and what limits it. */
+  /** The time step of a run, and its limits. */
   struct TimeStep
   {
     /**

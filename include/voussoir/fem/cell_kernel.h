@@ -31,7 +31,7 @@ namespace Voussoir
   };
 
 
-  /** What bounds the forces of cells in a step that is stable: with the force
+  /** Bounds of the forces of cells in a stable step: with the force
    *  K_e u_e of a cell, K_e <= K <= 4 M / dt^2 . */
   struct MotionBound
   {
@@ -45,7 +45,7 @@ namespace Voussoir
 
 
   /**
-   * What a sweep over the cells reads. With the damping memory w, which are
+   * Input of a sweep over the cells. With the damping memory w, which are
    * filters of the displacement u, the strain of elastic points is B (x + s w)
    * , where x is u plus the part of damping that is the same in all materials.
    * A law with internal variables needs B u as well: damping does not act in
@@ -78,7 +78,7 @@ namespace Voussoir
 
 
   /**
-   * What the energy of a damped motion depends on, after the step from the
+   * Input of the energy of a damped motion, after the step from the
    * velocity v- to v+ : the displacement u since the static state, and the
    * damping memory w that the step had.
    */
@@ -93,7 +93,7 @@ namespace Voussoir
   };
 
 
-  /** What the energy of the points depends on that have left the elastic range.
+  /** Input of the energy of points that have left the elastic range.
    */
   struct InelasticMotion
   {
@@ -232,7 +232,7 @@ namespace Voussoir
 
     /**
      * Energy since the static state of the points that have left the elastic
-     * range, less what the forces of that state do.
+     * range, less the work of the forces of that state.
      */
     virtual InelasticEnergy
     inelastic_energy(const CellRange       &cells,

@@ -240,8 +240,8 @@ namespace Voussoir
     void
     use_own_geometry();
 
-    /** Keeps the corners of the cells with one point, and frees what the
-     *  library has computed of their geometry. */
+    /** Keeps the corners of the cells with one point, and frees the geometry
+     *  that the library has computed for them. */
     void
     keep_corners_only();
 

@@ -163,7 +163,7 @@ namespace Voussoir
     void
     make_static_strains(MaterialMemory &memory) const;
 
-    /** Sum of what @p evaluate gives for the runs of batches of one material,
+    /** Sum of @p evaluate over the runs of batches of one material,
      *  in the part of this rank. */
     template <typename Sum>
     Sum

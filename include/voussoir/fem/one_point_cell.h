@@ -66,7 +66,7 @@ namespace Voussoir
       return nodes.begin_dof_values();
     }
 
-    /** Evaluates what the flags name, gradients or values. */
+    /** Evaluates gradients or values, according to the flags. */
     void
     evaluate(const dealii::EvaluationFlags::EvaluationFlags flags);
 

@@ -40,8 +40,8 @@ namespace Voussoir
      *   as this
      * @param columns    titles with units, without that of the time
      * @param time_step  [s]
-     * @param start_time of a run that goes on [s]: lines from here on come
-     *   again; others are kept
+     * @param start_time of a run that continues [s]: lines from here on are
+     * written again; earlier ones are kept
      */
     void
     open(Log                            &log,

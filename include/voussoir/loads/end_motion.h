@@ -16,14 +16,14 @@ namespace Voussoir
    * column of water),
    *   1/(rho c^2) V dp_f/dt + C p_f = -V/(rho M) K I_f - flux ,
    *   dI_f/dt = p_f ,
-   * with the flux of the walls and the symbols of ReservoirEnd. Only what the
-   * dam scatters, p - p_f, travels along the channel: in its mode of frequency
-   * omega and decay b the water flows out with
-   *   sqrt(s^2 + 2 b s + omega^2) / (rho c s) M (p - p_f)
-   * in terms of the Laplace variable s, which below omega is no dashpot but a
-   * spring. Above 1/(rho c) it is a convolution of the impulse with
-   * exp(-b t) J_1(w t) w / t, w^2 = omega^2 - b^2, here a sum of exponentials
-   * (Alpert, Greengard and Hagstrom 2002, doi:10.1006/jcph.2002.7093).
+   * with the flux of the walls and the symbols of ReservoirEnd. Only the
+   * pressure scattered by the dam, p - p_f, travels along the channel: in its
+   * mode of frequency omega and decay b the water flows out with sqrt(s^2 + 2 b
+   * s + omega^2) / (rho c s) M (p - p_f) in terms of the Laplace variable s,
+   * which below omega is no dashpot but a spring. Above 1/(rho c) it is a
+   * convolution of the impulse with exp(-b t) J_1(w t) w / t, w^2 = omega^2 -
+   * b^2, here a sum of exponentials (Alpert, Greengard and Hagstrom 2002,
+   * doi:10.1006/jcph.2002.7093).
    */
   class EndMotion
   {

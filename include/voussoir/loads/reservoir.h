@@ -17,7 +17,7 @@ namespace Voussoir
    * A.v ,  dI/dt = p, with the wall's velocity v and the nodal area vectors A
    * out of the water; C holds the radiating end, 1/(rho c) per area, and the
    * absorbing bottom; the end acts on the pressure less its free field
-   * (EndMotion). The solid feels the forces A p. WaterMotion marches it.
+   * (EndMotion). The forces on the solid are A p. WaterMotion marches it.
    */
   class Reservoir
   {

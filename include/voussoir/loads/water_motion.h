@@ -18,9 +18,9 @@ namespace Voussoir
    *   I+ = I- + dt p_n
    *   1/(rho c^2) M (p_(n+1) - p_n)/dt + C (p_(n+1) + p_n)/2
    *     = -1/rho K I+ - sum A.v+ ,
-   * with the symbols of Reservoir, and at the radiating end with what EndMotion
-   * adds to the flux. The pressure is the hydrodynamic one, without the
-   * hydrostatic part.
+   * with the symbols of Reservoir, and at the radiating end with the flux of
+   * EndMotion. The pressure is the hydrodynamic one, without the hydrostatic
+   * part.
    */
   class WaterMotion : public NodalLoad
   {

@@ -53,8 +53,8 @@ namespace Voussoir
    *     (sigma_a : e_e,b - sigma_b : e_e,a)/2 + (sigma_a + sigma_b) : de_p/2 .
    *   The loss that the law itself reports goes into the balance instead, so
    * that the balance shows a law that reports less or more. Where no internal
-   *   variable has changed the law is elastic and loses nothing: what is left
-   * then is the error of the rule where cracks open and close, which is added
+   *   variable has changed the law is elastic and loses nothing: the remainder
+   * is then the error of the rule where cracks open and close, which is added
    * to the loss of closing.
    * - (s_a + s_b) n . B du . n / 2 on the viscosity of closing, all of it lost.
    * - (sigma_a + sigma_b) : (B du - de)/2 on damping. Of this work, summed up
@@ -353,7 +353,8 @@ namespace Voussoir
 
     /**
      * Energy since the static state of a point that has left the elastic range,
-     * less what the forces of that state do; zero in lanes that are elastic.
+     * less the work of the forces of that state; zero in lanes that are
+     * elastic.
      *
      * @param strain        B u
      * @param static_strain B u_s, or zero

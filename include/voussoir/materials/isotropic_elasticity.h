@@ -7,8 +7,8 @@ namespace Voussoir
 {
   /**
    * Damage at the modulus E with the stress and inelastic strain that a damage
-   * d has at the modulus a E of the static state: the effective strain is a (1
-   * - d + d/a) times what it was, and the damage d' = (d/a) / (1 - d + d/a) .
+   * d has at the modulus a E of the static state: the effective strain is
+   * multiplied by a (1 - d + d/a) , and the damage d' = (d/a) / (1 - d + d/a) .
    */
   struct DamageHandedOver
   {

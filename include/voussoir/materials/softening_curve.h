@@ -191,8 +191,9 @@ namespace Voussoir
     static std::vector<Node>
     exponential(const double strength, const double energy);
 
-    /** A sentence about cells of this length [m] if @p what, which takes the
-     *  energy and begins at @p strength, snaps back in them; else empty. */
+    /** A sentence about cells of this length [m] if a failure, named @p what,
+     *  of the energy and beginning at @p strength snaps back in them; else
+     *  empty. */
     std::string
     remark(const double       element_length,
            const std::string &what     = "a crack",

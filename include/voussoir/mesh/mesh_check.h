@@ -27,8 +27,8 @@ namespace Voussoir
 
   /**
    * Throw UserError, with a sentence that begins with @p place, if so many
-   * cells need more memory than the machines of all ranks have; what each rank
-   * makes as a whole must fit into one.
+   * cells need more memory than the machines of all ranks have; data that each
+   * rank stores as a whole must fit into one.
    */
   void
   check_size(const double       n_cells,

@@ -66,7 +66,7 @@ namespace Voussoir
     /**
      * @param n_blocks          between the abutments at the crest
      * @param columns_per_block columns of the grid
-     * @param rock              of whose columns and rows the halves grow
+     * @param rock              whose columns and rows grow by halves
      * @param water_level       wanted for the surface of a reservoir [m]; 0
      *                          for no reservoir
      * @param ledges            wanted in the right and the left bank
@@ -111,8 +111,8 @@ namespace Voussoir
 
     /**
      * Moves vertices near @p lines, of both banks, onto them, and the others to
-     * where the quadrilaterals are little distorted. Those on the contour stay
-     * on it, and with @p in_dam those of joints in their columns.
+     * where the quadrilaterals are little distorted. Vertices on the contour
+     * stay on it, and with @p in_dam those of joints in their columns.
      */
     void
     follow(const std::array<LedgeLine, 2> &lines,
@@ -180,7 +180,7 @@ namespace Voussoir
       unsigned int quad, edge;
     };
 
-    /** Between the @p sides, all on the contour, and what lies beyond them,
+    /** Between the @p sides, all on the contour, and the vertices beyond them,
      *  @p inside of the canyon or in the rock. */
     void
     add_layer(const std::vector<Side> &sides, const bool inside);

@@ -56,10 +56,11 @@ namespace Voussoir
 
   /**
    * The mesh of a file: quadrilaterals become faces of cells, cells numbered in
-   * mirror order are turned, vertices without a cell are dropped. What is left
-   * out goes to @p report (may be null), one line each. Throws UserError, with
-   * a sentence that begins with the name of the file, if elements other than
-   * hexahedra with eight vertices are among them or vertices are missing.
+   * mirror order are turned, vertices without a cell are dropped. Parts of the
+   * file that are left out are noted in @p report (may be null), one line each.
+   * Throws UserError, with a sentence that begins with the name of the file, if
+   * elements other than hexahedra with eight vertices are among them or
+   * vertices are missing.
    */
   CoarseMesh
   assemble_mesh(const FileMesh    &file,

@@ -39,7 +39,7 @@ namespace Voussoir
     /** Whether displacements are relative to a rigid base that moves. */
     bool base_moves;
 
-    /** Takes note of results that cannot be written. */
+    /** Records results that cannot be written. */
     Log &log;
 
     /** Interval of samples that miss at most 1.2 % of an extreme at the highest

@@ -48,8 +48,8 @@ namespace Voussoir
 #endif
     // Exceeding the limit of file size is an error of the write, not a signal.
     std::signal(SIGXFSZ, SIG_IGN);
-    // Ranks do not outlive an mpirun that is killed: Open MPI lets them go on,
-    // and write, for a second.
+    // Ranks do not outlive an mpirun that is killed: Open MPI lets them
+    // continue, and write, for a second.
     if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr)
       prctl(PR_SET_PDEATHSIG, SIGKILL);
     // Shared file pointers are not used. Of Open MPI's components for them "sm"

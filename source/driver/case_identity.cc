@@ -33,7 +33,7 @@ namespace Voussoir
     }
 
 
-    /** Whether a run may go on with another value of an entry. */
+    /** Whether a run may continue with another value of an entry. */
     bool
     is_free_of_restart(const std::string &entry)
     {

@@ -43,8 +43,7 @@ namespace Voussoir
       prm,
       "Far reservoir",
       far_reservoir,
-      "Compressible: model of the reservoir behind the radiating end. Channel: the section "
-      "of the end goes on without end, and takes no energy below its cut-off frequency, sound speed / (4 depth) where the bottom is level, except by absorption at its bottom. Plane waves: a dashpot of density times sound speed, as in most programs, which takes energy below that frequency, too. Neither affects the pressure by the motion of floor and banks along the whole reservoir.");
+      "Compressible: model of the reservoir behind the radiating end. Channel: the section of the end continues without end, and takes no energy below its cut-off frequency, sound speed / (4 depth) where the bottom is level, except by absorption at its bottom. Plane waves: a dashpot of density times sound speed, as in most programs, which takes energy below that frequency, too. Neither affects the pressure by the motion of floor and banks along the whole reservoir.");
     prm.add_parameter("Dam",
                       dam,
                       "Compressible: face sets of the dam. All other walls of "

@@ -35,8 +35,8 @@ namespace Voussoir
      *
      * In the return mapping the deviator of s keeps its direction and its trace
      * falls in proportion, which leaves one equation. Beyond the apex the
-     * return goes on along the hydrostatic axis to zero stress, which is always
-     * inside: the root is bracketed for every trial stress.
+     * return continues along the hydrostatic axis to zero stress, which is
+     * always inside: the root is bracketed for every trial stress.
      */
     struct LeeFenves : IsotropicElasticity
     {

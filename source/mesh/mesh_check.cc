@@ -52,8 +52,8 @@ namespace Voussoir
       const std::array<unsigned int, 4> around = {{v[0], v[1], v[3], v[2]}};
       const unsigned int                lowest =
         std::min_element(around.begin(), around.end()) - around.begin();
-      // deal.II numbers the vertices of opposite faces alike, so that they run
-      // counterclockwise from outside on +x, +y, +z only.
+      // deal.II numbers the vertices of opposite faces in the same order, so
+      // that they run counterclockwise from outside on +x, +y, +z only.
       const bool outward = face.face % 2 == 1;
       const bool smaller = around[(lowest + 1) % 4] < around[(lowest + 3) % 4];
       return smaller == outward;

@@ -13,7 +13,7 @@ namespace Voussoir
 
   namespace
   {
-    /** A box of hexahedra, by choice in horizontal layers; a column is a box.
+    /** A box of hexahedra, optionally in horizontal layers; a column is a box.
      */
     class Box : public MeshGenerator
     {
@@ -166,6 +166,6 @@ namespace Voussoir
     };
 
     const Registry<MeshGenerator>::Add<Box>
-      registered("box", "A box, or a column, by choice in layers.");
+      registered("box", "A box, or a column, optionally in layers.");
   } // namespace
 } // namespace Voussoir

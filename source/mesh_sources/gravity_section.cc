@@ -14,7 +14,7 @@ namespace Voussoir
 
   namespace
   {
-    /** A slice of a gravity dam, by choice on rock. */
+    /** A slice of a gravity dam, optionally on rock. */
     class GravitySection : public MeshGenerator
     {
     public:
@@ -406,6 +406,6 @@ namespace Voussoir
 
     const Registry<MeshGenerator>::Add<GravitySection> registered(
       "gravity section",
-      "A slice of a gravity dam (the default is Koyna's), by choice on rock.");
+      "A slice of a gravity dam (the default is Koyna's), optionally on rock.");
   } // namespace
 } // namespace Voussoir

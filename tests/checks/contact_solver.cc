@@ -437,7 +437,7 @@ namespace Voussoir
         worst.report("blocks on a base: ", verdicts);
       }
 
-      /** Friction that follows the pressure is next to none long after a point
+      /** Friction that follows the pressure is nearly none long after a point
        *  has opened. */
       static void
       friction_that_fades(Verdicts &verdicts)

@@ -19,7 +19,7 @@ namespace Voussoir
     const char *const too_large =
       "it would be larger than files may be here (ulimit -f)";
 
-    /** Lets files grow no further in a part of a run. */
+    /** Limits the size of files during a part of a run. */
     class FullDisk : public TestObserver
     {
     public:

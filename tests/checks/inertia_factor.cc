@@ -10,7 +10,7 @@ namespace Voussoir
   namespace
   {
     /**
-     * A material of a quarter of its inertia swings twice as fast and weighs
+     * A material of a quarter of its inertia vibrates twice as fast and weighs
      * the same: a bar of n cells that hangs from its base, of which the lowest
      * circular frequency is 2 c/h sin(pi/4n).
      */

@@ -9,7 +9,7 @@ namespace Voussoir
   namespace
   {
     /**
-     * A cube of 4 x 4 x 4 cells dealt to eight ranks: each has an eighth.
+     * A cube of 4 x 4 x 4 cells distributed to eight ranks: each has an eighth.
      * Between two of them lie 12 faces of 4 nodes, 6 edges of 2 nodes at four
      * ranks, and the middle at all; the first rank exchanges 12 + 3 * 6 + 7 of
      * these nodes.

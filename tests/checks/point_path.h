@@ -55,7 +55,7 @@ namespace Voussoir
   }
 
   /** Calls @p callback with a point in cells of several sizes [m], and a text
-   *  that says so. */
+   *  with the size. */
   inline void
   for_each_cell_size(
     const Material                                        &material,

@@ -145,7 +145,7 @@ namespace Voussoir
                            text_of("straight/histories.csv").size() > 1000);
         compare_tables("straight", "together", verdicts);
 
-        // the newest checkpoint is damaged, so it goes on from the one before
+        // the newest checkpoint is damaged, so it continues from the one before
         damage("older", communicator);
         const auto older = make_case(folder(file, "older", false));
         Simulation older_run(*older, options(true), communicator);
@@ -181,7 +181,7 @@ namespace Voussoir
                            *shared_run.run.contact,
                            verdicts);
 
-        // and by cells dealt out otherwise
+        // and by cells distributed otherwise
         const auto dealt = make_case(
           folder(file, "metis", false).with({"Mesh/Partition=METIS"}));
         Simulation dealt_run(*dealt, options(true), communicator);

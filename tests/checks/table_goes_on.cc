@@ -11,7 +11,7 @@ namespace Voussoir
   namespace
   {
     /**
-     * A table whose run goes on from a checkpoint at the time of one of its
+     * A table whose run continues from a checkpoint at the time of one of its
      * lines: killed before it has written that line anew, it has lost no line
      * that the checkpoint counts; then it has each line once.
      */

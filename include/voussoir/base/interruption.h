@@ -8,7 +8,7 @@
 
 namespace Voussoir
 {
-  /** Of a run that was stopped on request and can go on: that of temporary
+  /** Of a run that was stopped on request and can continue: that of temporary
    *  failures in sysexits.h, for scripts that then start it again. */
   constexpr int exit_code_stopped = 75;
 

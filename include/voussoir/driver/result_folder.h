@@ -30,14 +30,14 @@ namespace Voussoir
     bool validate = false;
   };
 
-  /** Where the results of a run go, and the checkpoint there that it goes on
+  /** Where the results of a run go, and the checkpoint there that it continues
    *  from. */
   class ResultFolder
   {
   public:
     /**
      * Looks for the folder, but writes nothing: the one that the case names,
-     * with the next free number added if it exists; a restart goes on in the
+     * with the next free number added if it exists; a restart continues in the
      * one with the newest checkpoint. Throws UserError if it cannot be written
      * to or must not be overwritten, if another run is writing there, or if
      * there is no checkpoint, or one of a different case.
@@ -69,7 +69,7 @@ namespace Voussoir
     std::string
     checkpoints() const;
 
-    /** The checkpoint that a restart goes on from. */
+    /** The checkpoint that a restart continues from. */
     const std::string &
     checkpoint_file() const;
 

@@ -19,7 +19,8 @@ namespace Voussoir
      *
      * @param modes  to which damping is fitted, if the case asks for that;
      * before they are known there is no damping, which allows the longest step
-     * @param folder whose checkpoint, if the run goes on from one, has the step
+     * @param folder whose checkpoint, if the run continues from one, has the
+     * step
      */
     RunSetup(RunPlan           &&plan,
              const Modes        &modes,

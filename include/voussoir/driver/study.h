@@ -36,9 +36,9 @@ namespace Voussoir
     ~Study();
 
     /** All runs, then study.csv and study.json. A run that fails is reported,
-     *  and the others go on; in the end that is IncompleteStudy, or UserError
-     *  if no run stands. Throws UserError, too, if another study is going on in
-     *  the folder. */
+     *  and the others continue; in the end that is IncompleteStudy, or
+     *  UserError if no run stands. Throws UserError, too, if another study is
+     *  in progress in the folder. */
     void
     run();
 

@@ -10,8 +10,8 @@ namespace Voussoir
   /**
    * Largest eigenvalue of M^-1 A for a symmetric A, from Lanczos iterations on
    * M^-1/2 A M^-1/2, which approach it from below and fast, as it lies at the
-   * end of the spectrum. They go on until it grows no more; throws UserError if
-   * that does not happen, as where numbers overflow.
+   * end of the spectrum. They continue until it grows no more; throws UserError
+   * if that does not happen, as where numbers overflow.
    *
    * @param start        with a part in every mode
    * @param inverse_mass diagonal of M^-1, zero where fixed

@@ -9,7 +9,7 @@ namespace Voussoir
 {
   /**
    * The section of the reservoir at its radiating end, behind which the far
-   * reservoir goes on as a channel of this section. All ranks hold the whole
+   * reservoir continues as a channel of this section. All ranks hold the whole
    * section: its free field and its modes are marched by EndMotion.
    */
   class ReservoirEnd

@@ -41,7 +41,7 @@ namespace Voussoir
     void
     advance(const dealii::Tensor<1, 3> &incident_velocity);
 
-    /** The motion, from which the next step goes on. */
+    /** The motion, from which the next step continues. */
     std::vector<double>
     save() const;
 

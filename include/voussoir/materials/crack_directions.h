@@ -9,7 +9,7 @@ namespace Voussoir
   template <typename Number>
   struct CrackDirections
   {
-    /** Of the largest tension or, where there is next to none, of the largest
+    /** Of the largest tension or, where there is nearly none, of the largest
      *  compression. */
     dealii::Tensor<1, 3, Number> normal;
 

@@ -125,7 +125,7 @@ namespace Voussoir
     relative_error() const;
 
     /** The error over the losses by damping, cracks, friction and impacts; zero
-     *  as long as these are next to nothing. */
+     *  as long as these are nearly zero. */
     double
     error_of_losses() const;
 

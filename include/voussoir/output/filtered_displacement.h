@@ -57,7 +57,7 @@ namespace Voussoir
     const Damping    &damping;
     const MaxwellStep maxwell;
     const bool        uniform; // damping factors
-    const double      factor;  // s if they are
+    const double      factor;  // s if it is the same for all materials
     Vector            u, w;
   };
 } // namespace Voussoir

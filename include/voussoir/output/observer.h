@@ -79,8 +79,8 @@ namespace Voussoir
     std::string              folder;
     double                   time_step; // [s]
 
-    /** When it starts [s], and whether it goes on there with the files of a run
-     *  that was interrupted. */
+    /** When it starts [s], and whether it continues there with the files of a
+     * run that was interrupted. */
     double start_time = 0.;
     bool   restarted  = false;
   };

@@ -86,7 +86,7 @@ namespace Voussoir
       LoadState
       load_state() const;
 
-      /** Of the loads and the free thermal strain [N]. */
+      /** Forces of the loads and the free thermal strain [N]. */
       Vector
       total_force(const LoadState &state) const;
 

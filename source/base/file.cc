@@ -109,7 +109,7 @@ namespace Voussoir
     }
 
 
-    /** Of a file in its file system; 0 if there is none. */
+    /** Number of a file in its file system; 0 if there is none. */
     std::uint64_t
     serial_number_of(const std::string &name)
     {

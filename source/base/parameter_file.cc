@@ -167,8 +167,8 @@ namespace Voussoir
                dealii::Patterns::PatternBase::Text);
     }
 
-    // All entries that prm knows, by path. ParameterHandler has no way to ask
-    // for them but its JSON form.
+    // All entries that are declared in prm, by path. ParameterHandler has no
+    // way to ask for them but its JSON form.
     std::map<std::string, Declared>
     declared_entries(const dealii::ParameterHandler &prm)
     {

@@ -88,7 +88,7 @@ namespace Voussoir
         return cube;
       }
 
-      /** Those that a point may belong to if computed once more. */
+      /** Cubes that a point may fall into, whatever its round-off. */
       std::set<Cube>
       near(const Point<3> &p, const double tolerance) const
       {

@@ -17,15 +17,15 @@ namespace Voussoir
     // beyond it.
     constexpr double margin = 1e-6;
 
-    // Of the largest force, by which a limit may be exceeded.
+    // Part of the largest force by which a limit may be exceeded.
     constexpr double tolerated = 1e-11;
 
     // Rows of a linear system of unit vectors that are combinations of others.
     constexpr double dependent = 1e-10;
 
-    // Of the sum of F^2 / A that self-equilibrated forces may have. Below it
-    // the forces stay as they are: those of the step before are where the next
-    // search begins, and should change little from step to step.
+    // Part of the sum of F^2 / A that self-equilibrated forces may have. Below
+    // it the forces stay as they are: those of the step before are where the
+    // next search begins, and should change little from step to step.
     constexpr double largest_share = 0.5;
 
     /** How the force of a point may change with its status and motion kept. */

@@ -13,8 +13,8 @@ namespace Voussoir
 
   namespace
   {
-    // Between two checks of cracks and slips [s], and how wide a crack may be
-    // over its cell: at a fiftieth, it detaches a block.
+    // Interval of checks of cracks and slips [s], and limit of the opening of a
+    // crack over its cell: at a fiftieth, it detaches a block.
     constexpr double check_interval = 0.1, widest_share = 0.02;
   } // namespace
 

@@ -97,7 +97,7 @@ namespace Voussoir
         DepthPressure::declare_parameters(prm);
         prm.add_parameter("Density",
                           density,
-                          "Of the water [kg/m3]." +
+                          "Density of the water [kg/m3]." +
                             usually(Usual::water_density),
                           Patterns::Double(0.));
         prm.add_parameter("Gravity",

@@ -37,7 +37,7 @@ namespace Voussoir
           const Complex u(k * step, 0.25 * numbers::PI);
           const Complex weight =
             step / numbers::PI / (std::cosh(u) * std::cosh(u) * std::cosh(u));
-          // with the conjugate; the first is its own
+          // with the conjugate; the first is its own conjugate
           terms.push_back(
             {k == 0 ? 0.5 * weight : weight, Complex(0., 1.) * std::tanh(u)});
         }

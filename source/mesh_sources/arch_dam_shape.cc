@@ -24,7 +24,8 @@ namespace Voussoir
     // Length over the dam's height in which the arch turns, inside the rock.
     constexpr double relative_turning_length = 0.75;
 
-    // To which lines are cut and the contour is found, over the dam's height.
+    // Tolerance of intersections with lines and the contour, over the dam's
+    // height.
     constexpr double tolerance = 1e-12;
 
 

@@ -249,7 +249,7 @@ namespace Voussoir
         return batch;
       }
 
-      /** Of the values that @p cells has read. */
+      /** Strain at a point from the values that @p cells has read. */
       SymmetricTensor3<Lanes>
       strain(const Evaluation  &cells,
              const Batch       &batch,

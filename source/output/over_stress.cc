@@ -430,7 +430,7 @@ namespace Voussoir
         return ratios.size();
       }
 
-      /** Of each set and ratio. */
+      /** Number of areas, one for each set and ratio. */
       std::size_t
       n_areas() const
       {

@@ -29,15 +29,15 @@ namespace Voussoir
                           Patterns::MultipleSelection("x|y|z"));
         prm.add_parameter("Damping ratio",
                           damping_ratio,
-                          "Of the oscillators [-].",
+                          "Damping ratio of the oscillators [-].",
                           Patterns::Double(0., 0.99));
         prm.add_parameter("Shortest period",
                           shortest,
-                          "Of the oscillators [s].",
+                          "Shortest period of the oscillators [s].",
                           Patterns::Double(1e-3));
         prm.add_parameter("Longest period",
                           longest,
-                          "Of the oscillators [s].",
+                          "Longest period of the oscillators [s].",
                           Patterns::Double(1e-3));
         prm.add_parameter("Number of periods",
                           n_periods,

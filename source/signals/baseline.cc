@@ -165,7 +165,7 @@ namespace Voussoir
       "filter without phase shift. none: the record as it is.");
     prm.add_parameter("Corner frequency",
                       corner_frequency,
-                      "Of the high-pass filter [Hz].",
+                      "Corner frequency of the high-pass filter [Hz].",
                       Double(0.01, 10.));
     prm.add_parameter("Taper",
                       taper,

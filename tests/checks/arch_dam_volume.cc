@@ -153,7 +153,9 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Cell sizes", sizes, "From coarse to fine [m].");
-        prm.add_parameter("Tolerance", tolerance, "Of the finest mesh.");
+        prm.add_parameter("Tolerance",
+                          tolerance,
+                          "Tolerance of the finest mesh.");
       }
 
       void

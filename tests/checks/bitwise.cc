@@ -86,7 +86,7 @@ namespace Voussoir
         prm.add_parameter("Cracked points",
                           cracked,
                           "Largest displacement, at least, at the end.");
-        prm.add_parameter("Slip", slip, "Of an interface, at least [m].");
+        prm.add_parameter("Slip", slip, "Slip of an interface, at least [m].");
       }
 
       void

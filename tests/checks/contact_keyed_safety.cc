@@ -20,7 +20,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Weight", weight, "Of the block [N].");
+        prm.add_parameter("Weight", weight, "Weight of the block [N].");
         prm.add_parameter("Slopes",
                           slopes,
                           "Tangent over the friction coefficient, with keys "

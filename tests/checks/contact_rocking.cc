@@ -25,7 +25,7 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Width", width, "[m].");
-        prm.add_parameter("Height", height, "Of the block [m].");
+        prm.add_parameter("Height", height, "Height of the block [m].");
         prm.add_parameter("Base", base, "Elevation of the joint [m].");
         prm.add_parameter("Angular velocity", rate, "At the start [1/s].");
         prm.add_parameter("Ways", ways, "From impact to impact, to compare.");

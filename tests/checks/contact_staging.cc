@@ -21,7 +21,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Length", length, "Of a block along the row [m].");
+        prm.add_parameter("Length",
+                          length,
+                          "Length of a block along the row [m].");
         prm.add_parameter("Height", height, "[m].");
       }
 

@@ -19,8 +19,8 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Length", length, "From heel to toe [m].");
-        prm.add_parameter("Width", width, "Of the block [m].");
-        prm.add_parameter("Weight", weight, "Of the block [N].");
+        prm.add_parameter("Width", width, "Width of the block [m].");
+        prm.add_parameter("Weight", weight, "Weight of the block [N].");
         prm.add_parameter("Heads", heads, "Heel, toe [m].");
         prm.add_parameter("Drains", drains, "Position, factor.");
       }
@@ -128,8 +128,8 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Area", area, "Of the joint [m2].");
-        prm.add_parameter("Weight", weight, "Of the block [N].");
+        prm.add_parameter("Area", area, "Area of the joint [m2].");
+        prm.add_parameter("Weight", weight, "Weight of the block [N].");
         prm.add_parameter("Heads", heads, "On the top, in the joint [m].");
       }
 

@@ -19,8 +19,10 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Left dip", left, "Of the left plane [degrees].");
-        prm.add_parameter("Right dip", right, "Of the right plane [degrees].");
+        prm.add_parameter("Left dip", left, "Dip of the left plane [degrees].");
+        prm.add_parameter("Right dip",
+                          right,
+                          "Dip of the right plane [degrees].");
       }
 
       void
@@ -110,7 +112,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Plunge", plunge, "Of the line [degrees].");
+        prm.add_parameter("Plunge", plunge, "Plunge of the line [degrees].");
         prm.add_parameter("Friction", friction, "Left, right.");
         prm.add_parameter("Cohesion", cohesion, "Left, right [Pa].");
       }

@@ -23,7 +23,7 @@ namespace Voussoir
         prm.add_parameter("Planes",
                           planes,
                           "Ends of an elastic part and of the layer [m].");
-        prm.add_parameter("Area", area, "Of the bar [m2].");
+        prm.add_parameter("Area", area, "Area of the bar [m2].");
         prm.add_parameter("Tolerances", tolerances, "For each law.");
       }
 

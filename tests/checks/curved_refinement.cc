@@ -21,7 +21,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Tolerance", tolerance, "Of the dam's volume.");
+        prm.add_parameter("Tolerance",
+                          tolerance,
+                          "Tolerance of the dam's volume.");
       }
 
       void

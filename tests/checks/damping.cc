@@ -18,7 +18,9 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Frequencies", frequencies, "Undamped [Hz].");
-        prm.add_parameter("Ratios", ratios, "Of the free decay [%].");
+        prm.add_parameter("Ratios",
+                          ratios,
+                          "Damping ratios of the free decay [%].");
         prm.add_parameter("Decays", decays, "Their frequencies [Hz].");
       }
 

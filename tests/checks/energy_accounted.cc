@@ -15,7 +15,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Limit", limit, "Of the energy-balance error.");
+        prm.add_parameter("Limit", limit, "Limit of the energy-balance error.");
       }
 
       void

@@ -21,7 +21,9 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Amplitude", amplitude, "Half the distance [m].");
-        prm.add_parameter("Frequency", frequency, "Of the motion [Hz].");
+        prm.add_parameter("Frequency",
+                          frequency,
+                          "Frequency of the motion [Hz].");
         prm.add_parameter("Intervals", intervals, "Of lines [s].");
         prm.add_parameter("Observers", observers, "With such an interval.");
       }

@@ -45,7 +45,9 @@ namespace Voussoir
         prm.add_parameter("Static factors",
                           factors,
                           "Static factors a, one after the other.");
-        prm.add_parameter("Tolerance", tolerance, "Of ft, 2 Gf/ft and Gf.");
+        prm.add_parameter("Tolerance",
+                          tolerance,
+                          "Tolerance of ft, 2 Gf/ft and Gf.");
       }
 
       void

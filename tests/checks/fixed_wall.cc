@@ -24,7 +24,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Level", level, "Of the water [m].");
+        prm.add_parameter("Level", level, "Level of the water [m].");
         prm.add_parameter("Face sets", faces, "Wet faces of the dam.");
         prm.add_parameter("Tolerance", tolerance, "Relative.");
       }

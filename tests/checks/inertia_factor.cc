@@ -21,8 +21,8 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Cells", n, "Along the bar.");
-        prm.add_parameter("Volume", volume, "Of the bar [m3].");
-        prm.add_parameter("Length", length, "Of the bar [m].");
+        prm.add_parameter("Volume", volume, "Volume of the bar [m3].");
+        prm.add_parameter("Length", length, "Length of the bar [m].");
       }
 
       void

@@ -20,9 +20,10 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Thicknesses",
-                          thicknesses,
-                          "Of the layers, in the order of the materials [m].");
+        prm.add_parameter(
+          "Thicknesses",
+          thicknesses,
+          "Thicknesses of the layers, in the order of the materials [m].");
         prm.add_parameter(
           "Frequencies",
           frequencies,

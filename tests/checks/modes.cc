@@ -268,7 +268,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Mass", dam_mass, "Of the dam [kg].");
+        prm.add_parameter("Mass", dam_mass, "Mass of the dam [kg].");
       }
 
     private:

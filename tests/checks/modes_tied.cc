@@ -100,7 +100,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Lengths", lengths, "Of the two parts [m].");
+        prm.add_parameter("Lengths", lengths, "Lengths of the two parts [m].");
         prm.add_parameter("Tolerance", tolerance, "Relative.");
       }
 

@@ -25,9 +25,10 @@ namespace Voussoir
           uniform,
           "One undamped material: the surface then moves as the "
           "outcrop, later by the travel time.");
-        prm.add_parameter("Thicknesses",
-                          thicknesses,
-                          "Of the layers, in the order of the materials [m].");
+        prm.add_parameter(
+          "Thicknesses",
+          thicknesses,
+          "Thicknesses of the layers, in the order of the materials [m].");
         prm.add_parameter(
           "Frequencies",
           frequencies,

@@ -114,7 +114,7 @@ namespace Voussoir
         prm.add_parameter("Angles",
                           angles,
                           "Angle from the vertical [degrees].");
-        prm.add_parameter("Sets", sets, "Of coefficients, or viscous.");
+        prm.add_parameter("Sets", sets, "Sets of coefficients, or viscous.");
         prm.add_parameter("Distances",
                           distances,
                           "r of the springs over the wavelength of S / 2 pi.");
@@ -215,7 +215,7 @@ namespace Voussoir
               {
                 const double qj = wavenumbers[j], wj = frequency(qj);
                 const double phase = qj * (x[2] - start);
-                // velocities stand half a step before
+                // velocities are half a step earlier
                 const double half = 0.5 * wj * simulation->run.time_step.length;
                 const double s    = weights[j] * std::sin(phase),
                              t    = weights[j] * std::cos(phase);

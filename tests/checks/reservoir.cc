@@ -133,7 +133,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Duration", duration, "Of the pulse [s].");
+        prm.add_parameter("Duration", duration, "Duration of the pulse [s].");
       }
 
       void

@@ -111,8 +111,8 @@ namespace Voussoir
           settings,
           "Depth [m], length [m], frequency [Hz] and reflection "
           "coefficient of the bottom.");
-        prm.add_parameter("Direction", direction, "Of the motion.");
-        prm.add_parameter("Rows", rows, "Of cells over the depth.");
+        prm.add_parameter("Direction", direction, "Direction of the motion.");
+        prm.add_parameter("Rows", rows, "Rows of cells over the depth.");
         prm.add_parameter("Ramp", duration, "Until the motion is steady [s].");
         prm.add_parameter("Tolerance", tolerance, "Relative.");
       }

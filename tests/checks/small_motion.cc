@@ -23,7 +23,7 @@ namespace Voussoir
                           "Factors on the load; the first is 1.");
         prm.add_parameter("Time function",
                           time_function,
-                          "Of the load \"push\" of size 1.");
+                          "Time function of the load \"push\" of size 1.");
         prm.add_parameter(
           "Linear",
           linear,

@@ -19,7 +19,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Tolerance", tolerance, "Of the closed form.");
+        prm.add_parameter("Tolerance",
+                          tolerance,
+                          "Tolerance of the closed form.");
       }
 
       void

@@ -39,7 +39,7 @@ namespace Voussoir
       const NodalTerms *springs = nullptr;
 
       /** Contact between parts of the model, which are tied where they touch at
-       * this displacement until `tangent_contact` changes that. */
+       *  this displacement until `tangent_contact` changes that. */
       Contact      *contact      = nullptr;
       const Vector *displacement = nullptr;
 
@@ -101,7 +101,7 @@ namespace Voussoir
     void
     multiply(Vector &force, const Vector &displacement) const;
 
-    /** Of the matrix, at owned entries. */
+    /** Diagonal of the matrix, at owned entries. */
     Vector
     diagonal() const;
 

@@ -21,8 +21,7 @@ namespace Voussoir
     ~ParallelSession();
 
   private:
-    /** Of a run without mpirun: a folder of its own for the session files of
-     *  Open MPI. */
+    /** Folder for the session files of Open MPI, of a run without mpirun. */
     std::filesystem::path                                     session_folder;
     std::unique_ptr<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
   };

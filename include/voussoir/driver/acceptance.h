@@ -50,7 +50,7 @@ namespace Voussoir
     void
     check() const;
 
-    /** Those of the load cases that the run is. */
+    /** Criteria of the load cases of the run. */
     std::vector<AcceptanceCriterion>
     of_the_run() const;
 

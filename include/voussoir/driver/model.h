@@ -60,7 +60,7 @@ namespace Voussoir
     const Solid             solid;
     const AbsorbingBoundary boundary;
 
-    /** Those of the case by name, in their order. */
+    /** Materials of the case by name, in their order. */
     const std::vector<std::pair<std::string, std::unique_ptr<const Load>>>
       loads;
 

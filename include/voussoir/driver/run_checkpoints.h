@@ -43,7 +43,7 @@ namespace Voussoir
     StateContent
     content_of(State &state) const;
 
-    /** Of the files that grow, by name in the output folder [bytes]. */
+    /** Sizes of the growing files, by name in the output folder [bytes]. */
     nlohmann::json
     sizes_of_files() const;
 

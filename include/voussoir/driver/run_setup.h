@@ -49,7 +49,8 @@ namespace Voussoir
 
     const Damping damping;
 
-    /** Of the run: the moduli hold at the reference frequency of damping. */
+    /** Internal force of the run: the moduli hold at the reference frequency of
+     *  damping. */
     const InternalForce internal_force;
 
     const TimeStep                     time_step;

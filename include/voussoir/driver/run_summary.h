@@ -9,7 +9,7 @@
 
 namespace Voussoir
 {
-  /** Of the worst cells of a material. */
+  /** Shape of the worst cells of a material. */
   struct CellQuality
   {
     double scaled_jacobian, aspect_ratio, smallest_angle; // [degrees]
@@ -158,7 +158,7 @@ namespace Voussoir
 
   class Run;
 
-  /** Of a run so far, but for its observers; called on all ranks. */
+  /** Results of a run so far, without its observers; called on all ranks. */
   RunSummary
   summary_of(const Run &run);
 

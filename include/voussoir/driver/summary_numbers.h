@@ -14,8 +14,8 @@ namespace Voussoir
   /**
    * A number of summary.json by its path, as "histories/crest/largest
    * displacement [m]"; a star in a name stands for any letters, and elements of
-   * a list are named by their index, from 0. Of several that fit it is the
-   * largest, or the smallest if the last name begins with that word.
+   * a list are named by their index, from 0. Of several numbers that fit the
+   * largest counts, or the smallest if the last name begins with that word.
    */
   class SummaryNumber
   {

@@ -27,7 +27,7 @@ namespace Voussoir
                   const std::vector<const CellKernel *> &kernels,
                   const std::vector<double>             &factors);
 
-    /** That of the same materials in another stage. */
+    /** The internal force of the same materials in another stage. */
     InternalForce
     with(const std::vector<double> &other_factors) const;
 

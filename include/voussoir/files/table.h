@@ -12,7 +12,7 @@ namespace Voussoir
   size_before(const std::string &filename, const double time);
 
   /** The heading of a file of comma-separated values, or another line of texts.
-   *  Those with a comma, a quotation mark or a line break are quoted as RFC
+   *  Texts with a comma, a quotation mark or a line break are quoted as RFC
    *  4180 has it, so that each stays one column. */
   std::string
   csv_heading(const std::vector<std::string> &titles);

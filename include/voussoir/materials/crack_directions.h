@@ -9,13 +9,13 @@ namespace Voussoir
   template <typename Number>
   struct CrackDirections
   {
-    /** Of the largest tension or, where there is nearly none, of the largest
-     *  compression. */
+    /** Direction of the largest tension or, where there is nearly none, of the
+     *  largest compression. */
     dealii::Tensor<1, 3, Number> normal;
 
     dealii::Tensor<1, 3, Number> tension, compression;
 
-    /** Share of the first of the two directions in the width of the band: zero
+    /** Share of `tension` against `compression` in the width of the band: zero
      *  or one unless both are about as severe. The width must be continuous,
      *  since otherwise the stress is not, and the search for equilibrium fails.
      */

@@ -95,7 +95,7 @@ namespace Voussoir
     yield_ratio(const SymmetricTensor3<double> &elastic_stress,
                 const double                    element_length) const = 0;
 
-    /** Of as many points as there are lanes. */
+    /** Response of as many points as there are lanes. */
     virtual Lanes
     yield_ratio(const SymmetricTensor3<Lanes> &elastic_stress,
                 const Lanes                   &element_length) const = 0;

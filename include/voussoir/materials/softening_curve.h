@@ -88,10 +88,10 @@ namespace Voussoir
                    const double             relief = 0.);
 
     /**
-     * That of the static state, with the same traction over the opening except
-     * for the increase of strength in an earthquake. Its points follow the
-     * curve exactly instead of by the rule of `go_on`, since a load increment
-     * is no time step: one increment leads to where ten do.
+     * The curve of the static state, with the same traction over the opening
+     * except for the increase of strength in an earthquake. Its points follow
+     * the curve exactly instead of by the rule of `go_on`, since a load
+     * increment is no time step: one increment leads to where ten do.
      *
      * @param static_modulus [Pa]
      * @param strength_increase factor that the stresses have in an earthquake

@@ -84,7 +84,7 @@ namespace Voussoir
     void
     conclude() const;
 
-    /** Does a run, or takes its results if they exist. */
+    /** Makes a run, or reads its results if they exist. */
     const Outcome &
     outcome_of(const StudyValues &values);
 

@@ -6,6 +6,7 @@
 #include <voussoir/base/usual_range.h>
 #include <voussoir/driver/case.h>
 #include <voussoir/mesh/mesh_check.h>
+#include <voussoir/mesh/mesh_report.h>
 #include <voussoir/output/material_memory.h>
 
 #include <algorithm>

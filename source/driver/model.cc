@@ -4,7 +4,7 @@
 #include <voussoir/loads/added_mass.h>
 #include <voussoir/loads/water_level.h>
 #include <voussoir/mesh/interfaces.h>
-#include <voussoir/mesh/mesh_check.h>
+#include <voussoir/mesh/mesh_parts.h>
 #include <voussoir/mesh/reservoir_mesh.h>
 
 #include <iomanip>

@@ -420,7 +420,8 @@ namespace Voussoir
           100. * least_step,
           " % change the forces of the materials by up to ",
           100. * largest_error,
-          " % of the loads against two of half the size, as where a crack grows suddenly; take more stages, or more \"Load increments\" in "
+          " % of the loads against two of half the size, as where a crack "
+          "grows suddenly; take more stages, or more \"Load increments\" in "
           "section \"Static state\"");
       return iterations;
     }
@@ -577,7 +578,8 @@ namespace Voussoir
                                   before,
                                   state.displacement,
                                   dissipated(memory)) +
-            ". Check the strength of these interfaces and materials, the supports of the blocks, and the loads and the order of the "
+            ". Check the strength of these interfaces and materials, the "
+            "supports of the blocks, and the loads and the order of the "
             "\"Stages\" in section \"Static state\".",
           before,
           state.displacement);

@@ -27,7 +27,8 @@ namespace Voussoir
     prm.add_parameter(
       "Residual cohesion",
       broken.cohesion,
-      "Shear strength without pressure once the bond is lost, while the interface is closed [Pa]." +
+      "Shear strength without pressure once the bond is lost, while the "
+      "interface is closed [Pa]." +
         usually(Usual::interface_cohesion),
       Patterns::Double(0.));
     prm.add_parameter("Residual friction coefficient",

@@ -21,6 +21,7 @@ namespace Voussoir
 
     const Registry<InterfaceLaw>::Add<BrittleBond> registered(
       "brittle bond",
-      "Tensile strength and cohesion that are lost at the first opening or slip, then friction.");
+      "Tensile strength and cohesion that are lost at the first opening or "
+      "slip, then friction.");
   } // namespace
 } // namespace Voussoir

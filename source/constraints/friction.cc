@@ -17,13 +17,16 @@ namespace Voussoir
         prm.add_parameter(
           "Friction coefficient",
           constant.friction,
-          "Friction coefficient: shear over pressure at which the interface slips [-]." +
+          "Friction coefficient: shear over pressure at which the interface "
+          "slips [-]." +
             usually(Usual::friction_coefficient),
           Patterns::Double(0.));
         prm.add_parameter(
           "Cohesion",
           constant.cohesion,
-          "Shear strength without pressure, while closed; it stays during slip, and is lost where the interface has been open by more than 0.01 mm [Pa]." +
+          "Shear strength without pressure, while closed; it stays during "
+          "slip, and is lost where the interface has been open by more than "
+          "0.01 mm [Pa]." +
             usually(Usual::interface_cohesion),
           Patterns::Double(0.));
       }

@@ -58,7 +58,8 @@ namespace Voussoir
     prm.add_parameter(
       "Drain position",
       drain_position,
-      "Position of a line of drains, as a share of the distance from the upstream to the downstream faces.",
+      "Position of a line of drains, as a share of the distance from the "
+      "upstream to the downstream faces.",
       Patterns::Double(0., 1.));
     prm.add_parameter(
       "Drain factor",
@@ -129,17 +130,21 @@ namespace Voussoir
     prm.add_parameter(
       "Grouted after",
       grouted_after,
-      "A load: until the end of the static stage that names it, the interface transmits no force, and its sides move independently. Opening and slip count from that moment. Empty: joined from the start.");
+      "A load: until the end of the static stage that names it, the interface "
+      "transmits no force, and its sides move independently. Opening and slip "
+      "count from that moment. Empty: joined from the start.");
     prm.add_parameter(
       "Key depth",
       key_depth,
-      "Depth of shear keys, which prevent slip while the opening is smaller; 0 for none [m]." +
+      "Depth of shear keys, which prevent slip while the opening is smaller; "
+      "0 for none [m]." +
         usually(Usual::key_depth),
       Patterns::Double(0.));
     prm.add_parameter(
       "Steel ratio",
       steel_ratio,
-      "Cross-section of the bars across the interface over its area; 0 for none.",
+      "Cross-section of the bars across the interface over its area; 0 for "
+      "none.",
       Patterns::Double(0., 1.));
     prm.add_parameter("Steel modulus",
                       steel_modulus,

@@ -30,7 +30,8 @@ namespace Voussoir
         prm.add_parameter(
           "Shear fracture energy",
           slip_energy,
-          "Fracture energy in shear, per area and without the work of the residual strength (GfII) [J/m2]." +
+          "Fracture energy in shear, per area and without the work of the "
+          "residual strength (GfII) [J/m2]." +
             usually(Usual::shear_fracture_energy),
           Patterns::Double(1e-3));
       }
@@ -57,7 +58,7 @@ namespace Voussoir
 
     const Registry<InterfaceLaw>::Add<SofteningBond> registered(
       "softening bond",
-      "Tensile strength and cohesion that soften with opening and slip at given "
-      "fracture energies, then friction.");
+      "Tensile strength and cohesion that soften with opening and slip at "
+      "given fracture energies, then friction.");
   } // namespace
 } // namespace Voussoir

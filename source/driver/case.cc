@@ -185,7 +185,8 @@ namespace Voussoir
       "Scheme",
       scheme,
       "Central difference: dashpots and mass damping act on the velocity at "
-      "the step, at no cost in the time step. Paper: on the velocity of the half step before, as in PSDAP.");
+      "the step, at no cost in the time step. Paper: on the velocity of the "
+      "half step before, as in PSDAP.");
   }
 
 
@@ -206,9 +207,9 @@ namespace Voussoir
     prm.add_parameter(
       "Observers for the verdict",
       for_verdict,
-      "Adds over-stress where a linear elastic material has a tensile strength, "
-      "and through cracks where a material cracks, if the observers do not name "
-      "them and the mesh has an upstream and a downstream face.");
+      "Adds over-stress where a linear elastic material has a tensile "
+      "strength, and through cracks where a material cracks, if the observers "
+      "do not name them and the mesh has an upstream and a downstream face.");
     prm.add_parameter(
       "Energy interval",
       energy_interval,
@@ -219,19 +220,22 @@ namespace Voussoir
     prm.add_parameter(
       "Energy limit",
       energy_limit,
-      "Energy-balance error at which the run stops, over the energy that came in; from a hundredth on the run warns.",
+      "Energy-balance error at which the run stops, over the energy that came "
+      "in; from a hundredth on the run warns.",
       Patterns::Double(0., 1.));
     prm.add_parameter(
       "Checkpoint interval",
       checkpoint_interval,
-      "Minutes on the clock between two checkpoints, from which --restart continues; 0 for none by the clock. SIGUSR1 asks for one more; "
-      "SIGTERM and the like, or a file named stop in the output folder, for "
-      "one and the end.",
+      "Minutes on the clock between two checkpoints, from which --restart "
+      "continues; 0 for none by the clock. SIGUSR1 asks for one more; SIGTERM "
+      "and the like, or a file named stop in the output folder, for one and "
+      "the end.",
       Patterns::Double(0.));
     prm.add_parameter(
       "Checkpoint time",
       checkpoint_time,
-      "Simulated time between two checkpoints [s]; 0 for none by simulated time.",
+      "Simulated time between two checkpoints [s]; 0 for none by simulated "
+      "time.",
       Patterns::Double(0.));
   }
 
@@ -578,7 +582,8 @@ namespace Voussoir
                   throw UserError(
                     "Cells of the set \"" + set + "\" have two materials, \"" +
                     materials.objects[result[cell]].first + "\" and \"" + name +
-                    "\"; make their \"Cell sets\" in section \"Materials\" disjoint.");
+                    "\"; make their \"Cell sets\" in section \"Materials\" "
+                    "disjoint.");
                 result[cell] = m;
               }
           }

@@ -72,7 +72,8 @@ namespace Voussoir
     prm.add_parameter(
       "Stresses",
       stresses,
-      "The same for given stresses [Pa]. Components that are not given have no stress.");
+      "The same for given stresses [Pa]. Components that are not given have "
+      "no stress.");
     prm.add_parameter("Steps",
                       steps,
                       "Steps from corner to corner.",

@@ -158,7 +158,8 @@ namespace Voussoir
                 "\" weighs too, ",
                 absorbs[rock] ? "which continues beyond the model" :
                                 "which is given less inertia",
-                ", would settle under its weight; name the cell sets that have weight");
+                ", would settle under its weight; name the cell sets that "
+                "have weight");
           }
       }
 

@@ -546,7 +546,8 @@ namespace Voussoir
             solid.discretization.degree > 2)
           log.line(
             "  note: fracture energies hold in cells of degree 1 and 2; "
-            "in cells of a higher degree the energy of a crack deviates from them.");
+            "in cells of a higher degree the energy of a crack deviates from "
+            "them.");
       }
   }
 } // namespace Voussoir

@@ -183,8 +183,9 @@ namespace Voussoir
       write_checkpoint();
     if (state.step < n_steps() && !model.parameters.moves())
       log.warn(
-        "nothing moves the model, neither an earthquake nor a constraint nor a load outside the static stages, so that it stays at rest; give one of these, or \"End time = 0\" in section "
-        "\"Time\"");
+        "nothing moves the model, neither an earthquake nor a constraint nor "
+        "a load outside the static stages, so that it stays at rest; give one "
+        "of these, or \"End time = 0\" in section \"Time\"");
     observe(); // after a restart the last state before it, once more
   }
 

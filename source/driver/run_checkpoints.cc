@@ -200,12 +200,12 @@ namespace Voussoir
         followed_to != setup.plan.motion.followed_to)
       {
         std::ostringstream text;
-        text
-          << "The checkpoint \"" << folder.checkpoint_file()
-          << "\" is of a motion without end, given at the free surface and deconvolved to the base for "
-          << followed_to
-          << " s; keep this \"End time\" in section \"Time\", or start "
-             "afresh.";
+        text << "The checkpoint \"" << folder.checkpoint_file()
+             << "\" is of a motion without end, given at the free surface and "
+                "deconvolved to the base for "
+             << followed_to
+             << " s; keep this \"End time\" in section \"Time\", or start "
+                "afresh.";
         throw UserError(text.str());
       }
     if (header.at("version") != version())

@@ -31,7 +31,8 @@ namespace Voussoir
         "The constraints \"" + constraints[pair / constraints.size()].first +
         "\" and \"" + constraints[pair % constraints.size()].first +
         "\" both prescribe the component " + "xyz"[(found - 1) % 3] +
-        " of the same nodes; remove it from one of them by \"Components\", or name other faces.");
+        " of the same nodes; remove it from one of them by \"Components\", or "
+        "name other faces.");
     }
 
 

@@ -23,7 +23,8 @@ namespace Voussoir
                " with deal.II " DEAL_II_PACKAGE_VERSION);
 #ifdef DEBUG
       log.line(
-        "DEBUG build: all checks are on, and it is some thirty times slower than a Release build.");
+        "DEBUG build: all checks are on, and it is some thirty times slower "
+        "than a Release build.");
 #endif
       log.line("Ranks: ",
                Utilities::MPI::n_mpi_processes(communicator),

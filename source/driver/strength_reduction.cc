@@ -75,7 +75,8 @@ namespace Voussoir
       throw UserError(
         "\"Reduced strengths\" in section \"Study\" names \"" + entry +
         "\", which is no strength, cohesion, friction or "
-        "fracture energy of a material or an interface; remove it there, or vary it by \"Vary\".");
+        "fracture energy of a material or an interface; remove it there, or "
+        "vary it by \"Vary\".");
     if (!by || *by <= 0.)
       throw UserError("Section \"Study\" has a " + strength_reduction +
                       " of \"" + divisor + "\"; give numbers above 0.");

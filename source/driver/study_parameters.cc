@@ -52,9 +52,9 @@ namespace Voussoir
       vary,
       "Entries of this file with the values they take, separated by "
       "semicolons, as in \"Ground motion/Overload factor = 1, 1.2, 1.4; "
-      "Materials/rock/Young's modulus = 15e9, 20e9\". Each combination is a run "
-      "of its own. \"&\" instead of a semicolon pairs two entries: the first "
-      "values of both together, then the second. \"" +
+      "Materials/rock/Young's modulus = 15e9, 20e9\". Each combination is a "
+      "run of its own. \"&\" instead of a semicolon pairs two entries: the "
+      "first values of both together, then the second. \"" +
         strength_reduction +
         "\" divides the entries of \"Reduced strengths\".");
     prm.add_parameter(
@@ -70,7 +70,8 @@ namespace Voussoir
       "Entries that the " + strength_reduction +
         " divides, separated by semicolons, as in \"Interfaces/planes/Friction "
         "coefficient; Interfaces/planes/Cohesion\"; of an angle of friction, "
-        "its tangent. Other strengths of the case stay unchanged; log and study.json name them.");
+        "its tangent. Other strengths of the case stay unchanged; log and "
+        "study.json name them.");
     prm.add_parameter(
       "Quantities",
       quantities,
@@ -83,7 +84,8 @@ namespace Voussoir
     prm.add_parameter(
       "Ranks of a run",
       ranks_of_run,
-      "Ranks of each run, so that several run at the same time; 0: all, one run after the other.",
+      "Ranks of each run, so that several run at the same time; 0: all, one "
+      "run after the other.",
       Patterns::Integer(0));
 
     prm.enter_subsection("Limit");
@@ -103,13 +105,15 @@ namespace Voussoir
       "Criterion",
       criterion,
       "Criterion of the limit: \"PATH > VALUE\" or \"PATH < VALUE\" of a "
-      "number of summary.json, or \"stopped\", for a static stage that comes to "
-      "no equilibrium, or a run that is stopped for its energy; one of several, "
-      "separated by semicolons, is enough. A run that fails otherwise meets no criterion and ends the search.");
+      "number of summary.json, or \"stopped\", for a static stage that comes "
+      "to no equilibrium, or a run that is stopped for its energy; one of "
+      "several, separated by semicolons, is enough. A run that fails "
+      "otherwise meets no criterion and ends the search.");
     prm.add_parameter(
       "Extend",
       extend,
-      "Whether to search beyond From and To where the limit is not between them, by up to four times their distance.");
+      "Whether to search beyond From and To where the limit is not between "
+      "them, by up to four times their distance.");
     prm.leave_subsection();
   }
 
@@ -143,7 +147,8 @@ namespace Voussoir
     spread_entries();
     if (seeks_limit() && criteria().empty())
       throw UserError(
-        "\"Criterion\" in section \"Study/Limit\" is empty; give the condition that is met at the limit of \"" +
+        "\"Criterion\" in section \"Study/Limit\" is empty; give the "
+        "condition that is met at the limit of \"" +
         varied_to_limit + "\".");
     if (seeks_limit() && !(from < to))
       throw UserError(

@@ -87,10 +87,11 @@ namespace Voussoir
     if (!warned_of_cracks)
       return;
     std::ostringstream text;
-    text
-      << std::setprecision(3) << "at t = " << time << " s a crack is open by "
-      << 1e3 * widest.opening << " mm, " << 100. * widest.share
-      << " % of its cell: cracks have detached a block from the rest; its detachment is a reliable result, its motion afterwards is not";
+    text << std::setprecision(3) << "at t = " << time
+         << " s a crack is open by " << 1e3 * widest.opening << " mm, "
+         << 100. * widest.share
+         << " % of its cell: cracks have detached a block from the rest; its "
+            "detachment is a reliable result, its motion afterwards is not";
     run.log.warn(text.str());
   }
 
@@ -119,11 +120,12 @@ namespace Voussoir
     if (!warned_of_slips)
       return;
     std::ostringstream text;
-    text
-      << std::setprecision(3) << "at t = " << time << " s \""
-      << run.contact->surface_names()[surface] << "\" has slipped by "
-      << farthest
-      << " m, more than half a cell of the interfaces: nodes still act on those opposite at the start; that it slides is a reliable result, where it comes to rest is not";
+    text << std::setprecision(3) << "at t = " << time << " s \""
+         << run.contact->surface_names()[surface] << "\" has slipped by "
+         << farthest
+         << " m, more than half a cell of the interfaces: nodes still act on "
+            "those opposite at the start; that it slides is a reliable result, "
+            "where it comes to rest is not";
     run.log.warn(text.str());
   }
 
@@ -137,12 +139,12 @@ namespace Voussoir
     if (effort.unsolved == 0)
       return;
     std::ostringstream text;
-    text
-      << std::setprecision(3) << "the contact of " << effort.unsolved
-      << " clusters of nodes was not solved: gaps deviate from the laws of their interfaces by up to "
-      << 100. * effort.residual
-      << " % of the motion in a step; compare with a run with a smaller "
-         "\"Safety factor\" in section \"Time\"";
+    text << std::setprecision(3) << "the contact of " << effort.unsolved
+         << " clusters of nodes was not solved: gaps deviate from the laws of "
+            "their interfaces by up to "
+         << 100. * effort.residual
+         << " % of the motion in a step; compare with a run with a smaller "
+            "\"Safety factor\" in section \"Time\"";
     run.log.warn(text.str());
   }
 

@@ -30,7 +30,10 @@ namespace Voussoir
       prm,
       "Model",
       model,
-      "Maxwell: a constant ratio over the band, with a slightly smaller time step. Rayleigh: the ratio at the two ends of the band, with a much smaller time step. Mass proportional: the ratio at the lowest frequency only.");
+      "Maxwell: a constant ratio over the band, with a slightly smaller time "
+      "step. Rayleigh: the ratio at the two ends of the band, with a much "
+      "smaller time step. Mass proportional: the ratio at the lowest "
+      "frequency only.");
     prm.add_parameter("Ratio",
                       ratio,
                       "Fraction of critical damping; materials can scale it.",
@@ -53,13 +56,16 @@ namespace Voussoir
       reference,
       "Frequency of the free vibration for which the materials' "
       "moduli hold under Maxwell damping [Hz]; in slower motion "
-      "they are smaller, in faster motion larger. \"first mode\": the lowest natural frequency "
-      "where section \"Modes\" computes some, else 3; 0: the "
-      "relaxed moduli.");
+      "they are smaller, in faster motion larger. \"first mode\": the lowest "
+      "natural frequency where section \"Modes\" computes some, else 3; 0: "
+      "the relaxed moduli.");
     prm.add_parameter(
       "Mesh viscosity",
       mesh_viscosity,
-      "Where materials can crack or yield: damping ratio at the highest frequency of the mesh, of waves that are too short for the cells; within the band at most 0.005. Without it the oscillation after one crack causes further cracks.",
+      "Where materials can crack or yield: damping ratio at the highest "
+      "frequency of the mesh, of waves that are too short for the cells; "
+      "within the band at most 0.005. Without it the oscillation after one "
+      "crack causes further cracks.",
       Patterns::Double(0., 0.3));
     prm.add_parameter("From modes",
                       modes,

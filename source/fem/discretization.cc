@@ -33,15 +33,20 @@ namespace Voussoir
       "cell. With one point a step costs about half, and walls of one or two "
       "cells bend as they should, while full integration at degree 1 makes "
       "them too stiff; but damage follows the mean strain of a cell only, and "
-      "a damaged cell keeps its stiffness against bending: where concrete cracks take full integration or several cells through the wall. \"One point where "
-      "elastic\" has one point in materials that stay elastic and Gauss points "
-      "in those that crack or yield: for a dam in a large rock mass. The mass is "
-      "always lumped at the Gauss-Lobatto nodes.");
+      "a damaged cell keeps its stiffness against bending: where concrete "
+      "cracks take full integration or several cells through the wall. \"One "
+      "point where elastic\" has one point in materials that stay elastic and "
+      "Gauss points in those that crack or yield: for a dam in a large rock "
+      "mass. The mass is always lumped at the Gauss-Lobatto nodes.");
     add_option(
       prm,
       "Sums",
       sums,
-      "As dealt: contributions of cells to a node are summed in the order of the partition, so that results on other numbers of ranks differ by round-off, which pounding of cracks and joints amplifies. Reproducible: results do not depend on the number of ranks, bit for bit, at a cost in time; doc/running.md says which results.");
+      "As dealt: contributions of cells to a node are summed in the order of "
+      "the partition, so that results on other numbers of ranks differ by "
+      "round-off, which pounding of cracks and joints amplifies. "
+      "Reproducible: results do not depend on the number of ranks, bit for "
+      "bit, at a cost in time; doc/running.md says which results.");
   }
 
 

@@ -48,8 +48,8 @@ namespace Voussoir
         if (!std::isfinite(alpha.back() + beta.back()))
           throw UserError(
             "The stiffness over the mass of the model is no "
-            "finite number, so no time step can be found; check for extreme values in the sections "
-            "\"Materials\" and \"Mesh\".");
+            "finite number, so no time step can be found; check for extreme "
+            "values in the sections \"Materials\" and \"Mesh\".");
 
         const bool exhausted = beta.back() <= 1e-12 * alpha.back();
         if (k == next_look || exhausted)
@@ -73,6 +73,8 @@ namespace Voussoir
       }
     throw UserError(
       "The largest natural frequency of the mesh, which limits "
-      "the time step, is not found in 10000 iterations; check the ratio of moduli and densities in section \"Materials\", and the mesh for distorted cells.");
+      "the time step, is not found in 10000 iterations; check the ratio of "
+      "moduli and densities in section \"Materials\", and the mesh for "
+      "distorted cells.");
   }
 } // namespace Voussoir

@@ -15,7 +15,8 @@ namespace Voussoir
     prm.add_parameter(
       "Roller",
       roller,
-      "Face sets that are fixed along their normal, as planes of symmetry; planes of constant x, y or z.");
+      "Face sets that are fixed along their normal, as planes of symmetry; "
+      "planes of constant x, y or z.");
     prm.add_parameter("Antisymmetric",
                       antisymmetric,
                       "Face sets that move at right angles to themselves only, "

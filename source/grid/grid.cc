@@ -254,7 +254,9 @@ namespace Voussoir
       "How many times each cell is cut into eight. The new "
       "nodes of an arch dam without wedges lie on its true "
       "faces, joints and canyon; other meshes are refined by "
-      "the middles of their edges. Every rank stores the whole mesh before refinement, and only its part afterwards, so give large meshes as coarse ones.",
+      "the middles of their edges. Every rank stores the whole mesh before "
+      "refinement, and only its part afterwards, so give large meshes as "
+      "coarse ones.",
       Patterns::Integer(0, 6));
     prm.add_parameter(
       "Local refinement",
@@ -265,8 +267,11 @@ namespace Voussoir
     prm.add_parameter(
       "Nodes per wavelength",
       nodes_per_wavelength,
-      "Cells are refined, material by material, until the S waves of \"Highest frequency\" have this number of nodes per wavelength; 8 suffice for amplitudes, 0 leaves the mesh unchanged. Hanging nodes result, "
-      "so that far rock may be given in cells as large as these waves allow.",
+      "Cells are refined, material by material, until the S waves of "
+      "\"Highest frequency\" have this number of nodes per wavelength; 8 "
+      "suffice for amplitudes, 0 leaves the mesh unchanged. Hanging nodes "
+      "result, so that far rock may be given in cells as large as these waves "
+      "allow.",
       Patterns::Double(0., 100.));
     prm.add_parameter("Highest frequency",
                       highest_frequency,
@@ -280,9 +285,9 @@ namespace Voussoir
     prm.add_parameter(
       "Count partitions",
       counted_ranks,
-      "Numbers of ranks, separated by commas, for which the log describes a partition by p4est: balance, "
-      "neighbours of a rank and nodes that it exchanges with "
-      "them. The run itself needs no such ranks.",
+      "Numbers of ranks, separated by commas, for which the log describes a "
+      "partition by p4est: balance, neighbours of a rank and nodes that it "
+      "exchanges with them. The run itself needs no such ranks.",
       Patterns::List(Patterns::Integer(1, 1000000)));
   }
 

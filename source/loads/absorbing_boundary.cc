@@ -41,7 +41,8 @@ namespace Voussoir
     prm.add_parameter(
       "Radius",
       radius,
-      "One distance r for all nodes [m]; 0: the distance from the source point.",
+      "One distance r for all nodes [m]; 0: the distance from the source "
+      "point.",
       Patterns::Double(0.));
   }
 

@@ -193,7 +193,8 @@ namespace Voussoir
       direction,
       "Normal: the water resists motion along the face's normal, which couples "
       "x, y and z on slanted faces. Uncoupled: motion along the river, across "
-      "and upwards, each by itself. River: motion along the river only, the direction of the resultant of the water.");
+      "and upwards, each by itself. River: motion along the river only, the "
+      "direction of the resultant of the water.");
   }
 
 

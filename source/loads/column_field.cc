@@ -285,10 +285,10 @@ namespace Voussoir
         peak = std::max(peak, recent);
         if (excitation.values.size() > 200 * period)
           throw UserError(
-            "The layers at the sides of the model oscillate too long for a motion "
-            "\"Given at\" the free surface; lower the \"Maximum frequency\" in "
-            "section \"Wave field\" to what the mesh resolves, or give the "
-            "layers damping in section \"Damping\".");
+            "The layers at the sides of the model oscillate too long for a "
+            "motion \"Given at\" the free surface; lower the \"Maximum "
+            "frequency\" in section \"Wave field\" to what the mesh resolves, "
+            "or give the layers damping in section \"Damping\".");
       }
     while (recent > 1e-4 * peak);
 

@@ -27,7 +27,8 @@ namespace Voussoir
         prm.add_parameter(
           "Face sets",
           face_sets,
-          "Face sets under the pressure, which is normal to them: one side of the dam, and optionally the canyon.");
+          "Face sets under the pressure, which is normal to them: one side of "
+          "the dam, and optionally the canyon.");
         prm.add_parameter("Level",
                           level,
                           "Elevation of the " + surface +

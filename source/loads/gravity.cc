@@ -30,7 +30,9 @@ namespace Voussoir
         factor.declare(
           prm,
           "Time function",
-          "Factor on the acceleration, for weight that belongs to no static stage but is applied over time; empty: the load belongs to a static stage.");
+          "Factor on the acceleration, for weight that belongs to no static "
+          "stage but is applied over time; empty: the load belongs to a "
+          "static stage.");
       }
 
       bool

@@ -37,15 +37,19 @@ namespace Voussoir
       prm,
       "Given at",
       given_at,
-      "Where the motion belongs. outcrop: on bare rock, twice the incident wave in the rock below; as in most codes. free surface: on top of the modelled ground "
-      "without dam and canyon, from where the wave is deconvolved. incident wave: the upgoing wave itself at the bottom of the model.");
+      "Where the motion belongs. outcrop: on bare rock, twice the incident "
+      "wave in the rock below; as in most codes. free surface: on top of the "
+      "modelled ground without dam and canyon, from where the wave is "
+      "deconvolved. incident wave: the upgoing wave itself at the bottom of "
+      "the model.");
     for (unsigned int c = 0; c < 3; ++c)
       prm.add_parameter(
         "Peak acceleration " + axis_names[c],
         peak_entries[c],
         "Largest acceleration, " + axis_meanings[c] +
           ", before the overload factor, from 0 to 10 [g = "
-          "9.81 m/s2]; 0 for no motion. \"as recorded\" takes a record unscaled; with the other types there is no motion.",
+          "9.81 m/s2]; 0 for no motion. \"as recorded\" takes a record "
+          "unscaled; with the other types there is no motion.",
         Anything());
     prm.add_parameter("Overload factor",
                       overload_factor,
@@ -97,7 +101,8 @@ namespace Voussoir
     prm.add_parameter(
       "Time step",
       time_step,
-      "Time step of tables that have a single column and no time [s]; 0 for all other files.",
+      "Time step of tables that have a single column and no time [s]; 0 for "
+      "all other files.",
       Double(0.));
     prm.add_parameter("Start time",
                       start_time,
@@ -148,9 +153,10 @@ namespace Voussoir
     prm.add_parameter(
       "Ramp cycles",
       ramp_cycles,
-      "Number of cycles in which the motion is faded in and, at the end, out; meanwhile it exceeds the peak acceleration, by 15 % for 1 and by 2 % for 2. 0: the acceleration is a "
-      "full sine from the start, so that the ground drifts to "
-      "one side.",
+      "Number of cycles in which the motion is faded in and, at the end, out; "
+      "meanwhile it exceeds the peak acceleration, by 15 % for 1 and by 2 % "
+      "for 2. 0: the acceleration is a full sine from the start, so that the "
+      "ground drifts to one side.",
       Integer(0));
   }
 
@@ -248,7 +254,8 @@ namespace Voussoir
 
     if (!moves(0) && !moves(1) && !moves(2))
       throw UserError(
-        "\"Peak acceleration x\", y and z in section \"Ground motion\" leave no motion; one of them must be above 0" +
+        "\"Peak acceleration x\", y and z in section \"Ground motion\" leave "
+        "no motion; one of them must be above 0" +
         std::string(type == GroundMotionType::record ?
                       ", or \"as recorded\", of a component with a file" :
                       "") +

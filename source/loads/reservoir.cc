@@ -255,10 +255,10 @@ namespace Voussoir
     for (const Point<3> &x : join_over_ranks(lonely, space.grid.communicator()))
       {
         std::ostringstream text;
-        text
-          << "At (" << x
-          << ") m a node of the solid on the wall of the reservoir meets "
-             "no node of the water; do not refine cells at the water by \"Local refinement\" in section \"Mesh\".";
+        text << "At (" << x
+             << ") m a node of the solid on the wall of the reservoir meets "
+                "no node of the water; do not refine cells at the water by "
+                "\"Local refinement\" in section \"Mesh\".";
         throw UserError(text.str());
       }
 

@@ -22,7 +22,8 @@ namespace Voussoir
         prm.add_parameter(
           "Cell sets",
           cell_sets,
-          "Cell sets of the change of temperature, with their outer nodes; in the cells beside them it decreases to zero.");
+          "Cell sets of the change of temperature, with their outer nodes; in "
+          "the cells beside them it decreases to zero.");
         prm.add_parameter("Uniform change",
                           uniform,
                           "Change of temperature since the joints were closed, "

@@ -25,7 +25,8 @@ namespace Voussoir
       "Type",
       type,
       "Vertical: x and y components travel upwards as S waves, z as a P wave, "
-      "through the layers at the model's sides. Oblique waves travel in a homogeneous half-space; their motion is the one component given.");
+      "through the layers at the model's sides. Oblique waves travel in a "
+      "homogeneous half-space; their motion is the one component given.");
     prm.add_parameter("Angle",
                       angle,
                       "Oblique waves: angle between the direction of travel "
@@ -40,7 +41,8 @@ namespace Voussoir
     prm.add_parameter(
       "Maximum frequency",
       maximum_frequency,
-      "For motions given at the free surface: frequencies above are removed when the wave at the base is computed [Hz].",
+      "For motions given at the free surface: frequencies above are removed "
+      "when the wave at the base is computed [Hz].",
       Patterns::Double(1.));
   }
 

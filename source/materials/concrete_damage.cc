@@ -94,12 +94,14 @@ namespace Voussoir
         prm.add_parameter(
           "Strength increase",
           strength_increase,
-          "Factor on strengths and fracture energies in an earthquake; codes give 1.2 to 1.3.",
+          "Factor on strengths and fracture energies in an earthquake; codes "
+          "give 1.2 to 1.3.",
           Patterns::Double(1., 5.));
         prm.add_parameter(
           "Relaxation time",
           relaxation_time,
-          "Delay of damage, which raises the strength under fast loading [s]; 0: rate-independent." +
+          "Delay of damage, which raises the strength under fast loading [s]; "
+          "0: rate-independent." +
             usually(Usual::relaxation_time),
           Patterns::Double(0.));
         add_option(prm,
@@ -220,8 +222,8 @@ namespace Voussoir
         if (elastic < 1.1 * fc)
           throw UserError(
             place +
-            ": \"Compressive strength\" is too high for its Young's modulus: by GB 50010 "
-            "the strain at the peak would be elastic. Give a "
+            ": \"Compressive strength\" is too high for its Young's modulus: "
+            "by GB 50010 the strain at the peak would be elastic. Give a "
             "\"Compression table\".");
         const double n      = elastic / (elastic - fc);
         const auto   rising = [&](const double x) {
@@ -381,7 +383,7 @@ namespace Voussoir
 
     const Registry<Material>::Add<MaterialOf<ConcreteDamage>> registered(
       "concrete damage",
-      "Concrete with damage in tension and compression on the effective stress; "
-      "cracks close with their stiffness back.");
+      "Concrete with damage in tension and compression on the effective "
+      "stress; cracks close with their stiffness back.");
   } // namespace
 } // namespace Voussoir

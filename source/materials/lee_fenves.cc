@@ -119,9 +119,9 @@ namespace Voussoir
           "Stiffness recovery",
           recovery,
           "Share w of the stiffness that comes back when a "
-          "crack closes; Lee and Fenves take 1. With 0 parts on both sides of a crack through the body penetrate each other. "
-          "With 1 a crack takes 4 % more energy, as it is "
-          "relieved of lateral stress too.",
+          "crack closes; Lee and Fenves take 1. With 0 parts on both sides of "
+          "a crack through the body penetrate each other. With 1 a crack "
+          "takes 4 % more energy, as it is relieved of lateral stress too.",
           Patterns::Double(0., 1.));
       }
 
@@ -416,9 +416,9 @@ namespace Voussoir
 
     const Registry<Material>::Add<MaterialOf<LeeFenves>> registered(
       "lee-fenves",
-      "Concrete with plastic strain and damage in tension and compression after "
-      "Lee and Fenves (1998), modified: a crack that closes gets the stiffness "
-      "of the pressed directions back, not of all, so that the stress has a "
-      "potential.");
+      "Concrete with plastic strain and damage in tension and compression "
+      "after Lee and Fenves (1998), modified: a crack that closes gets the "
+      "stiffness of the pressed directions back, not of all, so that the "
+      "stress has a potential.");
   } // namespace
 } // namespace Voussoir

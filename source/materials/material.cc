@@ -20,14 +20,16 @@ namespace Voussoir
       "Inertia factor",
       inertia_factor,
       "Factor on the density in the equation of motion. A factor of 0.01 on "
-      "the rock makes the massless foundation of older practice; time steps shrink with its root. A rock with a factor below one takes "
-      "no inertial earthquake force.",
+      "the rock makes the massless foundation of older practice; time steps "
+      "shrink with its root. A rock with a factor below one takes no inertial "
+      "earthquake force.",
       Patterns::Double(1e-4, 1.));
     prm.add_parameter(
       "Damping factor",
       damping,
       "Damping of this material relative to the section "
-      "\"Damping\"; 0 for none. Mass-proportional damping is the same in all materials.",
+      "\"Damping\"; 0 for none. Mass-proportional damping is the same in all "
+      "materials.",
       Patterns::Double(0., 4.));
     prm.add_parameter("Static factor",
                       static_factor,

@@ -223,6 +223,7 @@ namespace Voussoir
 
     const Registry<Material>::Add<MaterialOf<Mazars>> registered(
       "mazars",
-      "Concrete with one damage by Mazars, for monotonic loads: cracks that close do not get their stiffness back.");
+      "Concrete with one damage by Mazars, for monotonic loads: cracks that "
+      "close do not get their stiffness back.");
   } // namespace
 } // namespace Voussoir

@@ -65,7 +65,8 @@ namespace Voussoir
         prm.add_parameter(
           "Dip direction",
           dip_direction,
-          "Dip direction of the joints, from the y axis towards the x axis [degrees]: a compass with y to the north.",
+          "Dip direction of the joints, from the y axis towards the x axis "
+          "[degrees]: a compass with y to the north.",
           Patterns::Double(-360., 360.));
         prm.add_parameter("Dip",
                           dip,

@@ -28,8 +28,9 @@ namespace Voussoir
     prm.add_parameter(
       "Elevation",
       elevation,
-      "Elevation at which the base plane of the wedge meets the bank on the dam's middle surface; columns of cells, and so the joints of that bank, are moved to it [m above the base]. 0: no "
-      "wedge.",
+      "Elevation at which the base plane of the wedge meets the bank on the "
+      "dam's middle surface; columns of cells, and so the joints of that "
+      "bank, are moved to it [m above the base]. 0: no wedge.",
       Patterns::Double(0.));
     prm.add_parameter(
       "Dip",
@@ -39,12 +40,14 @@ namespace Voussoir
     prm.add_parameter(
       "Dip direction",
       direction,
-      "Dip direction of the base plane: 0 across the river into the canyon, 90 downstream, -90 upstream [degrees].",
+      "Dip direction of the base plane: 0 across the river into the canyon, "
+      "90 downstream, -90 upstream [degrees].",
       Patterns::Double(-90., 90.));
     prm.add_parameter(
       "Width",
       width,
-      "Extent into the bank, from where the base plane meets the canyon, rounded to columns of cells [m].",
+      "Extent into the bank, from where the base plane meets the canyon, "
+      "rounded to columns of cells [m].",
       Patterns::Double(1e-3));
     prm.add_parameter("Length",
                       length,

@@ -43,7 +43,8 @@ namespace Voussoir
           "Joints",
           n_joints,
           "Number of contraction joints, at equal distances "
-          "along the crest; beside a wedge the joints of its bank are moved a little.",
+          "along the crest; beside a wedge the joints of its bank are moved a "
+          "little.",
           Patterns::Integer(0, 99));
         prm.add_parameter("Cell size",
                           cell_size,
@@ -69,8 +70,8 @@ namespace Voussoir
           "Largest rock cell",
           largest_cell,
           "Largest size of the rock's cells [m]; waves need about eight "
-          "cells per wavelength, so 60 m of rock with S waves of 2000 m/s carry "
-          "4 Hz.",
+          "cells per wavelength, so 60 m of rock with S waves of 2000 m/s "
+          "carry 4 Hz.",
           Patterns::Double(1.));
         prm.add_parameter(
           "Reservoir level",
@@ -81,7 +82,8 @@ namespace Voussoir
         prm.add_parameter(
           "Reservoir length",
           relative_water_length,
-          "Length of the reservoir from the crown upstream over the dam's height, rounded to whole cells [-]; 0: to the end of the rock.",
+          "Length of the reservoir from the crown upstream over the dam's "
+          "height, rounded to whole cells [-]; 0: to the end of the rock.",
           Patterns::Double(0., 20.));
         for (const int bank : {0, 1})
           {

@@ -228,8 +228,8 @@ namespace Voussoir
       }
     throw UserError(
       "The bank is too flat for the \"Dip\" in section \"" + ledge.place +
-      "\": the base plane of the wedge does not come out of it everywhere; choose a smaller one or another "
-      "\"Elevation\".");
+      "\": the base plane of the wedge does not come out of it everywhere; "
+      "choose a smaller one or another \"Elevation\".");
   }
 
 

@@ -31,17 +31,20 @@ namespace Voussoir
         prm.add_parameter(
           "Upstream batter",
           batter,
-          "Distance of the heel upstream of the crest's upstream edge, which is at y = 0 [m]; 0 for an upright face.",
+          "Distance of the heel upstream of the crest's upstream edge, which "
+          "is at y = 0 [m]; 0 for an upright face.",
           Patterns::Double(0.));
         prm.add_parameter(
           "Batter elevation",
           batter_elevation,
-          "Elevation up to which the upstream face is inclined [m above the base]; 0: up to the crest.",
+          "Elevation up to which the upstream face is inclined [m above the "
+          "base]; 0: up to the crest.",
           Patterns::Double(0.));
         prm.add_parameter(
           "Neck elevation",
           neck_elevation,
-          "Elevation at which the downstream face changes its slope [m above the base].",
+          "Elevation at which the downstream face changes its slope [m above "
+          "the base].",
           positive);
         prm.add_parameter("Neck width",
                           neck_width,

@@ -434,11 +434,11 @@ namespace Voussoir
         prm.add_parameter(
           "Interval",
           interval,
-          "Duration of the mean acceleration, which leaves out frequencies above 0.44 over it, and interval of the samples of the acceleration of a single step [s]. "
-          "Displacement and velocity are sampled each "
-          "twentieth of the shortest period that the mesh "
-          "carries with eight nodes per wavelength, if that is "
-          "shorter.",
+          "Duration of the mean acceleration, which leaves out frequencies "
+          "above 0.44 over it, and interval of the samples of the "
+          "acceleration of a single step [s]. Displacement and velocity are "
+          "sampled each twentieth of the shortest period that the mesh "
+          "carries with eight nodes per wavelength, if that is shorter.",
           Patterns::Double(1e-6));
         prm.add_parameter("Stress",
                           wants_stress,
@@ -449,13 +449,15 @@ namespace Voussoir
           stress_interval,
           "Time between two samples of these [s]; 0 for a "
           "twentieth of the shortest period that the mesh "
-          "carries with eight nodes per wavelength, or longer if samples would cost more than 2 % of the time steps: the fewer cells, the shorter. summary.json "
-          "has it.",
+          "carries with eight nodes per wavelength, or longer if samples "
+          "would cost more than 2 % of the time steps: the fewer cells, the "
+          "shorter. summary.json has it.",
           Patterns::Double(0.));
         prm.add_parameter(
           "Stress in",
           stress_sets,
-          "Cell sets whose stresses are sampled, such as those of the dam; empty for all cells.");
+          "Cell sets whose stresses are sampled, such as those of the dam; "
+          "empty for all cells.");
       }
 
       void

@@ -39,8 +39,9 @@ namespace Voussoir
       {
         recorder.declare_parameters(
           prm,
-          "Name of the point whose motion is subtracted from that of the others, as the headings then say; the motion of the named point stays absolute. Empty "
-          "for absolute motion.");
+          "Name of the point whose motion is subtracted from that of the "
+          "others, as the headings then say; the motion of the named point "
+          "stays absolute. Empty for absolute motion.");
         prm.add_parameter("Quantities",
                           quantities,
                           "Columns to write: displacement [m], velocity [m/s], "
@@ -55,8 +56,10 @@ namespace Voussoir
         prm.add_parameter(
           "Filter frequency",
           filter_frequency,
-          "Filter frequency of the filtered acceleration, which is the mean over 0.443 of its period: amplitudes at this frequency are multiplied by 0.71 [Hz]; 0 for the highest that the "
-          "mesh carries with eight nodes per wavelength.",
+          "Filter frequency of the filtered acceleration, which is the mean "
+          "over 0.443 of its period: amplitudes at this frequency are "
+          "multiplied by 0.71 [Hz]; 0 for the highest that the mesh carries "
+          "with eight nodes per wavelength.",
           Patterns::Double(0.));
         declare_interval(prm,
                          "Time between two lines [s]; the largest amounts in "

@@ -38,16 +38,17 @@ namespace Voussoir
         prm.add_parameter(
           "Blocks",
           blocks_text,
-          "Blocks of rock whose safety against sliding as a whole is evaluated: "
-          "\"cell set: surface, surface\", separated by \";\", with all "
-          "surfaces of contact of the block, one for each plane. It is "
-          "that of limit equilibrium under the driving forces, weight, "
-          "water, uplift, thrust of the dam, and its inertia as if it moved with its base: along one plane or along the line where two of them meet, "
-          "zero if the block lifts off, infinite without a driving force or if "
-          "other planes prevent the slip. The mobilised ratio is the shear of "
-          "the contact forces over the resistance of the planes, at most one. "
-          "Both are means "
-          "over 0.443 of the shortest period that the mesh carries.");
+          "Blocks of rock whose safety against sliding as a whole is "
+          "evaluated: \"cell set: surface, surface\", separated by \";\", "
+          "with all surfaces of contact of the block, one for each plane. It "
+          "is that of limit equilibrium under the driving forces, weight, "
+          "water, uplift, thrust of the dam, and its inertia as if it moved "
+          "with its base: along one plane or along the line where two of them "
+          "meet, zero if the block lifts off, infinite without a driving "
+          "force or if other planes prevent the slip. The mobilised ratio is "
+          "the shear of the contact forces over the resistance of the planes, "
+          "at most one. Both are means over 0.443 of the shortest period that "
+          "the mesh carries.");
         declare_interval(
           prm,
           "Time between two lines of interfaces.csv [s]. In it "
@@ -63,7 +64,8 @@ namespace Voussoir
         if (model.interfaces == nullptr)
           throw UserError(
             "\"Observers\" in section \"Output\" names \"interfaces\", but the "
-            "case has none; list some in section \"Interfaces\", or remove the observer.");
+            "case has none; list some in section \"Interfaces\", or remove "
+            "the observer.");
         parse_points(points_text, place);
         find_sliding_blocks(blocks_text,
                             blocks_place,
@@ -468,7 +470,7 @@ namespace Voussoir
     const Registry<Observer>::Add<Interfaces> registered(
       "interfaces",
       "Opening, slip, forces and sliding safety of the interfaces, in "
-      "interfaces.csv; extremes on their faces in interface_envelopes.vtu, with "
-      "the state at the end: 0 closed, 1 sliding, 2 open.");
+      "interfaces.csv; extremes on their faces in interface_envelopes.vtu, "
+      "with the state at the end: 0 closed, 1 sliding, 2 open.");
   } // namespace
 } // namespace Voussoir

@@ -164,20 +164,22 @@ namespace Voussoir
           prm,
           "Stress",
           compared,
-          "Stress that is compared with the strength: the largest principal stress, or the larger one of arch and cantilever stress.");
+          "Stress that is compared with the strength: the largest principal "
+          "stress, or the larger one of arch and cantilever stress.");
         prm.add_parameter(
           "Tensile strength",
           strengths,
           "Static tensile strength of the concrete, one for all faces or one "
-          "for each [Pa]; 0 for the strength of the materials. The demand-capacity ratio "
-          "is the tension over it." +
+          "for each [Pa]; 0 for the strength of the materials. The "
+          "demand-capacity ratio is the tension over it." +
             usually(Usual::tensile_strength_or_none),
           Patterns::List(Patterns::Double(0.), 1));
         prm.add_parameter(
           "Strengths of materials",
           of_materials,
-          "The same by material, \"concrete: 2e6; crest: 3e6\", where \"Tensile "
-          "strength\" is 0. Without it the strengths of the linear elastic materials.");
+          "The same by material, \"concrete: 2e6; crest: 3e6\", where "
+          "\"Tensile strength\" is 0. Without it the strengths of the linear "
+          "elastic materials.");
         prm.add_parameter("Ratios",
                           ratios,
                           "Demand-capacity ratios above which time and area "
@@ -187,9 +189,11 @@ namespace Voussoir
         prm.add_parameter(
           "Longest time",
           longest_time,
-          "Accumulated time above the ratio 1 that is allowed in a linear analysis [s]. It falls linearly to zero at the \"Largest ratio\". The limits "
-          "are those ascribed to USACE EM 1110-2-6053 for arch dams, gravity "
-          "dams have 0.3 s; compare them with the code that applies." +
+          "Accumulated time above the ratio 1 that is allowed in a linear "
+          "analysis [s]. It falls linearly to zero at the \"Largest ratio\". "
+          "The limits are those ascribed to USACE EM 1110-2-6053 for arch "
+          "dams, gravity dams have 0.3 s; compare them with the code that "
+          "applies." +
             usually(Usual::accumulated_time),
           Patterns::Double(0.));
         prm.add_parameter(
@@ -201,8 +205,8 @@ namespace Voussoir
         prm.add_parameter(
           "Largest share",
           largest_share,
-          "Share of a face above the ratio 1 at any time that is allowed in a linear analysis [%]; gravity dams have 15 % of the "
-          "section.",
+          "Share of a face above the ratio 1 at any time that is allowed in a "
+          "linear analysis [%]; gravity dams have 15 % of the section.",
           Patterns::Double(0., 100.));
       }
 
@@ -421,7 +425,8 @@ namespace Voussoir
             "The faces of " + section + " have cells of the material \"" +
             model.names.materials[cracking] +
             "\", whose stress is limited by its strength, but over-stress is "
-            "that of a linear analysis; choose a linear elastic law, or remove the observer \"over-stress\".");
+            "that of a linear analysis; choose a linear elastic law, or "
+            "remove the observer \"over-stress\".");
       }
 
       unsigned int

@@ -22,7 +22,8 @@ namespace Voussoir
       {
         recorder.declare_parameters(
           prm,
-          "Name of the point by whose largest acceleration the summary divides spectra for the amplification; empty for none.");
+          "Name of the point by whose largest acceleration the summary "
+          "divides spectra for the amplification; empty for none.");
         prm.add_parameter("Components",
                           components,
                           "Directions of motion.",

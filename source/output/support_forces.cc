@@ -34,10 +34,11 @@ namespace Voussoir
         prm.add_parameter(
           "Face sets",
           face_sets,
-          "Faces that a support of section \"Boundaries\" or a prescribed motion constrains; for each of them support_forces.csv has the force "
-          "of the support on the model, x, y, z [MN]; static state, loads and "
-          "inertia of its nodes included. An edge of several sets counts for "
-          "the first of them.");
+          "Faces that a support of section \"Boundaries\" or a prescribed "
+          "motion constrains; for each of them support_forces.csv has the "
+          "force of the support on the model, x, y, z [MN]; static state, "
+          "loads and inertia of its nodes included. An edge of several sets "
+          "counts for the first of them.");
         declare_interval(prm,
                          "Time between two lines of support_forces.csv [s].");
       }
@@ -201,7 +202,8 @@ namespace Voussoir
               throw UserError(
                 place + " names \"" + set +
                 "\", on which neither a support of section "
-                "\"Boundaries\" nor a prescribed motion constrains all nodes; name faces that are fixed.");
+                "\"Boundaries\" nor a prescribed motion constrains all nodes; "
+                "name faces that are fixed.");
             if (Utilities::MPI::logical_or(meets_interface, communicator))
               throw UserError(place + " names \"" + set +
                               "\", whose nodes an interface touches, the "

@@ -198,8 +198,8 @@ namespace Voussoir
                          }))
           throw UserError(
             "No material of the case cracks, but " + section +
-            " looks for cracks; remove the observer \"through cracks\", or give a material a law that "
-            "cracks.");
+            " looks for cracks; remove the observer \"through cracks\", or "
+            "give a material a law that cracks.");
       }
 
       void
@@ -359,7 +359,7 @@ namespace Voussoir
 
     const Registry<Observer>::Add<ThroughCracks> registered(
       "through cracks",
-      "Cracks that go through the dam: how wide they are open at one moment all "
-      "the way from one face to the other, in through_cracks.csv.");
+      "Cracks that go through the dam: how wide they are open at one moment "
+      "all the way from one face to the other, in through_cracks.csv.");
   } // namespace
 } // namespace Voussoir

@@ -24,8 +24,8 @@ namespace Voussoir
     prm.add_parameter(
       "Maximum amplification",
       maximum_amplification,
-      "Spectral acceleration on the plateau of the code's spectrum over peak ground acceleration [-]; 2.5 for arch "
-      "dams, 2.0 for gravity dams.",
+      "Spectral acceleration on the plateau of the code's spectrum over peak "
+      "ground acceleration [-]; 2.5 for arch dams, 2.0 for gravity dams.",
       Double(1., 10.));
     prm.add_parameter("Characteristic period",
                       characteristic_period,
@@ -35,7 +35,8 @@ namespace Voussoir
     prm.add_parameter(
       "Decay exponent",
       decay_exponent,
-      "Exponent of the decay of the code's spectrum, period to minus this power [-].",
+      "Exponent of the decay of the code's spectrum, period to minus this "
+      "power [-].",
       Double(0., 2.));
     prm.add_parameter("Periods",
                       periods,
@@ -44,8 +45,8 @@ namespace Voussoir
     prm.add_parameter(
       "Amplifications",
       amplifications,
-      "Spectral acceleration of the table at these periods over peak ground acceleration [-]; linear in between, "
-      "constant outside.",
+      "Spectral acceleration of the table at these periods over peak ground "
+      "acceleration [-]; linear in between, constant outside.",
       List(Double(1e-3), 2));
   }
 

@@ -223,9 +223,9 @@ namespace Voussoir
       "How records are fitted to a target spectrum, which is the one of "
       "section \"Ground motion/Spectrum\" (Shape to Amplifications, Damping "
       "ratio) times the Peak acceleration of the component. each component: by "
-      "wavelets at the times of the peak responses, after a factor. one factor: "
-      "all components by the same factor, so that their shapes and ratios stay. "
-      "none: a record is scaled to the Peak acceleration only.");
+      "wavelets at the times of the peak responses, after a factor. one "
+      "factor: all components by the same factor, so that their shapes and "
+      "ratios stay. none: a record is scaled to the Peak acceleration only.");
     prm.add_parameter("Shortest period",
                       shortest_period,
                       "Shortest natural period whose response is fitted [s].",

@@ -64,7 +64,8 @@ namespace Voussoir
     prm.add_parameter(
       "Rise time",
       rise_time,
-      "Time in which the motion grows to its full intensity, with the square of time [s].",
+      "Time in which the motion grows to its full intensity, with the square "
+      "of time [s].",
       Double(0.));
     prm.add_parameter("Plateau duration",
                       plateau_duration,

@@ -27,7 +27,8 @@ namespace Voussoir
         prm.add_parameter(
           "Frequencies",
           frequencies,
-          "Frequencies at which the amplification of S is compared; that of P at cp/cs times these [Hz].");
+          "Frequencies at which the amplification of S is compared; that of P "
+          "at cp/cs times these [Hz].");
       }
 
       void

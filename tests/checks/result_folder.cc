@@ -55,7 +55,8 @@ namespace Voussoir
           verdicts.same_text(
             "--overwrite meanwhile",
             refusal(overwrite),
-            "refused: The output folder \"results\" belongs to a run that is still going on; choose another \"Folder\" in section \"Output\".");
+            "refused: The output folder \"results\" belongs to a run that is "
+            "still going on; choose another \"Folder\" in section \"Output\".");
         }
 
         on_first(communicator, [] {

@@ -1,4 +1,5 @@
 #include <voussoir/base/active.h>
+#include <voussoir/base/gravity.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/constraints/interface_parameters.h>
 #include <voussoir/mesh/interfaces.h>
@@ -11,8 +12,6 @@ namespace Voussoir
 
   namespace
   {
-    constexpr double gravity = 9.81; // [m/s2]
-
     /** Whether @p name is @p pattern, in which "*" stands for anything. */
     bool
     matches(const std::string_view name, const std::string_view pattern)
@@ -95,7 +94,7 @@ namespace Voussoir
   UpliftParameters::pressure(const double elevation, const double share) const
   {
     const auto head = [&](const double level) {
-      return density * gravity * std::max(0., level - elevation);
+      return density * standard_gravity * std::max(0., level - elevation);
     };
     const double upstream   = head(upstream_level),
                  downstream = head(downstream_level);

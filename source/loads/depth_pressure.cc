@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/gravity.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/loads/face_forces.h>
 #include <voussoir/loads/load.h>
@@ -115,7 +116,7 @@ namespace Voussoir
         return density * gravity;
       }
 
-      double density = 1000., gravity = 9.81;
+      double density = 1000., gravity = standard_gravity;
     };
 
     const Registry<Load>::Add<Water>

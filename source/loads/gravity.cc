@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/gravity.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/fem/lumped_mass.h>
 #include <voussoir/fem/named_sets.h>
@@ -136,7 +137,7 @@ namespace Voussoir
       }
 
       std::string         cell_sets;
-      Tensor<1, 3>        acceleration{{0., 0., -9.81}};
+      Tensor<1, 3>        acceleration{{0., 0., -standard_gravity}};
       TimeFactor          factor{""};
       std::vector<double> mass; // of each owned node [kg]
 

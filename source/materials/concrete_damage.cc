@@ -141,7 +141,7 @@ namespace Voussoir
       void
       check(const std::string &place)
       {
-        alpha       = (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
+        alpha       = lubliner_alpha(biaxial_ratio);
         tension     = SofteningCurve(increased(tension_nodes(place)),
                                  young_modulus,
                                  irreversible_tension,

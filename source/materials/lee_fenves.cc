@@ -133,7 +133,7 @@ namespace Voussoir
                           ": the \"Compressive strength\" is below the \"Yield "
                           "strength in compression\"; it must be as large or "
                           "larger.");
-        alpha = (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
+        alpha = lubliner_alpha(biaxial_ratio);
         // the largest sigma_c is fc0 (1 + a)^2 / (4 a)
         const double ratio = peak_strength / yield_strength;
         hardening = 2. * ratio - 1. + 2. * std::sqrt(ratio * (ratio - 1.));

@@ -218,8 +218,8 @@ namespace Voussoir
         verdicts.below("motion while the load leaves a safety of 1.05 [mm]",
                        1e3 * before,
                        0.05);
-        // Where points stick under the weight is not unique, and on other ranks
-        // other by some thousandths of the forces.
+        // The points that stick under the weight are not unique, and on other
+        // numbers of ranks their forces differ by some thousandths.
         const auto off = [&](const std::string &name,
                              const double       value,
                              const double       reference,

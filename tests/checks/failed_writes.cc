@@ -29,8 +29,10 @@ namespace Voussoir
         prm.add_parameter("From",
                           from,
                           "Time from which the disk is full [s].");
-        prm.add_parameter("To", to, "When there is room again [s].");
-        prm.add_parameter("Size", size, "To which files may grow [bytes].");
+        prm.add_parameter("To",
+                          to,
+                          "Time from which there is space again [s].");
+        prm.add_parameter("Size", size, "Largest size of files [bytes].");
       }
 
       void

@@ -26,7 +26,9 @@ namespace Voussoir
                           wave,
                           "S in x, or P.",
                           Patterns::Selection("S|P"));
-        prm.add_parameter("Frequencies", frequencies, "To look at [Hz].");
+        prm.add_parameter("Frequencies",
+                          frequencies,
+                          "Frequencies of the comparison [Hz].");
         prm.add_parameter("Tolerance", tolerance, "On |R| itself.");
       }
 

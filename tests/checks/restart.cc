@@ -24,7 +24,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Times", time, "When to interrupt [s].");
+        prm.add_parameter("Times", time, "Times of interruption [s].");
       }
 
       void

@@ -40,7 +40,7 @@ namespace Voussoir
         const auto at_checkpoint = std::filesystem::file_size(name);
         {
           TimeTable table = open(2., true);
-          verdicts.is_true("what the checkpoint counts is there",
+          verdicts.is_true("all lines before the checkpoint are there",
                            std::filesystem::file_size(name) == at_checkpoint);
           table.write(2., {20.});
           table.flush();

@@ -123,7 +123,7 @@ def written(text):
 
 
 def plain(file):
-    """The text of a file in one line, without what begins lines of comments."""
+    """The text of a file in one line, without the marks of comments."""
     text = file.read_text()
     if file.suffix == ".prm":
         text = re.sub(r"^# ?", "", text, flags=re.M)

@@ -15,7 +15,7 @@ namespace Voussoir
     constexpr unsigned int tile = 4;
 
 
-    /** Vectors in whole tiles; the last one stands in for those beyond. */
+    /** Vectors in whole tiles; beyond its end the last vector is repeated. */
     Columns
     filled_up(Columns columns)
     {

@@ -16,8 +16,8 @@ namespace Voussoir
   {
     constexpr unsigned int max_iterations = 500;
 
-    // Directions of unit energy whose part of their own is smaller than the
-    // root of this are dropped.
+    // Directions of unit energy are dropped if their part orthogonal to the
+    // others is smaller than the root of this.
     constexpr double dependent = 1e-12;
 
 
@@ -52,8 +52,8 @@ namespace Voussoir
 
     /**
      * @param stiffness,mass products of the directions; not empty
-     * @param number of pairs wanted; there are fewer if the directions depend
-     *   on each other
+     * @param number of pairs wanted; there are fewer if the directions are
+     * linearly dependent
      */
     Ritz
     find_ritz_pairs(const FullMatrix<double> &stiffness,
@@ -74,7 +74,7 @@ namespace Voussoir
       if (!std::isfinite(k.frobenius_norm() + m.frobenius_norm()))
         return result;
 
-      // directions of unit energy that have none in common
+      // directions of unit energy that are orthogonal in the energy
       auto [energies, basis]   = eigenpairs(k, dependent, 2. * n);
       const unsigned int n_own = energies.size();
       for (unsigned int i = 0; i < n; ++i)
@@ -114,7 +114,7 @@ namespace Voussoir
     }
 
 
-    /** Vectors and what both matrices make of them. */
+    /** Vectors and their products with both matrices. */
     struct Directions
     {
       Directions(const std::size_t size, const unsigned int n)
@@ -135,7 +135,7 @@ namespace Voussoir
                 const unsigned int                 number,
                 const double                       tolerance);
 
-      /** Returns whether the pairs are found. */
+      /** Returns whether the pairs have converged. */
       bool
       run();
 
@@ -144,7 +144,7 @@ namespace Voussoir
       unsigned int        iterations = 0;
 
     private:
-      /** Finds which vectors are not good enough. */
+      /** Finds which vectors have not converged. */
       void
       find_active();
 

@@ -10,8 +10,8 @@ namespace Voussoir
   {
     constexpr unsigned int max_updates = 300;
 
-    // of points that all hold together in the tangent: with nothing of it parts
-    // without other support move away
+    // share of the tangent where all points stick: without it parts that have
+    // no other support move away
     constexpr double tied_share = 1e-3;
 
     constexpr double report_interval = 5.; // [s]
@@ -97,7 +97,8 @@ namespace Voussoir
         effort.found   = effort.found &&
                        effort.contact.force <= 10. * tolerance &&
                        effort.contact.broken == 0;
-        // less, or multipliers and displacements run after each other
+        // smaller than the tolerance of the multipliers, or both iterations
+        // alternate without converging
         accuracy = std::clamp(0.2 * effort.contact.force, tolerance, accuracy);
       }
   }
@@ -106,8 +107,8 @@ namespace Voussoir
   void
   EquilibriumSearch::balance(const double accuracy)
   {
-    // Friction that follows the pressure may lead in a circle, from which
-    // other multipliers lead out.
+    // With friction that follows the pressure the iterations may repeat in a
+    // cycle, which an update of the multipliers ends.
     constexpr unsigned int max_steps_of_update = 10;
     for (unsigned int steps = 0;
          effort.residual > (steps == 0 ? tolerance : accuracy) &&
@@ -132,7 +133,7 @@ namespace Voussoir
     constexpr unsigned int max_evaluations = 12;
     constexpr double       max_way = 16., accuracy = 0.1; // of the slope
 
-    // Smaller ones cost more than they save, the more so if the elastic
+    // Smaller steps cost more than they save, the more so if the elastic
     // stiffness is not the tangent.
     const double linear_tolerance = memory == nullptr ? 0.05 : 0.3;
 
@@ -144,8 +145,9 @@ namespace Voussoir
       effort.iterations += solver.solve(step, part, linear_tolerance);
     });
 
-    // To where the slope is gone: further than one step in what softens, then
-    // by regula falsi, and now and then by halves, as it has kinks.
+    // Line search for a zero of the slope: beyond a full step where materials
+    // soften, then by regula falsi, and sometimes by bisection, as the slope
+    // has kinks.
     taken              = residual;
     const double slope = change * residual;
     double       below = 0., above = 0., slope_below = slope, slope_above = 0.;
@@ -174,7 +176,7 @@ namespace Voussoir
         now = evaluate(below + (above - below) * slope_below /
                                  (slope_below - slope_above));
     if (memory == nullptr)
-      return; // the tangent of contact is known
+      return; // the tangent of contact has been evaluated
     taken -= residual;
     change *= way;
     secants.add(change, taken);

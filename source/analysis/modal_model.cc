@@ -29,9 +29,9 @@ namespace Voussoir
       prm,
       "Interfaces",
       interfaces,
-      "Where the two sides of interfaces are one body in the modes: where the "
-      "static state leaves them closed, sliding or not, or everywhere. "
-      "Elsewhere they are free, without the bars across them.");
+      "Where the two sides of interfaces are tied in the modes: where they "
+      "are closed in the static state, sliding or not, or everywhere. "
+      "Elsewhere the sides move independently, without the bars across them.");
     add_option(
       prm,
       "Water",
@@ -39,13 +39,14 @@ namespace Voussoir
       "None: an empty reservoir. By reservoir: the added mass of section "
       "\"Reservoir\" or, if its model is compressible, its cells of water as "
       "if these were incompressible. Incompressible: these cells, whatever the "
-      "model. Compressible: these cells with the sound in them; the reservoir "
-      "ends in a rigid wall then, and has modes of its own.");
-    prm.add_parameter("Relative tolerance",
-                      tolerance,
-                      "Residual |K phi - omega^2 M phi| over |K phi|; the "
-                      "frequencies are closer by far.",
-                      Patterns::Double(1e-12, 1e-2));
+      "model. Compressible: these cells as compressible water; the reservoir "
+      "then ends at a rigid wall, and has modes of its own.");
+    prm.add_parameter(
+      "Relative tolerance",
+      tolerance,
+      "Residual |K phi - omega^2 M phi| over |K phi|; the error of the "
+      "frequencies is much smaller.",
+      Patterns::Double(1e-12, 1e-2));
   }
 
 

@@ -33,7 +33,7 @@ namespace Voussoir
     }
 
 
-    /** That of a solid cell as large as those of the water [N/m]. */
+    /** Stiffness of a solid cell of the size of the water's cells [N/m]. */
     double
     typical_stiffness(const ModalModel &model)
     {
@@ -78,7 +78,7 @@ namespace Voussoir
           }
       }
 
-      /** The value at each node, in entries that many apart. */
+      /** The value at each node, at a stride. */
       void
       draw(std::mt19937 &generator, double *values, const unsigned int apart)
       {
@@ -279,7 +279,7 @@ namespace Voussoir
     Waves          waves(
       model.solid.discretization.node_positions,
       [&](const unsigned int node) {
-        double m = 0.; // a roller may hold some of the directions
+        double m = 0.; // a roller may fix some of the directions
         for (unsigned int d = 0; d < 3; ++d)
           m += structure.local_element(3 * node + d);
         return m;
@@ -341,7 +341,7 @@ namespace Voussoir
     constexpr unsigned int most      = 1000;
     constexpr double       tolerance = 1e-8;
 
-    // without water this is the mass, and the first step the last
+    // without water this is the mass, and one step suffices
     Motion weight(size(), structure.linfty_norm());
     for (unsigned int i = 0; i < structure.locally_owned_size(); ++i)
       if (structure.local_element(i) > 0.)

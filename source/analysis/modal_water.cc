@@ -6,8 +6,8 @@ namespace Voussoir
 
   namespace
   {
-    // Of the pressure: the mass must be symmetric to well below the tolerance
-    // of the modes.
+    // Tolerance of the pressure: the mass must be symmetric to well below the
+    // tolerance of the modes.
     constexpr double tolerance = 1e-10;
 
 

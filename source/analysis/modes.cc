@@ -17,8 +17,8 @@ namespace Voussoir
 
   namespace
   {
-    /** Modes wanted and some more, which speed up the iteration. Three times
-     *  that many directions must be there. */
+    /** The wanted modes and some more, which speed up the iteration. The model
+     *  must have three times as many unknowns. */
     unsigned int
     block_size(const ModalSystem &system, const unsigned int number)
     {
@@ -27,7 +27,7 @@ namespace Voussoir
         throw UserError("\"Number\" in section \"Modes\" is " +
                         std::to_string(number) + ", but the model has only " +
                         counted(moving, "unknown", "unknowns") +
-                        " with mass; ask for at most " +
+                        " with mass; set at most " +
                         std::to_string(moving / 3) + " modes, or refine.");
       return std::min<types::global_dof_index>(number +
                                                  std::max(3u, number / 4),
@@ -179,7 +179,7 @@ namespace Voussoir
       if (points.bars)
         log.warn("the natural modes are those without the bars across open "
                  "interfaces; set \"Interfaces = all tied\" in section "
-                 "\"Modes\" if these should hold");
+                 "\"Modes\" to include them");
     }
 
 
@@ -270,7 +270,7 @@ namespace Voussoir
          << modes.moving_mass[0] << ", " << modes.moving_mass[1] << ", "
          << modes.moving_mass[2] << " kg in x, y, z";
     if (system.has_added_mass())
-      text << ", the water that moves along included";
+      text << ", the moving water included";
     log.line(text.str());
     log(table(modes));
     return modes;

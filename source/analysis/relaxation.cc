@@ -185,7 +185,7 @@ namespace Voussoir
                    period,
                    " s");
 
-        // critical damping of what still moves
+        // critical damping of the remaining motion
         const double wanted = std::min(2. * frequency, 1. / time_step);
         if (std::abs(wanted - mass_coefficient) > 0.2 * mass_coefficient)
           {

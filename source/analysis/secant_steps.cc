@@ -31,7 +31,8 @@ namespace Voussoir
   SecantSteps::add(const Vector &step, const Vector &taken)
   {
     const double work = step * taken;
-    if (work <= 0.) // it softened, and the inverse would not be positive
+    if (work <=
+        0.) // the material softened, and the inverse would not be positive
       return;
     if (pairs.size() == max_pairs)
       pairs.pop_front();

@@ -15,7 +15,7 @@ namespace Voussoir
     prm.add_parameter(
       "Stages",
       stages,
-      "Loads that are there before the earthquake: stages separated by "
+      "Loads that act before the earthquake: stages separated by "
       "semicolons, in their order, with the names of loads separated by "
       "commas, as in \"weight; water, silt; temperature\". They stay as they "
       "are at t = 0. Empty: no static stage.");
@@ -23,16 +23,16 @@ namespace Voussoir
       prm,
       "Supports",
       supports,
-      "Supports of the absorbing faces in the static stage: fixed, fixed at "
-      "right angles to themselves (roller), or on the springs of the boundary. "
-      "Their reactions stay when the faces begin to absorb.");
+      "Supports of the absorbing faces in the static stages: fixed, fixed "
+      "along their normal (roller), or on the springs of the boundary. Their "
+      "reactions stay when the faces begin to absorb.");
     prm.add_parameter(
       "Load increments",
       increments,
       "Least number of increments in which the loads of a stage grow where "
       "materials crack or yield in it, as cracks and plastic flow depend on "
-      "the path; they are halved where the materials ask for it. Stages "
-      "without cracks and yielding take one.",
+      "the path; they are halved where the return mapping of the materials "
+      "requires it. Stages without cracks and yielding take one.",
       Patterns::Integer(1, 1000));
     prm.add_parameter("Relative tolerance",
                       tolerance,
@@ -103,7 +103,7 @@ namespace Voussoir
     for (const auto &[name, load] : loads)
       if (load->steady() && staged.count(name) == 0)
         throw UserError("The load \"" + name +
-                        "\" is there before the earthquake, but \"Stages\" in "
+                        "\" acts before the earthquake, but \"Stages\" in "
                         "section \"Static state\" does not name it; add it "
                         "there.");
     for (const auto &[name, load] : loads)

@@ -27,7 +27,8 @@ namespace Voussoir
     }
 
 
-    // What a load does before the earthquake, on fixed nodes too.
+    // Forces and temperature of a load before the earthquake, on fixed nodes
+    // too.
     Vector
     force_of(const Load           &load,
              const Discretization &discretization,
@@ -54,13 +55,13 @@ namespace Voussoir
                    const StaticParameters &parameters,
                    Log                    &log);
 
-      /** Applies a stage, whose loads are those of these names; returns what
-       *  the summary says of it. */
+      /** Applies a stage, whose loads are those of these names; returns its
+       *  part of the summary. */
       nlohmann::json
       apply(const std::vector<std::string>            &names,
             const std::map<std::string, const Load *> &load_of);
 
-      /** After the stages so far; its force is that of the supports. */
+      /** State after the stages so far; its force is that of the supports. */
       InitialState state;
 
     private:
@@ -69,22 +70,23 @@ namespace Voussoir
                const Load        &load,
                nlohmann::json    &report);
 
-      /** What grows along a stage. */
+      /** Quantities that grow along a stage. */
       struct LoadState
       {
         Vector              loads, temperature;
         std::vector<double> uplift; // at the points of the interfaces [Pa]
 
-        /** On the straight way to another one; all of it without round-off. */
+        /** Linear interpolation to another one; at a share of one without
+         *  round-off. */
         LoadState
         grown_to(const LoadState &end, const double share) const;
       };
 
-      /** As it is now. */
+      /** The present one. */
       LoadState
       load_state() const;
 
-      /** Of the loads and the free thermal strain [N]. */
+      /** Forces of the loads and the free thermal strain [N]. */
       Vector
       total_force(const LoadState &state) const;
 
@@ -92,7 +94,7 @@ namespace Voussoir
       void
       make_solver();
 
-      /** Lets the loads grow along a stage; returns the iterations. */
+      /** Applies the loads of a stage in increments; returns the iterations. */
       unsigned int
       follow_path(const LoadState &start, const LoadState &end);
 
@@ -112,9 +114,9 @@ namespace Voussoir
                               const LoadState &middle,
                               const LoadState &end) const;
 
-      /** Counts what the materials have lost in an increment in as many steps
-       *  of the laws as that takes: under stress in several directions the
-       *  energy of a crack is that of the end of its step.
+      /** Sums up the dissipation of the materials in an increment over several
+       *  steps of the laws: under stress in several directions the energy of a
+       *  crack is that at the end of its step.
        *  @param before displacement, @p memory before the increment
        *  @param begin, @p end of the increment */
       void
@@ -127,15 +129,16 @@ namespace Voussoir
       unsigned int
       find_elastic_equilibrium(const Vector &force);
 
-      /** Equilibrium with contact or with memory: by multigrid; dynamic
-       *  relaxation finds it where multigrid does not, and checks that parts
-       *  between interfaces are at rest.
+      /** Equilibrium with contact or with internal variables: by multigrid;
+       *  dynamic relaxation finds it where multigrid does not, and checks that
+       *  parts between interfaces are in equilibrium.
        *  @param memory of the materials; null: they are elastic */
       unsigned int
       search_equilibrium(const Vector &force, MaterialMemory *memory);
 
-      /** Brings the memory of the materials to this state, and where they crack
-       *  or yield the state to equilibrium again; returns the iterations.
+      /** Updates the internal variables of the materials to this state, and
+       *  where they crack or yield restores equilibrium; returns the
+       *  iterations.
        *  @param before contact at the beginning of the increment
        *  @param is_trial see find_equilibrium */
       unsigned int
@@ -143,7 +146,7 @@ namespace Voussoir
                       const std::vector<ContactPoint> &before,
                       const bool                       is_trial);
 
-      /** The points of the interfaces as they are, or none. */
+      /** The present state of the interfaces' points, or none. */
       std::vector<ContactPoint>
       contact_points() const;
 
@@ -155,8 +158,8 @@ namespace Voussoir
       double
       dissipation(const MaterialMemory &memory) const;
 
-      /** Whether materials have lost more than this [J] on any rank: whether
-       *  they have cracked or yielded since. */
+      /** Whether materials have dissipated more than this [J] on any rank:
+       *  whether they have cracked or yielded since. */
       bool
       dissipated(const MaterialMemory &memory, const double before = 0.) const;
 
@@ -173,18 +176,20 @@ namespace Voussoir
       const bool                          on_springs;
       const AffineConstraints<double>     constraints;
       std::unique_ptr<ElasticSolver>      solver;
-      std::unique_ptr<Relaxation>         relaxation; // with contact or memory
-      SecantSteps                         secants;    // along this stage
-      const StageResults                  results;
-      Vector                              loads;  // so far [N]
-      std::vector<std::string>            stage;  // names of its loads
-      Vector                              before; // displacement before it [m]
-      bool                                by_multigrid = true; // this stage
-      unsigned int                        damped_steps = 0;    // of this stage
-      unsigned int                        increments   = 0;    // of this stage
-      bool                                is_last      = true; // increment
-      bool may_be_halved = false; // the increment, if the search does not
-      bool is_found      = true;  // find its equilibrium
+      std::unique_ptr<Relaxation>
+                               relaxation; // with contact or internal variables
+      SecantSteps              secants;    // along this stage
+      const StageResults       results;
+      Vector                   loads;  // so far [N]
+      std::vector<std::string> stage;  // names of its loads
+      Vector                   before; // displacement before it [m]
+      bool                     by_multigrid = true; // this stage
+      unsigned int             damped_steps = 0;    // of this stage
+      unsigned int             increments   = 0;    // of this stage
+      bool                     is_last      = true; // increment
+      bool                     may_be_halved =
+        false; // the increment that relaxation solves if the search does not
+      bool is_found = true; // find its equilibrium
     };
 
 
@@ -265,7 +270,7 @@ namespace Voussoir
       const LoadState    end        = load_state();
       const unsigned int iterations = follow_path(start, end);
 
-      // f(u) minus loads and contact is what the supports bring
+      // f(u) minus loads and contact are the reactions
       internal_force.respond(state.force,
                              state.displacement,
                              state.material_memory);
@@ -277,7 +282,7 @@ namespace Voussoir
           model.contact->grout(stage, state.displacement))
         {
           state.grouted_displacement = state.displacement;
-          solver.reset(); // other parts hold together now
+          solver.reset(); // other parts are tied now
         }
       return report;
     }
@@ -342,8 +347,9 @@ namespace Voussoir
       const double largest_step = 1. / parameters.increments;
       double       step = 1., largest_error = 0.;
       unsigned int iterations = 0, n_jumps = 0;
-      Vector       rate; // of the displacement over the share, once they crack
-      Timer        clock;
+      Vector
+        rate; // derivative of the displacement by the share, once they crack
+      Timer clock;
       for (double share = 0.; share < 1.;)
         {
           const double    next  = share + step > 1. - 1e-9 ? 1. : share + step;
@@ -391,7 +397,7 @@ namespace Voussoir
               ++increments;
               n_jumps += error > tolerance;
               largest_error = std::max(largest_error, error);
-              // behind a crack that came at once longer ones do again
+              // after a sudden crack longer increments suffice again
               if (!is_trial && error < 0.25 * tolerance)
                 step = std::min(2. * step, largest_step);
               continue;
@@ -414,8 +420,8 @@ namespace Voussoir
           100. * least_step,
           " % change the forces of the materials by up to ",
           100. * largest_error,
-          " % of the loads against two of half the size, as where a crack runs at "
-          "once; take more stages, or more \"Load increments\" in "
+          " % of the loads against two of half the size, as where a crack "
+          "grows suddenly; take more stages, or more \"Load increments\" in "
           "section \"Static state\"");
       return iterations;
     }
@@ -448,8 +454,7 @@ namespace Voussoir
           "The static stage \"" + join(stage, ", ") +
             "\" comes to no equilibrium: displacements or "
             "forces are no longer finite (NaN or infinite). "
-            "Look at the strength of the materials and at "
-            "the loads of the stage.",
+            "Check the strength of the materials and the loads of the stage.",
           before,
           before);
       return iterations;
@@ -549,7 +554,7 @@ namespace Voussoir
               return 0;
             }
           log.line("  cracks or yields");
-          // interfaces start anew, as the path does
+          // interfaces start anew, as the load path does
           if (model.contact != nullptr)
             model.contact->set_points(before);
         }
@@ -573,8 +578,8 @@ namespace Voussoir
                                   before,
                                   state.displacement,
                                   dissipated(memory)) +
-            ". Look at the strength of these interfaces and materials, at what "
-            "holds the blocks, and at the loads and the order of the "
+            ". Check the strength of these interfaces and materials, the "
+            "supports of the blocks, and the loads and the order of the "
             "\"Stages\" in section \"Static state\".",
           before,
           state.displacement);
@@ -588,14 +593,14 @@ namespace Voussoir
     StaticStages::search_equilibrium(const Vector   &force,
                                      MaterialMemory *memory)
     {
-      // on the way as far as the increments' own error, 1e-3, lets it matter
+      // within a stage only down to a part of the increments' own error of 1e-3
       constexpr double on_the_path = 1e-5;
       const double     of_the_last = model.contact != nullptr ?
                                        0.1 * parameters.rest :
                                        std::max(parameters.tolerance, 1e-8);
       const double     tolerance =
         is_last ? of_the_last : std::max(of_the_last, on_the_path);
-      // a crack that runs far takes several steps for each cell on its way
+      // a long crack takes several steps for each cell along it
       const unsigned int patience =
         memory != nullptr && may_be_halved ? 100 : 300;
       const EquilibriumSearch::Effort effort =

@@ -52,7 +52,7 @@ namespace Voussoir
       bool
       write(const std::string &text, const std::uintmax_t place) const
       {
-        // a pipe has one place only
+        // a pipe can only be written in turn
         if (::lseek(number, place, SEEK_SET) < 0 && errno != ESPIPE)
           return false;
         for (std::size_t done = 0; done < text.size();)
@@ -89,8 +89,8 @@ namespace Voussoir
 
 
     /** Writes the text to this place and ends the file behind it; if that fails
-     *  the file ends at the place. Killed between, it has not lost what a
-     *  checkpoint counts on. */
+     *  the file ends at the place. A program killed in between has not lost
+     *  data that a checkpoint relies on. */
     std::string
     put(const std::string   &name,
         const std::string   &text,
@@ -109,7 +109,7 @@ namespace Voussoir
     }
 
 
-    /** Of a file in its file system; 0 if there is none. */
+    /** Number of a file in its file system; 0 if there is none. */
     std::uint64_t
     serial_number_of(const std::string &name)
     {
@@ -125,8 +125,8 @@ namespace Voussoir
     }
 
 
-    /** Puts what was written aside in its place, or removes it if that failed
-     *  for a reason. */
+    /** Renames the temporary file, or removes it if writing failed for a
+     *  reason. */
     std::string
     settle(const std::string &name, std::string reason)
     {
@@ -149,7 +149,7 @@ namespace Voussoir
     make_room(const std::string &name, const std::uintmax_t size)
     {
       std::error_code problem;
-      // one folder and not those above it, which are there or were removed
+      // one folder and not those above it, which exist or were removed
       fs::create_directory(fs::absolute(name).parent_path(), problem);
       if (problem)
         return reason_of(problem.value());
@@ -174,7 +174,7 @@ namespace Voussoir
                                        MPI_MODE_CREATE | MPI_MODE_WRONLY,
                                        MPI_INFO_NULL,
                                        &file);
-      // nobody must wait for a rank that has no file
+      // no rank must wait for one that has no file
       if (Utilities::MPI::max(opened == MPI_SUCCESS ? 0 : 1, communicator) == 1)
         return false;
       const int written = Utilities::MPI::LargeCount::File_write_at_all_c(
@@ -218,7 +218,7 @@ namespace Voussoir
     const bool      exists = fs::exists(name, problem);
     if (exists && !fs::is_regular_file(name, problem))
       return put(name, text, 0);
-    // a link stays one
+    // a link stays a link
     const std::string target =
       exists ? fs::canonical(name, problem).string() : name;
     return settle(target, put(aside(target), text, 0));

@@ -16,7 +16,7 @@ namespace Voussoir
     constexpr auto bar_interval = 200ms, line_interval = 5000ms;
 
     const char *const waits_in_memory =
-      "; what it lacks waits in memory until that is possible";
+      "; missing text waits in memory until it can be written";
 
     /** Whether messages go to a terminal that can overwrite a line. */
     bool
@@ -31,8 +31,8 @@ namespace Voussoir
       if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr)
         return false;
 #endif
-      // mpirun gives each process a terminal and passes on what comes there, so
-      // that its own output counts, the parent's
+      // mpirun gives each process a pseudo-terminal and forwards its output, so
+      // that the output of mpirun, the parent, is checked
       std::error_code   none;
       const std::string output = std::filesystem::read_symlink(
         "/proc/" + std::to_string(getppid()) + "/fd/1", none);
@@ -90,7 +90,7 @@ namespace Voussoir
   {
     if (quiet)
       return;
-    // to the beginning of the line, and all of it goes
+    // to the beginning of the line, and clears it
     std::cout << (shows_bar ? "\r\033[K" : "") << text << std::flush;
     shows_bar = false;
   }
@@ -232,7 +232,7 @@ namespace Voussoir
   void
   Log::check_for_lost_files()
   {
-    const auto written = sizes; // warnings change that of log.txt
+    const auto written = sizes; // the warning below changes the size of log.txt
     for (const auto &[file, size] : written)
       {
         std::error_code problem;

@@ -73,17 +73,17 @@ namespace Voussoir
     _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
     _mm_setcsr(_mm_getcsr() | 0x0040);
 #endif
-    // A file that grows beyond the limit of its size is an error like others.
+    // Exceeding the limit of file size is an error of the write, not a signal.
     std::signal(SIGXFSZ, SIG_IGN);
-    // Ranks do not outlive an mpirun that is killed: Open MPI lets them go on,
-    // and write, for a second.
+    // Ranks do not outlive an mpirun that is killed: Open MPI lets them
+    // continue, and write, for a second.
     if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr)
       prctl(PR_SET_PDEATHSIG, SIGKILL);
     // Shared file pointers are not used. Of Open MPI's components for them "sm"
     // keeps a file in the session's folder, which two programs without mpirun
-    // at the same time take from each other, and "lockedfile" one beside each
-    // file that is opened: on a full disk the first rank gives up and the
-    // others wait for it.
+    // remove from each other, and "lockedfile" one beside each file that is
+    // opened: on a full disk the first rank gives up and the others wait for
+    // it.
     setenv("OMPI_MCA_sharedfp", "individual", 0);
     session_folder = own_session_folder();
     std::optional<TemporarySetting> folder, without_daemon;

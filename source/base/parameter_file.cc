@@ -49,7 +49,7 @@ namespace Voussoir
                                "in section \"" + section + "\"";
     }
 
-    // More would be no parameter file, or one without "end".
+    // Deeper nesting means no parameter file, or one without "end".
     constexpr std::size_t largest_file = 10000000, deepest_section = 10;
 
     bool
@@ -95,8 +95,8 @@ namespace Voussoir
     }
 
 
-    // Whether the value is a number or a list of numbers of which one is beyond
-    // all quantities.
+    // Whether the value is a number or a list of numbers of which one is larger
+    // than any quantity.
     bool
     is_too_large(const std::string &pattern, const std::string &value)
     {
@@ -167,8 +167,8 @@ namespace Voussoir
                dealii::Patterns::PatternBase::Text);
     }
 
-    // All entries that prm knows, by path. ParameterHandler has no way to ask
-    // for them but its JSON form.
+    // All entries that are declared in prm, by path. ParameterHandler has no
+    // way to ask for them but its JSON form.
     std::map<std::string, Declared>
     declared_entries(const dealii::ParameterHandler &prm)
     {
@@ -232,7 +232,7 @@ namespace Voussoir
           }
         catch (const std::exception &)
           {
-            // what fits the pattern but not the variable behind it
+            // a value that fits the pattern but not the variable of the entry
             refuse(what_is_allowed(allowed, text));
           }
       });

@@ -17,7 +17,7 @@ namespace Voussoir
 
   namespace
   {
-    // Beyond the ends of the range by this factor nothing can be computed.
+    // A value outside the range by more than this factor is refused.
     constexpr double absurd = 1e30;
 
 
@@ -50,8 +50,8 @@ namespace Voussoir
     };
 
 
-    // In the unit of the entries. It holds soil, concrete, rock and steel, so
-    // that a value outside is a mistake rather than a rare material.
+    // In the unit of the entries. The ranges include soil, concrete, rock and
+    // steel, so that a value outside is a mistake rather than a rare material.
     const std::map<Usual, Range> &
     ranges()
     {
@@ -97,8 +97,9 @@ namespace Voussoir
     }
 
 
-    // ParameterHandler keeps nothing of ours with an entry but its description,
-    // so the sentence at its end stands for the range. Null: it has none.
+    // ParameterHandler stores no data of ours with an entry except its
+    // description, so the range is read from the sentence at the end of it.
+    // Null: it has none.
     const Range *
     range_of(const std::string &description)
     {
@@ -154,14 +155,14 @@ namespace Voussoir
       const std::string  unit = unit_of(description);
       std::ostringstream sentence;
       sentence << "\"" << entry << "\" in section \"" << section << "\" is "
-               << value << unit << ", but usually it is " << range->words()
-               << unit;
+               << value << unit << ", outside the usual range "
+               << range->words() << unit;
       if (std::abs(value) >
             absurd * std::max(std::abs(range->from), range->to) ||
           (value > 0. && value < range->from / absurd))
         throw UserError(sentence.str() +
                         ", and nothing can be computed with it; correct it.");
-      result.push_back(sentence.str() + "; look at the unit");
+      result.push_back(sentence.str() + "; check the unit");
     };
 
     const std::function<void(const nlohmann::json &, const std::string &)>

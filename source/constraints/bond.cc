@@ -24,12 +24,13 @@ namespace Voussoir
                       "Increase of the shear strength with the pressure [-]." +
                         usually(Usual::friction_coefficient),
                       Patterns::Double(0.));
-    prm.add_parameter("Residual cohesion",
-                      broken.cohesion,
-                      "Shear strength without pressure once the bond is lost, "
-                      "while closed [Pa]." +
-                        usually(Usual::interface_cohesion),
-                      Patterns::Double(0.));
+    prm.add_parameter(
+      "Residual cohesion",
+      broken.cohesion,
+      "Shear strength without pressure once the bond is lost, while the "
+      "interface is closed [Pa]." +
+        usually(Usual::interface_cohesion),
+      Patterns::Double(0.));
     prm.add_parameter("Residual friction coefficient",
                       broken.friction,
                       "Friction coefficient once the bond is lost [-]." +

@@ -11,7 +11,7 @@ namespace Voussoir
       InterfaceStrength
       strength(const InterfaceHistory &history) const override
       {
-        // round-off, which may be taken for motion, breaks nothing
+        // round-off must not break the bond
         constexpr double nanometre = 1e-9;
         return history.opening > nanometre || history.slip > nanometre ?
                  broken :
@@ -21,7 +21,7 @@ namespace Voussoir
 
     const Registry<InterfaceLaw>::Add<BrittleBond> registered(
       "brittle bond",
-      "Tensile strength and cohesion that are lost at the first motion, then "
-      "friction.");
+      "Tensile strength and cohesion that are lost at the first opening or "
+      "slip, then friction.");
   } // namespace
 } // namespace Voussoir

@@ -80,7 +80,7 @@ namespace Voussoir
       }
     solver.prepare_step(interfaces, at_clusters, time_step);
 
-    // the bars are springs that the stable time step does not know
+    // the bars are springs that the stable time step does not include
     double share = 0.;
     for (unsigned int k = 0; k < interfaces.points.size(); ++k)
       share = std::max(share, solver.bar_share_of_stable_step(interfaces, k));
@@ -139,7 +139,7 @@ namespace Voussoir
             const double momentum = time_step * applied[i][d];
             u[d] += motion[d];
             v[d] += motion[d] * frequency;
-            // what holds a node takes the momentum on it
+            // a support takes the momentum on a fixed node
             if (simple ? compliance[i] > 0. : full_compliance[i][d][d] > 0.)
               {
                 result.impulse[d] += momentum;

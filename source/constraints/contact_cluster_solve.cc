@@ -23,27 +23,27 @@ namespace Voussoir
     // Sweeps before another method is tried.
     constexpr unsigned int max_sweeps = 100;
 
-    // Forces that would move a point this many times as far as the widest gap
-    // diverge: the nodes are jammed.
+    // Forces diverge if they would move a point more than this many times the
+    // widest gap: the nodes are jammed.
     constexpr double too_large = 1e4;
 
-    // Share of a point's own Delassus operator by which Newton's iteration
-    // softens it: forces between more points than the nodes can tell apart stay
-    // finite.
+    // Compliance of a point in Newton's iteration, as a share of its own
+    // Delassus operator: forces stay finite where contact constraints are
+    // linearly dependent.
     constexpr double softness = 1e-3;
 
     constexpr unsigned int max_newton_steps = 10;
 
-    // Every so many sweeps Newton's iteration is tried, which jumps ahead where
-    // the sweeps go slowly.
+    // Number of sweeps after which Newton's iteration is tried, which is faster
+    // where the sweeps converge slowly.
     constexpr unsigned int sweeps_per_jump = 5;
   } // namespace
 
 
   // The pseudo-inverse of the Delassus operator of all points together. It is
   // singular where nodes are fixed and where points form a ring; of the forces
-  // that do the same, those with the most even stresses are taken (weights by
-  // area).
+  // with the same effect, those with the most even stresses are taken (weights
+  // by area).
   void
   ContactSolver::make_matrices(const Points &points, Cluster &cluster) const
   {
@@ -178,7 +178,7 @@ namespace Voussoir
     effort.residual = std::max(effort.residual, found.residual);
     if (found.residual > unsolved_contact)
       ++effort.unsolved;
-    if (found.residual == 1.) // the forces of the sweeps are better than none
+    if (found.residual == 1.) // the forces of the sweeps are the best known
       return;
     for (unsigned int i = 0; i < joined.size(); ++i)
       {
@@ -298,7 +298,7 @@ namespace Voussoir
         result.largest = std::max(result.largest, point.force.norm());
         sum += size;
       }
-    if (!std::isfinite(sum)) // std::max drops what is not a number
+    if (!std::isfinite(sum)) // std::max drops NaN
       result.change = result.moved = result.largest =
         std::numeric_limits<double>::infinity();
     return result;
@@ -435,7 +435,7 @@ namespace Voussoir
                 W[d * n + j] * points[cluster.first_point + j / 3].force[j % 3];
             system(3 * k + d, 3 * k + d) = 1.;
           }
-        // both nodes are fixed, or nothing is between them yet
+        // both nodes are fixed, or their interface is not grouted yet
         if (D == 0. || !points[cluster.first_point + k].joined)
           continue;
         const NewtonPoint rows{

@@ -88,7 +88,7 @@ namespace Voussoir
         return cube;
       }
 
-      /** Those that a point may belong to if computed once more. */
+      /** Cubes that a point may fall into, whatever its round-off. */
       std::set<Cube>
       near(const Point<3> &p, const double tolerance) const
       {
@@ -173,7 +173,7 @@ namespace Voussoir
              << record.position[0] << ", " << record.position[1] << ", "
              << record.position[2]
              << ") m, so that not every node has a partner on the other side; "
-                "refine all cells on both sides of it alike by \"Local "
+                "refine all cells on both sides of it equally by \"Local "
                 "refinement\" in section \"Mesh\", or none.";
         const auto problem = std::make_pair(record.key, text.str());
         if (first.second.empty() || problem < first)

@@ -1,10 +1,11 @@
 #include <voussoir/constraints/contact_homotopy.h>
+#include <voussoir/constraints/contact_law_line.h>
+#include <voussoir/constraints/solution_line.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <random>
 
@@ -20,8 +21,8 @@ namespace Voussoir
     // A residual this large is round-off.
     constexpr double round_off = 1e-12;
 
-    // Shares of a point's own Delassus operator by which it is softened, and
-    // strengths that are as good as infinite; tried in turn.
+    // Compliances of a point as shares of its own Delassus operator, and limits
+    // of strength in place of infinity; tried in turn.
     constexpr std::array<double, 4> softnesses{{1e-6, 1e-8, 1e-7, 1e-10}};
     constexpr std::array<double, 3> caps{
       {1e2, 1e4, std::numeric_limits<double>::infinity()}};
@@ -32,217 +33,7 @@ namespace Voussoir
     constexpr double smallest_step = 1e-14;
 
 
-    using Vector = std::vector<double>;
-
-    double
-    largest(const Vector &v)
-    {
-      double result = 0.;
-      for (const double value : v)
-        result = std::max(result, std::abs(value));
-      return result;
-    }
-
-
-    double
-    product(const Vector &a, const Vector &b)
-    {
-      return std::inner_product(a.begin(), a.end(), b.begin(), 0.);
-    }
-
-
-    /** a + factor b */
-    Vector
-    sum(Vector a, const double factor, const Vector &b)
-    {
-      for (std::size_t i = 0; i < a.size(); ++i)
-        a[i] += factor * b[i];
-      return a;
-    }
-
-
-    double
-    distance(const Vector &a, const Vector &b)
-    {
-      const Vector difference = sum(a, -1., b);
-      return std::sqrt(product(difference, difference));
-    }
-
-
-    /** What n equations in n + 1 unknowns leave free. */
-    struct Line
-    {
-      Vector nearest;   // to zero
-      Vector direction; // the determinant with it as last row is positive
-    };
-
-    /** By elimination with complete pivoting. */
-    Line
-    solve(std::vector<Vector> matrix, Vector right)
-    {
-      const unsigned int        n = right.size();
-      std::vector<unsigned int> column(n + 1);
-      std::iota(column.begin(), column.end(), 0);
-      double sign = 1.;
-      for (unsigned int p = 0; p < n; ++p)
-        {
-          unsigned int row = p, place = p;
-          for (unsigned int i = p; i < n; ++i)
-            for (unsigned int j = p; j <= n; ++j)
-              if (std::abs(matrix[i][column[j]]) >
-                  std::abs(matrix[row][column[place]]))
-                {
-                  row   = i;
-                  place = j;
-                }
-          std::swap(matrix[row], matrix[p]);
-          std::swap(right[row], right[p]);
-          std::swap(column[place], column[p]);
-          const double pivot = matrix[p][column[p]];
-          if ((row != p) != (place != p))
-            sign = -sign;
-          if (pivot < 0.)
-            sign = -sign;
-          for (unsigned int i = p + 1; i < n; ++i)
-            if (const double factor = matrix[i][column[p]] / pivot;
-                factor != 0.)
-              {
-                matrix[i] = sum(std::move(matrix[i]), -factor, matrix[p]);
-                right[i] -= factor * right[p];
-              }
-        }
-      Line result{Vector(n + 1), Vector(n + 1)};
-      result.direction[column[n]] = sign;
-      for (unsigned int p = n; p-- > 0;)
-        {
-          double along = 0., rest = right[p];
-          for (unsigned int j = p + 1; j <= n; ++j)
-            {
-              along -= matrix[p][column[j]] * result.direction[column[j]];
-              rest -= matrix[p][column[j]] * result.nearest[column[j]];
-            }
-          result.direction[column[p]] = along / matrix[p][column[p]];
-          result.nearest[column[p]]   = rest / matrix[p][column[p]];
-        }
-      const double size =
-        std::sqrt(product(result.direction, result.direction));
-      for (double &value : result.direction)
-        value /= size;
-      result.nearest = sum(result.nearest,
-                           -product(result.nearest, result.direction),
-                           result.direction);
-      return result;
-    }
-
-
-    /** Part of the line of a point's law from some number z on, linear in it.
-     */
-    struct Segment
-    {
-      double from;
-      double at; // where force, gap and limit have these values
-      double force, force_slope;
-      double gap, gap_slope;
-      double limit, limit_slope; // of shear, without the bond
-      bool   open;
-    };
-
-
-    /** The line from closed to open.
-     *  @param stiffness by which a gap counts as z */
-    std::vector<Segment>
-    make_segments(const ContactLimits &limits, const double stiffness)
-    {
-      const double lowest   = limits.opening_force(),
-                   friction = limits.locked ? 0. : limits.with_pressure(),
-                   cohesion = limits.locked ? 0. : limits.without_pressure();
-      std::vector<Segment> segments;
-      if (friction > 0.)
-        segments.push_back({0., 0., 0., 1., 0., 0., cohesion, friction, false});
-      if (friction == 0. || lowest < 0.)
-        segments.push_back({lowest, 0., 0., 1., 0., 0., cohesion, 0., false});
-      double z = lowest, gap = 0.;
-      if (cohesion > 0.)
-        {
-          segments.push_back(
-            {z - cohesion, z, lowest, 0., 0., 0., cohesion, 1., false});
-          z -= cohesion;
-        }
-      if (limits.opening > 0. && limits.tension > 0.)
-        {
-          // the secant of an opened bond
-          const double secant = limits.tension / limits.opening,
-                       slope  = 1. / (stiffness + secant);
-          gap                 = limits.opening;
-          segments.push_back(
-            {z - gap / slope, z, 0., secant * slope, 0., -slope, 0., 0., true});
-          z -= gap / slope;
-        }
-      segments.push_back({-std::numeric_limits<double>::infinity(),
-                          z,
-                          -limits.tension,
-                          0.,
-                          gap,
-                          -1. / stiffness,
-                          0.,
-                          0.,
-                          true});
-      return segments;
-    }
-
-
-    /** A point, and on which piece of its law it is. */
-    struct Point
-    {
-      Point(const ContactLimits &given, const double delassus, const double cap)
-        : stiffness(delassus > 0. ? 1. / delassus : 1.)
-        , bond(std::min(given.bond, cap))
-        , locked(given.locked)
-        , tension_capped(given.tension > cap)
-        , bond_capped(given.bond > cap)
-        , cohesion_capped(given.cohesion > cap)
-      {
-        ContactLimits limits = given;
-        limits.cohesion      = std::min(given.cohesion, cap);
-        if (tension_capped)
-          {
-            limits.tension = cap;
-            limits.opening *= cap / given.tension;
-          }
-        segments = make_segments(limits, stiffness);
-        segment  = segments.size() - 1;
-        slips    = !locked;
-      }
-
-      const Segment &
-      now() const
-      {
-        return segments[segment];
-      }
-
-      /** Whether it is where its law has been cut off. */
-      bool
-      at_cap() const
-      {
-        return (tension_capped && segment + 1 == segments.size()) ||
-               (slips && (bond_capped || (cohesion_capped && !now().open)));
-      }
-
-      ContactStatus
-      status() const
-      {
-        return now().open ? ContactStatus::open :
-               slips      ? ContactStatus::sliding :
-                            ContactStatus::sticking;
-      }
-
-      double               stiffness, bond;
-      bool                 locked, tension_capped, bond_capped, cohesion_capped;
-      std::vector<Segment> segments;
-      unsigned int         segment;
-      bool                 slips;
-    };
-
+    using namespace Dense;
 
     /** Force and gap of a point, with derivatives by its unknowns and t. */
     struct State
@@ -333,7 +124,7 @@ namespace Voussoir
             start();
             for (unsigned int j = 0; j < max_corrections; ++j)
               {
-                // a homotopy that is lost is near its end, more often than not
+                // a homotopy that loses its path is mostly near its end
                 const bool arrived = follow();
                 finish(best);
                 if (!arrived || best.residual <= round_off)
@@ -346,8 +137,8 @@ namespace Voussoir
 
     private:
       /** The state at t = 0: all points are farther open than bonds can pull
-       * them. Random forces and gaps vanish along the homotopy, so that no two
-       * points reach the end of a piece at once. */
+       *  them. Random forces and gaps vanish along the homotopy, so that no two
+       *  points reach the end of a piece at once. */
       void
       start()
       {
@@ -364,15 +155,15 @@ namespace Voussoir
         x.assign(n + 1, 0.);
         for (unsigned int k = 0; k < points.size(); ++k)
           {
-            Point &point  = points[k];
-            point.segment = point.segments.size() - 1;
-            point.slips   = !point.locked;
-            x[3 * k]      = point.now().at;
+            ContactLawPoint &point = points[k];
+            point.segment          = point.segments.size() - 1;
+            point.slips            = !point.locked;
+            x[3 * k]               = point.now().at;
           }
         double reach = 1.;
-        for (const Point &point : points)
+        for (const ContactLawPoint &point : points)
           reach += point.bond - point.now().force;
-        // this is linear, and t takes no part
+        // this is linear, and independent of t
         x          = sum(x, 1., linearize(x).nearest);
         x.back()   = 0.;
         widening   = shift;
@@ -380,16 +171,16 @@ namespace Voussoir
         shift.assign(n, 0.);
         for (unsigned int k = 0; k < points.size(); ++k)
           {
-            const Point &point = points[k];
-            const double open =
+            const ContactLawPoint &point = points[k];
+            const double           open =
               point.now().at - point.stiffness * reach * (1. + random());
             widening[3 * k] += std::max(0., x[3 * k] - open) / point.stiffness;
             x[3 * k] = std::min(x[3 * k], open);
           }
       }
 
-      /** Lets a homotopy begin where the last one ended, at whose end the
-       *  forces do not soften the points. */
+      /** Makes a homotopy begin at the solution of the last one, such that its
+       *  solution has no effect of the compliance of the points. */
       void
       correct_softness()
       {
@@ -401,7 +192,7 @@ namespace Voussoir
         x.back() = 0.;
       }
 
-      /** What the softness does now, to be undone. */
+      /** Gaps by the compliance of the points now, to be removed. */
       Vector
       softening() const
       {
@@ -417,7 +208,7 @@ namespace Voussoir
       double
       limit(const unsigned int k, const Vector &x) const
       {
-        const Segment &s = points[k].now();
+        const ContactSegment &s = points[k].now();
         return s.limit + s.limit_slope * (x[3 * k] - s.at) +
                points[k].bond * (1. - bond_slope * (1. - x.back()));
       }
@@ -425,10 +216,10 @@ namespace Voussoir
       State
       state(const unsigned int k, const Vector &x) const
       {
-        const Point   &point = points[k];
-        const Segment &s     = point.now();
-        const double   z     = x[3 * k] - s.at;
-        State          result;
+        const ContactLawPoint &point = points[k];
+        const ContactSegment  &s     = point.now();
+        const double           z     = x[3 * k] - s.at;
+        State                  result;
         result.force[0]       = s.force + s.force_slope * z;
         result.force_by[0][0] = s.force_slope;
         result.gap[0]         = s.gap + s.gap_slope * z;
@@ -471,7 +262,7 @@ namespace Voussoir
         return result;
       }
 
-      /** H, with the terms of the homotopy or of the points themselves. */
+      /** The equations H, with the terms of the homotopy or without them. */
       Vector
       residual(const Vector &x, const bool of_homotopy) const
       {
@@ -534,12 +325,12 @@ namespace Voussoir
         return result;
       }
 
-      /** Positive on the piece at hand. */
+      /** Positive on the present piece. */
       double
       way_to(const End &end, const Vector &x, Vector &gradient) const
       {
-        const unsigned int k     = end.point;
-        const Point       &point = points[k];
+        const unsigned int     k     = end.point;
+        const ContactLawPoint &point = points[k];
         gradient.assign(n + 1, 0.);
         switch (end.kind)
           {
@@ -570,7 +361,8 @@ namespace Voussoir
         return way_to(end, x, gradient);
       }
 
-      /** To which the unknowns can be found where only softness holds them. */
+      /** Accuracy of unknowns that only the compliance of the points
+       *  determines. */
       double
       tolerance(const Vector &x) const
       {
@@ -620,7 +412,8 @@ namespace Voussoir
       }
 
       /** Goes a step along the path, or to the end of its piece if that comes
-       *  first; returns whether the step was short enough to be sure. */
+       *  first; returns whether the step was short enough to stay on the path.
+       */
       bool
       advance(const Vector       &direction,
               const double        step,
@@ -714,7 +507,7 @@ namespace Voussoir
       void
       cross(const End &end)
       {
-        Point &point = points[end.point];
+        ContactLawPoint &point = points[end.point];
         if (end.kind == End::opening)
           ++point.segment;
         else if (end.kind == End::closing)
@@ -724,7 +517,8 @@ namespace Voussoir
       }
 
       /** Newton's iteration from the end of a path, on the pieces where the
-       *  points are, until softness and round-off of the path are gone. */
+       *  points are, until the effects of compliance and round-off of the path
+       *  are removed. */
       void
       finish(ContactForces &best)
       {
@@ -737,8 +531,8 @@ namespace Voussoir
           {
             for (unsigned int k = 0; k < points.size(); ++k)
               {
-                Point &point  = points[k];
-                point.segment = 0;
+                ContactLawPoint &point = points[k];
+                point.segment          = 0;
                 while (x[3 * k] < point.now().from)
                   ++point.segment;
                 point.slips =
@@ -762,19 +556,21 @@ namespace Voussoir
       {
         const double size = largest(residual(x, false));
         if (!(size < best.residual) ||
-            std::any_of(points.begin(), points.end(), [](const Point &point) {
-              return point.at_cap();
-            }))
+            std::any_of(points.begin(),
+                        points.end(),
+                        [](const ContactLawPoint &point) {
+                          return point.at_cap();
+                        }))
           return;
         best.residual = size;
         for (unsigned int k = 0; k < points.size(); ++k)
           best.points[k] = {force_unit * state(k, x).force, points[k].status()};
       }
 
-      const unsigned int n; // forces
-      Vector             delassus, gaps;
-      std::vector<Point> points;
-      double             force_unit = 1.;
+      const unsigned int           n; // forces
+      Vector                       delassus, gaps;
+      std::vector<ContactLawPoint> points;
+      double                       force_unit = 1.;
 
       // the gaps of the path are wider by (1 - t) widening + shift, the bonds
       // weaker by (1 - t) bond_slope
@@ -793,8 +589,8 @@ namespace Voussoir
                 const double                      round_off)
   {
     ContactForces best{{}, std::numeric_limits<double>::infinity()};
-    // the same for each cluster, but other starts for each cap, most of which
-    // cut nothing off
+    // the same random numbers for each cluster, but different ones for each
+    // limit of strength, most of which are not reached
     std::mt19937 generator;
     for (const double cap : caps)
       if (best.residual > unsolved_contact)

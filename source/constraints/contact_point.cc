@@ -15,8 +15,8 @@ namespace Voussoir
 
   namespace
   {
-    // Shares of a motion: one that counts as none, and one that a singular
-    // Delassus operator leaves.
+    // Shares of a motion: one that is neglected, and the residual of a singular
+    // Delassus operator.
     constexpr double round_off = 1e-14, left_over = 1e-9;
 
 
@@ -56,8 +56,7 @@ namespace Voussoir
     {
       if (limit == 0.)
         return Tensor<1, 2>();
-      // it moves nothing, such as friction that has followed the pressure to
-      // next to none
+      // a force without effect, such as friction under vanishing pressure
       if (const double slip = s.norm();
           limit * delassus.tangential[0] <= round_off * slip)
         return -limit / slip * s;
@@ -114,8 +113,9 @@ namespace Voussoir
 
 
     /**
-     * Evaluates a gap(force) last at the force that closes it, between two
-     * forces with these gaps. If they have one sign, at the one that is nearer.
+     * Finds the force between two forces with these gaps at which gap(force) is
+     * zero, and evaluates it there last. If both gaps have one sign, it takes
+     * the force of the smaller one.
      */
     template <typename Gap>
     void
@@ -211,7 +211,8 @@ namespace Voussoir
         , lowest(limits.opening_force())
       {}
 
-      /** Whether the force that undoes all motion is within the limits. */
+      /** Whether the force that removes all opening and slip is within the
+       *  limits. */
       bool
       sticks()
       {
@@ -302,8 +303,8 @@ namespace Voussoir
         return b[0] + D[0] * F;
       }
 
-      /** With its cohesion it would open, without it not: it closes without
-       *  pressure, with as much of the cohesion as keeps it so. */
+      /** With its cohesion it would open, without it not: it is closed without
+       *  pressure, with the part of the cohesion that keeps it closed. */
       void
       close_with_cohesion()
       {

@@ -1,4 +1,4 @@
-// What a checkpoint holds of contact.
+// State of contact in a checkpoint.
 
 #include <voussoir/base/mpi.h>
 #include <voussoir/constraints/contact.h>

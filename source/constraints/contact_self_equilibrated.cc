@@ -1,5 +1,5 @@
-// Forces of a cluster that move none of its nodes: where more points meet than
-// the nodes can tell apart, contact forces are determined up to these.
+// Forces of a cluster that move none of its nodes: where contact constraints
+// are linearly dependent, contact forces are determined up to these.
 
 #include <voussoir/constraints/contact_solver.h>
 
@@ -17,15 +17,15 @@ namespace Voussoir
     // beyond it.
     constexpr double margin = 1e-6;
 
-    // Of the largest force, by which a limit may be exceeded.
+    // Part of the largest force by which a limit may be exceeded.
     constexpr double tolerated = 1e-11;
 
     // Rows of a linear system of unit vectors that are combinations of others.
     constexpr double dependent = 1e-10;
 
-    // Of the sum of F^2 / A that self-equilibrated forces may have. Below it
-    // the forces stay as they are: those of the step before are where the next
-    // search begins, and should change little from step to step.
+    // Part of the sum of F^2 / A that self-equilibrated forces may have. Below
+    // it the forces stay as they are: those of the step before are where the
+    // next search begins, and should change little from step to step.
     constexpr double largest_share = 0.5;
 
     /** How the force of a point may change with its status and motion kept. */
@@ -39,8 +39,8 @@ namespace Voussoir
         , slides(point.status == ContactStatus::sliding)
         , under_pressure(force[0] >= 0.)
       {
-        // closed by a part of its cohesion, which goes by the motion; or
-        // without any force that has the direction of its slip
+        // closed by a part of its cohesion, which depends on the motion; or
+        // without any force in the direction of its slip
         if (slides && (shear() < (1. - 1e-9) * limits.shear(false, force[0]) ||
                        (shear() == 0. && limits.with_pressure() > 0.)))
           fixed = true;
@@ -93,7 +93,8 @@ namespace Voussoir
           force += part * change;
       }
 
-      /** Keeps it from going on along a change that the limits have ended. */
+      /** Excludes further changes along a direction in which a limit has been
+       *  reached. */
       void
       stop(const Tensor<1, 3> &change)
       {
@@ -106,7 +107,7 @@ namespace Voussoir
           fixed = true;
       }
 
-      /** Whether it is within its limits. */
+      /** Whether the force is within its limits. */
       bool
       is_admissible(const double tolerance) const
       {
@@ -212,7 +213,7 @@ namespace Voussoir
   // the gradient of that sum in the space of self-equilibrated forces, on the
   // surface of the constraints, as far as the first point that would slip or
   // open, which is a constraint from there on. Without this they may grow from
-  // step to step, as the forces in a ring of cones of friction that have a
+  // step to step, as forces in a ring of points whose friction cones have a
   // direction in common.
   void
   ContactSolver::remove_self_equilibrated(Points        &points,
@@ -309,7 +310,8 @@ namespace Voussoir
         if (part == 1.)
           break;
       }
-    double largest = 0.; // before: the remainder has its round-off
+    double largest =
+      0.; // relative to the force before, whose round-off the remainder has
     for (unsigned int k = 0; k < cluster.n_points; ++k)
       largest = std::max(largest, points[cluster.first_point + k].force.norm());
     if (!std::all_of(forces.begin(), forces.end(), [&](const FreeForce &force) {

@@ -14,18 +14,21 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Friction coefficient",
-                          constant.friction,
-                          "Shear over pressure at which it slips [-]." +
-                            usually(Usual::friction_coefficient),
-                          Patterns::Double(0.));
-        prm.add_parameter("Cohesion",
-                          constant.cohesion,
-                          "Shear strength without pressure, while closed; slip "
-                          "does not lose it, but where the interface has been "
-                          "open by more than 0.01 mm it is gone [Pa]." +
-                            usually(Usual::interface_cohesion),
-                          Patterns::Double(0.));
+        prm.add_parameter(
+          "Friction coefficient",
+          constant.friction,
+          "Friction coefficient: shear over pressure at which the interface "
+          "slips [-]." +
+            usually(Usual::friction_coefficient),
+          Patterns::Double(0.));
+        prm.add_parameter(
+          "Cohesion",
+          constant.cohesion,
+          "Shear strength without pressure, while closed; it stays during "
+          "slip, and is lost where the interface has been open by more than "
+          "0.01 mm [Pa]." +
+            usually(Usual::interface_cohesion),
+          Patterns::Double(0.));
       }
 
       InterfaceStrength

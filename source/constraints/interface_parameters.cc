@@ -1,4 +1,5 @@
 #include <voussoir/base/active.h>
+#include <voussoir/base/gravity.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/constraints/interface_parameters.h>
 #include <voussoir/mesh/interfaces.h>
@@ -11,8 +12,6 @@ namespace Voussoir
 
   namespace
   {
-    constexpr double gravity = 9.81; // [m/s2]
-
     /** Whether @p name is @p pattern, in which "*" stands for anything. */
     bool
     matches(const std::string_view name, const std::string_view pattern)
@@ -47,7 +46,7 @@ namespace Voussoir
                       "for no pressure inside.");
     prm.add_parameter("Downstream faces",
                       downstream_faces,
-                      "Face sets at which it leaves.");
+                      "Face sets at which water leaves the interface.");
     prm.add_parameter("Upstream level",
                       upstream_level,
                       "Elevation of the water at the upstream faces [m]." +
@@ -58,7 +57,7 @@ namespace Voussoir
     prm.add_parameter(
       "Drain position",
       drain_position,
-      "Of a line of drains, as a share of the distance from the "
+      "Position of a line of drains, as a share of the distance from the "
       "upstream to the downstream faces.",
       Patterns::Double(0., 1.));
     prm.add_parameter(
@@ -95,7 +94,7 @@ namespace Voussoir
   UpliftParameters::pressure(const double elevation, const double share) const
   {
     const auto head = [&](const double level) {
-      return density * gravity * std::max(0., level - elevation);
+      return density * standard_gravity * std::max(0., level - elevation);
     };
     const double upstream   = head(upstream_level),
                  downstream = head(downstream_level);
@@ -127,23 +126,25 @@ namespace Voussoir
                       "interface has no bond [m]." +
                         usually(Usual::gap),
                       Patterns::Double(0.));
-    prm.add_parameter("Grouted after",
-                      grouted_after,
-                      "A load: until the end of the static stage that names "
-                      "it, the interface carries nothing, and its sides move "
-                      "as if the other were not there. Opening and slip begin "
-                      "where they are then. Empty: joined from the start.");
-    prm.add_parameter("Key depth",
-                      key_depth,
-                      "Depth of shear keys, which do not let it slip while its "
-                      "opening is smaller; 0 for none [m]." +
-                        usually(Usual::key_depth),
-                      Patterns::Double(0.));
-    prm.add_parameter("Steel ratio",
-                      steel_ratio,
-                      "Section of the bars across it over its area; 0 for "
-                      "none.",
-                      Patterns::Double(0., 1.));
+    prm.add_parameter(
+      "Grouted after",
+      grouted_after,
+      "A load: until the end of the static stage that names it, the interface "
+      "transmits no force, and its sides move independently. Opening and slip "
+      "count from that moment. Empty: joined from the start.");
+    prm.add_parameter(
+      "Key depth",
+      key_depth,
+      "Depth of shear keys, which prevent slip while the opening is smaller; "
+      "0 for none [m]." +
+        usually(Usual::key_depth),
+      Patterns::Double(0.));
+    prm.add_parameter(
+      "Steel ratio",
+      steel_ratio,
+      "Cross-section of the bars across the interface over its area; 0 for "
+      "none.",
+      Patterns::Double(0., 1.));
     prm.add_parameter("Steel modulus",
                       steel_modulus,
                       "Young's modulus of the bars [Pa]." +
@@ -203,7 +204,7 @@ namespace Voussoir
         prm.declare_entry("Law",
                           "friction",
                           Patterns::Selection(join(names, "|")),
-                          "Law of its strength; some entries depend on it.");
+                          "Law of the strength; some entries depend on it.");
         InterfaceParameters interface;
         interface.name = name;
         interface.law =
@@ -214,7 +215,8 @@ namespace Voussoir
           .push_back(std::move(interface));
         prm.leave_subsection();
       }
-    // the entries refer to their places, which are final only now
+    // the entries refer to elements of this vector, whose addresses are final
+    // only now
     for (auto *interfaces : {&list, &inactive})
       for (InterfaceParameters &interface : *interfaces)
         {

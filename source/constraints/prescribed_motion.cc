@@ -17,7 +17,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Face sets", face_sets, "Face sets that move so.");
+        prm.add_parameter("Face sets",
+                          face_sets,
+                          "Face sets of prescribed motion.");
         prm.add_parameter("Components",
                           components,
                           "Components that are prescribed, of x, y and z; the "
@@ -31,8 +33,7 @@ namespace Voussoir
         factor.declare(
           prm,
           "Time function",
-          "Factor on the displacement; what it has at t = 0 counts "
-          "as zero.");
+          "Factor on the displacement; its value at t = 0 is subtracted.");
       }
 
       void
@@ -177,7 +178,7 @@ namespace Voussoir
           if (Utilities::MPI::max(fixed[d], communicator) > 0)
             throw UserError("\"Displacement\" in section \"" + place +
                             "\" moves nodes along " + "xyz"[d] +
-                            " that a support of section \"Boundaries\" holds; "
+                            " that a support of section \"Boundaries\" fixes; "
                             "leave one of them out.");
       }
 
@@ -190,7 +191,7 @@ namespace Voussoir
       const LumpedMass         *mass       = nullptr;
       std::vector<unsigned int> moved_nodes;
 
-      // of each node: impulse by change of velocity, velocity by impulse
+      // of each node: impulse over change of velocity, and its inverse
       std::vector<Tensor<2, 3>> unit_impulses, responses;
     };
 

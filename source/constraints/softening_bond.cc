@@ -13,7 +13,7 @@ namespace Voussoir
      * A bond that softens linearly: with w the largest opening and s the
      * accumulated slip, the share of its strength that is left is
      *   (1 - w ft / (2 GfI)) (1 - s (c - c_res) / (2 GfII)) ,
-     * which spends GfI per area in pure opening and GfII in pure slip.
+     * which takes GfI per area in pure opening and GfII in pure slip.
      */
     class SofteningBond : public Bond
     {
@@ -24,15 +24,16 @@ namespace Voussoir
         Bond::declare_parameters(prm);
         prm.add_parameter("Fracture energy",
                           opening_energy,
-                          "Work per area that opens the bond (GfI) [J/m2]." +
+                          "Fracture energy in opening, per area (GfI) [J/m2]." +
                             usually(Usual::fracture_energy),
                           Patterns::Double(1e-3));
-        prm.add_parameter("Shear fracture energy",
-                          slip_energy,
-                          "Work per area beyond that of the residual strength "
-                          "that shears it off (GfII) [J/m2]." +
-                            usually(Usual::shear_fracture_energy),
-                          Patterns::Double(1e-3));
+        prm.add_parameter(
+          "Shear fracture energy",
+          slip_energy,
+          "Fracture energy in shear, per area and without the work of the "
+          "residual strength (GfII) [J/m2]." +
+            usually(Usual::shear_fracture_energy),
+          Patterns::Double(1e-3));
       }
 
       InterfaceStrength
@@ -57,7 +58,7 @@ namespace Voussoir
 
     const Registry<InterfaceLaw>::Add<SofteningBond> registered(
       "softening bond",
-      "Tensile strength and cohesion that soften with opening and slip at given "
-      "fracture energies, then friction.");
+      "Tensile strength and cohesion that soften with opening and slip at "
+      "given fracture energies, then friction.");
   } // namespace
 } // namespace Voussoir

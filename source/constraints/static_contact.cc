@@ -15,7 +15,7 @@ namespace Voussoir
 
 
     // Shear per pressure with which a point that closes regains cohesion, and
-    // how much faster it does from one multiplier to the next.
+    // the factor on it from one multiplier to the next.
     constexpr double cohesion_per_pressure = 10., over_relaxation = 10.;
 
 
@@ -30,11 +30,12 @@ namespace Voussoir
 
 
     /**
-     * Limits with the part of the cohesion c that acts. The law has all of it
-     * under pressure, none in an opening, and any part between where a point
-     * just touches: a shear that jumps by all of it as a point closes leaves no
-     * equilibrium where a part of it holds the point closed. That part is a
-     * multiplier k of its own, min(max(k + 10 (p - r g), 0), c).
+     * Limits with the part of the cohesion c that acts. The full cohesion acts
+     * under pressure, none across an opening, and any part between where a
+     * point just touches: with a shear that jumps by the full cohesion as a
+     * point closes there is no equilibrium where a part of it keeps the point
+     * closed. That part is a multiplier k of its own, min(max(k + 10 (p - r g),
+     * 0), c).
      */
     ContactLimits
     with_part_of_cohesion(const ContactLimits &limits,
@@ -47,7 +48,7 @@ namespace Voussoir
       result.cohesion = std::clamp(multiplier + cohesion_per_pressure * closing,
                                    0.,
                                    limits.cohesion);
-      if (closing < 0.) // it acts across what there is of a gap
+      if (closing < 0.) // it acts across any gap
         {
           result.bond += result.cohesion;
           result.cohesion = 0.;
@@ -112,7 +113,7 @@ namespace Voussoir
         const double first   = at_nodes[point.first].norm() / std::sqrt(3.),
                      second  = at_nodes[point.second].norm() / std::sqrt(3.);
         const double stiffer = std::max(first, second);
-        // fixed on both sides nothing depends on it
+        // with both sides fixed, forces do not depend on it
         spring.push_back(stiffer == 0.               ? 1. :
                          first == 0. || second == 0. ? stiffer :
                                                        std::min(first, second));
@@ -165,7 +166,7 @@ namespace Voussoir
         const ContactForce found = solve_contact(b, 1. / spring[k], limits);
         point.force              = found.force;
         point.status             = found.status;
-        if (limits.bond > point.limits.bond) // what touches is not open
+        if (limits.bond > point.limits.bond) // points that touch are not open
           point.status = spring[k] * std::hypot(b[1], b[2]) > limits.bond ?
                            ContactStatus::sliding :
                            ContactStatus::sticking;
@@ -261,8 +262,8 @@ namespace Voussoir
         ContactPoint &point = interfaces.points[k];
         changed += (point.force - multiplier[k]).norm_square();
         whole += point.force.norm_square();
-        // those that swing to and fro meet in the middle; those of cohesion
-        // have a relaxation of their own
+        // multipliers that alternate are averaged; those of cohesion have a
+        // relaxation of their own
         const Tensor<1, 3> way    = point.force - multiplier[k];
         const bool         swings = way * last_change[k] < 0.;
         const double share = swings && point.limits.cohesion == 0. ? 0.5 : 1.;
@@ -275,7 +276,7 @@ namespace Voussoir
                      point.limits.cohesion);
 
         const ContactLimits limits = point.limits;
-        if (limits.tension > 0. || limits.bond > 0.) // there is a bond to lose
+        if (limits.tension > 0. || limits.bond > 0.) // the law has a bond
           {
             const InterfaceHistory now = history_at(k);
             point.history = {std::max(point.history.opening, now.opening),

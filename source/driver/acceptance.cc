@@ -81,7 +81,7 @@ namespace Voussoir
     prm.add_parameter(
       "Load cases",
       load_cases,
-      "What this run is, as \"static usual, MCE, after the earthquake\": "
+      "Load cases of this run, as \"static usual, MCE, after the earthquake\": "
       "criteria of other load cases are left out, so that one file can hold "
       "those of all. Empty: all.",
       Patterns::MultipleSelection(
@@ -93,12 +93,12 @@ namespace Voussoir
         in_section(prm, name, [&] {
           prm.add_parameter("Clause",
                             criterion.clause,
-                            "What it follows from, in your words: the clause "
+                            "Basis of the criterion, in your words: the clause "
                             "of a code, or of the owner's specification.");
           add_option(prm,
                      "Load case",
                      criterion.load_case,
-                     "Of which load case it is.");
+                     "Load case to which the criterion applies.");
           prm.add_parameter(
             "Quantity",
             criterion.quantity,
@@ -106,10 +106,10 @@ namespace Voussoir
             "section \"Study\".");
           prm.add_parameter("At most",
                             criterion.at_most,
-                            "What it must not exceed, in its own unit.");
+                            "Upper limit of the quantity, in its own unit.");
           prm.add_parameter("At least",
                             criterion.at_least,
-                            "What it must not fall below, instead.");
+                            "Lower limit of the quantity, instead.");
           prm.add_parameter("Source",
                             criterion.source,
                             "Where the limit has been read, or \"user's\" for "
@@ -170,7 +170,7 @@ namespace Voussoir
       {
         const SummaryNumber quantity(criterion.quantity);
         const bool          is_upper = !criterion.at_most.empty();
-        // of several the one that meets it least
+        // of several numbers the least favourable
         const auto   found = quantity.find(summary, !is_upper);
         const double limit =
           *parse_number(is_upper ? criterion.at_most : criterion.at_least);

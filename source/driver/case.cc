@@ -6,6 +6,7 @@
 #include <voussoir/base/usual_range.h>
 #include <voussoir/driver/case.h>
 #include <voussoir/mesh/mesh_check.h>
+#include <voussoir/mesh/mesh_report.h>
 #include <voussoir/output/material_memory.h>
 
 #include <algorithm>
@@ -99,7 +100,7 @@ namespace Voussoir
                             default_class,
                             Patterns::Selection(
                               choices(Registry<Base>::names())),
-                            "Its class; the other entries depend on it.");
+                            "Class; the other entries depend on it.");
           const bool active = !can_rest || declared_active(prm, file, path);
           declare_one(prm,
                       name,
@@ -168,7 +169,7 @@ namespace Voussoir
   {
     prm.add_parameter("End time",
                       end_time,
-                      "How long to compute [s].",
+                      "Duration of the motion to compute [s].",
                       Patterns::Double(0.));
     prm.add_parameter("Time step",
                       time_step,
@@ -184,30 +185,31 @@ namespace Voussoir
       "Scheme",
       scheme,
       "Central difference: dashpots and mass damping act on the velocity at "
-      "the step, at no cost in the time step. Paper: on that of the half step "
-      "before, as in PSDAP.");
+      "the step, at no cost in the time step. Paper: on the velocity of the "
+      "half step before, as in PSDAP.");
   }
 
 
   void
   OutputParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter("Folder",
-                      folder,
-                      "Where the results go; empty for output/ and the name of "
-                      "the parameter file. A number is added if the folder "
-                      "exists.");
-    prm.add_parameter("Observers",
-                      observers,
-                      "What to record, in this order; each has a section here.",
-                      Patterns::MultipleSelection(
-                        choices(Registry<Observer>::names())));
+    prm.add_parameter(
+      "Folder",
+      folder,
+      "Folder of the results; empty for output/ and the name of "
+      "the parameter file. A number is added if the folder "
+      "exists.");
+    prm.add_parameter(
+      "Observers",
+      observers,
+      "Observers, which write results, in this order; each has a section here.",
+      Patterns::MultipleSelection(choices(Registry<Observer>::names())));
     prm.add_parameter(
       "Observers for the verdict",
       for_verdict,
-      "Adds over-stress where a linear elastic material has a tensile strength, "
-      "and through cracks where a material cracks, if the observers do not name "
-      "them and the mesh has an upstream and a downstream face.");
+      "Adds over-stress where a linear elastic material has a tensile "
+      "strength, and through cracks where a material cracks, if the observers "
+      "do not name them and the mesh has an upstream and a downstream face.");
     prm.add_parameter(
       "Energy interval",
       energy_interval,
@@ -218,22 +220,23 @@ namespace Voussoir
     prm.add_parameter(
       "Energy limit",
       energy_limit,
-      "Energy-balance error at which the run stops, over what came in; from a "
-      "hundredth on the run warns.",
+      "Energy-balance error at which the run stops, over the energy that came "
+      "in; from a hundredth on the run warns.",
       Patterns::Double(0., 1.));
     prm.add_parameter(
       "Checkpoint interval",
       checkpoint_interval,
-      "Minutes on the clock between two checkpoints, from which "
-      "--restart goes on; 0 for none by the clock. SIGUSR1 asks for one more; "
-      "SIGTERM and the like, or a file named stop in the output folder, for "
-      "one and the end.",
+      "Minutes on the clock between two checkpoints, from which --restart "
+      "continues; 0 for none by the clock. SIGUSR1 asks for one more; SIGTERM "
+      "and the like, or a file named stop in the output folder, for one and "
+      "the end.",
       Patterns::Double(0.));
-    prm.add_parameter("Checkpoint time",
-                      checkpoint_time,
-                      "Simulated time between two checkpoints [s]; 0 for none "
-                      "by it.",
-                      Patterns::Double(0.));
+    prm.add_parameter(
+      "Checkpoint time",
+      checkpoint_time,
+      "Simulated time between two checkpoints [s]; 0 for none by simulated "
+      "time.",
+      Patterns::Double(0.));
   }
 
 
@@ -413,7 +416,7 @@ namespace Voussoir
                       option_name(discretization.quadrature) +
                       "\", which cells of \"Degree\" " +
                       std::to_string(discretization.degree) +
-                      " cannot do with; set \"Degree = 1\", or take \"Gauss\" "
+                      " do not have; set \"Degree = 1\", or take \"Gauss\" "
                       "or \"Gauss-Lobatto\".");
     interfaces.check();
     static_state.check(loads.objects, interfaces);
@@ -447,8 +450,7 @@ namespace Voussoir
     const auto refuse = [](const std::string &what, const std::string &remedy) {
       throw UserError("\"Sums = reproducible\" in section \"Discretization\" "
                       "does not cover " +
-                      what + "; " + remedy +
-                      ", or leave \"Sums\" as they are dealt.");
+                      what + "; " + remedy + ", or set \"Sums = as dealt\".");
     };
     if (discretization.degree != 1)
       refuse("cells of \"Degree\" " + std::to_string(discretization.degree),
@@ -457,7 +459,7 @@ namespace Voussoir
       refuse("compressible water",
              "set \"Model = added mass\" in section \"Reservoir\"");
     if (modes.number > 0 && damping.depends_on_modes())
-      refuse("damping that goes by modes, as \"" +
+      refuse("damping that is fitted to modes, as \"" +
                std::string(damping.modes.empty() ? "Reference frequency" :
                                                    "From modes") +
                "\" in section \"Damping\" says",
@@ -580,7 +582,8 @@ namespace Voussoir
                   throw UserError(
                     "Cells of the set \"" + set + "\" have two materials, \"" +
                     materials.objects[result[cell]].first + "\" and \"" + name +
-                    "\"; make their \"Cell sets\" in section \"Materials\" disjoint.");
+                    "\"; make their \"Cell sets\" in section \"Materials\" "
+                    "disjoint.");
                 result[cell] = m;
               }
           }

@@ -33,7 +33,7 @@ namespace Voussoir
     }
 
 
-    /** Whether a run may go on with another value of an entry. */
+    /** Whether a run may continue with another value of an entry. */
     bool
     is_free_of_restart(const std::string &entry)
     {
@@ -50,7 +50,7 @@ namespace Voussoir
     }
 
 
-    /** Of what a file holds; empty if it is none. */
+    /** Checksum of the contents of a file; empty if there is no such file. */
     std::string
     checksum_of_file(const std::string &name)
     {
@@ -62,7 +62,7 @@ namespace Voussoir
     }
 
 
-    /** That of the library this is a part of. */
+    /** Checksum of the library that contains this function. */
     std::string
     checksum_of_program()
     {
@@ -72,7 +72,7 @@ namespace Voussoir
     }
 
 
-    /** What the static state does not depend on. */
+    /** Entries on which the static state does not depend. */
     bool
     is_free_of_static_state(const std::string &line)
     {
@@ -84,7 +84,7 @@ namespace Voussoir
     }
 
 
-    /** Entries and the files that they name, but those that are free. */
+    /** Entries and the files that they name, without those that may change. */
     nlohmann::json
     identity_without(const Case &parameters,
                      bool (*const is_free)(const std::string &entry))

@@ -82,7 +82,8 @@ namespace Voussoir
                       const ParameterHandler::OutputStyle style)
     {
       Case all;
-      // what the entries of the meshes, of which a case has one, refer to
+      // the variables of the entries of all mesh sources, of which a case has
+      // one
       std::vector<std::unique_ptr<MeshGenerator>> generators;
       all.prm.enter_subsection("Mesh");
       for (const auto &[name, entry] : Registry<MeshGenerator>::entries())
@@ -120,7 +121,7 @@ namespace Voussoir
       return item->second;
     }
 
-    /** What a step takes, by the first ones [s]. */
+    /** Wall time of a step, from the first ones [s]. */
     double
     seconds_per_step(Run &run)
     {
@@ -137,7 +138,7 @@ namespace Voussoir
     }
 
 
-    /** Checks of a case without computing it. */
+    /** Checks a case without computing it. */
     struct Estimate
     {
       types::global_dof_index  unknowns  = 0;
@@ -186,7 +187,7 @@ namespace Voussoir
                 << found.time_step << " s, " << found.steps << " steps"
                 << (parameters.damping.modes.empty() ?
                       "" :
-                      ", more with the damping that comes from the modes")
+                      ", more with the damping that is fitted to the modes")
                 << ".\nThe steps take about " << duration_text(found.seconds)
                 << " on "
                 << counted(Utilities::MPI::n_mpi_processes(communicator),
@@ -211,17 +212,14 @@ namespace Voussoir
           seconds += estimate(parameters, options, communicator).seconds;
         }
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        std::cout << "Valid: a study of " << counted(runs.size(), "run", "runs")
-                  << (Case(file).study.seeks_limit() ?
-                        " and what lies between them" :
-                        "")
-                  << ".\nTheir steps take about " << duration_text(seconds)
-                  << " on "
-                  << counted(Utilities::MPI::n_mpi_processes(communicator),
-                             "rank",
-                             "ranks")
-                  << ", static state, modes and output not counted."
-                  << std::endl;
+        std::cout
+          << "Valid: a study of " << counted(runs.size(), "run", "runs")
+          << (Case(file).study.seeks_limit() ? " and values between them" : "")
+          << ".\nTheir steps take about " << duration_text(seconds) << " on "
+          << counted(Utilities::MPI::n_mpi_processes(communicator),
+                     "rank",
+                     "ranks")
+          << ", static state, modes and output not counted." << std::endl;
     }
 
 
@@ -256,7 +254,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Whether all ranks come here within a few seconds. */
+    /** Whether all ranks reach this call within a few seconds. */
     bool
     all_arrive(const MPI_Comm communicator)
     {
@@ -278,7 +276,8 @@ namespace Voussoir
   guarded(const std::function<void()> &action, const MPI_Comm communicator)
   {
     const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
-    // to meet after an error: on the other one ranks may wait for each other
+    // for meeting after an error: on the usual communicator ranks may wait for
+    // each other
     MPI_Comm meeting;
     MPI_Comm_dup(communicator, &meeting);
     std::string message;
@@ -314,8 +313,8 @@ namespace Voussoir
         message =
           std::string("Unexpected error, please report it: ") + error.what();
       }
-    // An error that all ranks see is reported by the first. One rank's own
-    // error cannot be agreed upon with the others, who wait for something else.
+    // An error that all ranks see is reported by the first. An error of one
+    // rank cannot be agreed upon with the others, which wait in another call.
     const bool all = all_arrive(meeting);
     if (first || !all)
       std::cerr << "Error: " << message << std::endl;
@@ -361,7 +360,7 @@ namespace Voussoir
                        join(keys(lists()), ", "));
       app.add_option("--material-test",
                      arguments.test_file,
-                     "Lead one point of a material along the path of section "
+                     "Take one point of a material along the path of section "
                      "\"Material test\" and write strains and stresses to this "
                      "CSV file");
       app.add_flag(
@@ -375,7 +374,7 @@ namespace Voussoir
     }
 
 
-    /** "--set A=1 B=2 case.prm": what changes no entry is the case. */
+    /** "--set A=1 B=2 case.prm": the argument without "=" is the case. */
     void
     take_case_from_changes(Arguments &arguments)
     {
@@ -467,7 +466,7 @@ namespace Voussoir
       }
     catch (const CLI::ParseError &error)
       {
-        // --help and --version come this way too
+        // --help and --version end here, too
         std::ostringstream text;
         const int          code = app.exit(error, text, text);
         if (first && code == 0)

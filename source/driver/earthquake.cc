@@ -37,7 +37,8 @@ namespace Voussoir
     }
 
 
-    /** A wrong digit in a record is made its peak, and the earthquake small. */
+    /** A wrong digit in a record becomes its peak, and scaling to a peak
+     *  acceleration makes all the rest small. */
     void
     check_single_sample(const Signal      &motion,
                         const Peak        &peak,
@@ -53,7 +54,7 @@ namespace Voussoir
                  rest / standard_gravity,
                  " g where this is more than ",
                  away,
-                 " s away; look whether a sample of the record is wrong");
+                 " s away; check whether a sample of the record is wrong");
     }
 
 
@@ -98,7 +99,7 @@ namespace Voussoir
     }
 
 
-    // What hardly is the earthquake that was meant.
+    // Warnings of a probable mistake in the earthquake.
     void
     check_peaks(const GroundMotionSignals &motion,
                 const GroundMotion        &parameters,
@@ -120,9 +121,9 @@ namespace Voussoir
                  << " has its peak acceleration of " << g
                  << " g at t = " << whole.time << " s";
             const std::string remedy =
-              "look at the file and its \"Unit\", at \"Peak acceleration " +
+              "check the file and its \"Unit\", \"Peak acceleration " +
               axes[d] +
-              "\" and at \"Overload factor\" in section \"Ground "
+              "\" and \"Overload factor\" in section \"Ground "
               "motion\"";
             if (!(g < 1e6))
               throw UserError("Nothing can be computed, as " + text.str() +
@@ -137,7 +138,7 @@ namespace Voussoir
                        remedy,
                        ", as 1 g is 9.81 m/s2");
             if (g < 1e-3)
-              log.warn(text.str(), ", which nobody would feel; ", remedy);
+              log.warn(text.str(), ", which is not perceptible; ", remedy);
             if (parameters.type == GroundMotionType::record)
               check_single_sample(*motion[d], whole, text.str(), log);
             if (reached.acceleration < 0.99 * whole.acceleration)
@@ -212,7 +213,7 @@ namespace Voussoir
     }
 
 
-    // A vertical wave is that of one column of layers.
+    // A vertical wave is computed in one column of layers.
     void
     check_layers(const Model &model, Log &log)
     {

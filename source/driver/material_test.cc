@@ -20,7 +20,7 @@ namespace Voussoir
     };
 
 
-    /** Of "xx: 0, 1e-4; yy: 0, 0". */
+    /** Reads "xx: 0, 1e-4; yy: 0, 0". */
     void
     read_paths(const std::string            &text,
                const bool                    is_strain,
@@ -69,21 +69,22 @@ namespace Voussoir
                       "Corners of the path of each given strain, components "
                       "separated by semicolons, as in \"xx: 0, 2e-4, 0; yy: 0, "
                       "0, 0\". Shear strains are those of the tensor.");
-    prm.add_parameter("Stresses",
-                      stresses,
-                      "The same for given stresses [Pa]. What is given nowhere "
-                      "has no stress.");
+    prm.add_parameter(
+      "Stresses",
+      stresses,
+      "The same for given stresses [Pa]. Components that are not given have "
+      "no stress.");
     prm.add_parameter("Steps",
                       steps,
                       "Steps from corner to corner.",
                       Patterns::Integer(1));
     prm.add_parameter("Time between corners",
                       segment_time,
-                      "For laws with an effect of rate [s].",
+                      "Duration of a step, for rate-dependent laws [s].",
                       Patterns::Double(1e-9));
     prm.add_parameter("Element length",
                       element_length,
-                      "Size of the cell that the point stands for [m].",
+                      "Size of the cell of the point, for the crack band [m].",
                       Patterns::Double(1e-6));
   }
 

@@ -35,7 +35,7 @@ namespace Voussoir
     }
 
 
-    /** A mesh and what its case does with the faces of its surface. */
+    /** A mesh and the conditions of its case on the faces of its surface. */
     class MeshAgainstCase
     {
     public:
@@ -132,8 +132,8 @@ namespace Voussoir
           }
       }
 
-      /** Rock that reaches beyond the model has settled long ago, and rock
-       *  without inertia is meant to have no weight either. */
+      /** Rock that continues beyond the model has settled long ago, and rock
+       *  without inertia must have no weight either. */
       void
       check_weight() const
       {
@@ -150,15 +150,16 @@ namespace Voussoir
               else
                 ++n_others;
             if (n_others > 0 && rock < materials.size())
-              log.warn("\"Cell sets\" in section \"",
-                       section,
-                       "\" is empty, so that \"",
-                       parameters.materials.objects[rock].first,
-                       "\" weighs too, ",
-                       absorbs[rock] ? "which goes on beyond the model" :
-                                       "which is given less inertia",
-                       ", and settles with the dam on it; name the cell sets "
-                       "that have weight");
+              log.warn(
+                "\"Cell sets\" in section \"",
+                section,
+                "\" is empty, so that \"",
+                parameters.materials.objects[rock].first,
+                "\" weighs too, ",
+                absorbs[rock] ? "which continues beyond the model" :
+                                "which is given less inertia",
+                ", would settle under its weight; name the cell sets that "
+                "have weight");
           }
       }
 

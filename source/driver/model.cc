@@ -4,7 +4,7 @@
 #include <voussoir/loads/added_mass.h>
 #include <voussoir/loads/water_level.h>
 #include <voussoir/mesh/interfaces.h>
-#include <voussoir/mesh/mesh_check.h>
+#include <voussoir/mesh/mesh_parts.h>
 #include <voussoir/mesh/reservoir_mesh.h>
 
 #include <iomanip>
@@ -16,7 +16,8 @@ namespace Voussoir
 
   namespace
   {
-    // The water that a mesh may have is a mesh of its own, used or not.
+    // Water of a mesh becomes a mesh of its own, whether the case uses it or
+    // not.
     CoarseMesh
     take_water(const Case &parameters, CoarseMesh &mesh)
     {
@@ -75,7 +76,8 @@ namespace Voussoir
     }
 
 
-    // What acts on the faces of an interface acts on one of its sides only.
+    // Loads and constraints on the faces of an interface act on one of its
+    // sides only.
     void
     report_sets_on_interfaces(const Case              &parameters,
                               const CoarseMesh        &solid,
@@ -181,7 +183,7 @@ namespace Voussoir
     }
 
 
-    // Water that the run does not meet.
+    // Water that is not in contact with the solid in the run.
     std::shared_ptr<const Reservoir>
     make_reservoir_of_modes(const Case                             &parameters,
                             const CoarseMesh                       &water_mesh,
@@ -216,7 +218,7 @@ namespace Voussoir
     }
 
 
-    // The loads and the mass of the same water stand in sections of their own.
+    // The loads and the added mass of the same water are in separate sections.
     void
     check_levels(const Case &parameters, Log &log)
     {
@@ -417,7 +419,7 @@ namespace Voussoir
     if (parameters.reservoir.model == ReservoirModel::added_mass)
       log.line("Reservoir: added mass of ",
                added_mass.mass,
-               " kg against motion along the river, (",
+               " kg for motion along the river, (",
                added_mass.river,
                ")");
     if (reservoir)
@@ -458,13 +460,14 @@ namespace Voussoir
       outside[d] = std::max(
         {0., lower[d] - absorbing.source[d], absorbing.source[d] - upper[d]});
     if (outside.norm() > 3. * upper.distance(lower))
-      log.warn("\"Source point\" in section \"Boundaries\" is ",
-               outside.norm(),
-               " m outside the model, which reaches from (",
-               lower,
-               ") to (",
-               upper,
-               ") m; springs so far from it hardly hold");
+      log.warn(
+        "\"Source point\" in section \"Boundaries\" is ",
+        outside.norm(),
+        " m outside the model, which reaches from (",
+        lower,
+        ") to (",
+        upper,
+        ") m; springs at this distance from it have hardly any stiffness");
   }
 
 
@@ -541,8 +544,10 @@ namespace Voussoir
           log.line("  note: ", remark);
         if (solid.materials[m]->n_history() > 0 &&
             solid.discretization.degree > 2)
-          log.line("  note: fracture energies hold in cells of degree 1 and 2; "
-                   "in those of a higher degree a crack takes more or less.");
+          log.line(
+            "  note: fracture energies hold in cells of degree 1 and 2; "
+            "in cells of a higher degree the energy of a crack deviates from "
+            "them.");
       }
   }
 } // namespace Voussoir

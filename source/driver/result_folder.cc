@@ -18,7 +18,7 @@ namespace Voussoir
 
   namespace
   {
-    /** What the first rank does for all: they throw what it throws. */
+    /** Runs an action on the first rank; its exceptions are thrown on all. */
     template <typename Action>
     void
     on_first_rank(const MPI_Comm communicator, const Action &action)
@@ -48,7 +48,7 @@ namespace Voussoir
 
 
     constexpr const char *still_going_on =
-      "is that of a run which is still going on";
+      "belongs to a run that is still going on";
 
 
     std::string
@@ -86,8 +86,8 @@ namespace Voussoir
     }
 
 
-    /** Why nothing can be written to a folder, there or to be made, as far as
-     *  that shows without trying; empty: it can. */
+    /** Why nothing can be written to a folder, existing or to be made, as far
+     *  as known without trying; empty: writing is possible. */
     std::string
     obstacle(const fs::path &folder)
     {
@@ -101,7 +101,7 @@ namespace Voussoir
     }
 
 
-    /** How many folders of this name there are. */
+    /** Number of folders of this name. */
     unsigned int
     count(const std::string &name)
     {
@@ -284,7 +284,7 @@ namespace Voussoir
             "The file \"" + file + "\" " +
             (problem ? "is missing" : "has been cut off") +
             " since the checkpoint \"" + from +
-            "\" was written; put it back, or start the case afresh.");
+            "\" was written; restore the file, or start the case anew.");
       }
   }
 
@@ -295,7 +295,8 @@ namespace Voussoir
     on_first_rank(log.communicator(), [&] {
       bool made = make_folder(chosen);
       if (!made && !options.restart && !options.overwrite)
-        for (unsigned int n = 2; !made; ++n) // another run was faster
+        for (unsigned int n = 2; !made;
+             ++n) // another run has claimed it before
           {
             chosen = numbered(name_in(parameters), n);
             made   = make_folder(chosen);

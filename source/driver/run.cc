@@ -35,7 +35,7 @@ namespace Voussoir
              " (see the warnings) " :
            "") +
         "could not be written because " + reason +
-        "; see to it and run the case again.");
+        "; remove the cause and run the case again.");
     }
   } // namespace
 
@@ -111,7 +111,7 @@ namespace Voussoir
       projection->start(state);
     if (resumes && contact)
       contact->resume();
-    // the table has its line of a checkpoint between two
+    // at a restart the table has this line already
     if (!folder.restarts() || energy.is_due(state.step))
       energy.evaluate(state);
     supervision.keep(state);
@@ -183,11 +183,10 @@ namespace Voussoir
       write_checkpoint();
     if (state.step < n_steps() && !model.parameters.moves())
       log.warn(
-        "nothing moves the model, neither an earthquake nor a constraint "
-        "nor a load outside the static stages: its time steps show it "
-        "at rest; give one of these, or \"End time = 0\" in section "
-        "\"Time\"");
-    observe(); // after a restart what they saw last, once more
+        "nothing moves the model, neither an earthquake nor a constraint nor "
+        "a load outside the static stages, so that it stays at rest; give one "
+        "of these, or \"End time = 0\" in section \"Time\"");
+    observe(); // after a restart the last state before it, once more
   }
 
 
@@ -284,7 +283,7 @@ namespace Voussoir
       {
         std::ostringstream text;
         text << "Stopped on request at t = " << state.time << " s"
-             << (saved ? "; \"--restart\" goes on from here." :
+             << (saved ? "; \"--restart\" continues from here." :
                          ", without a checkpoint of this time.");
         stop(text.str());
       }

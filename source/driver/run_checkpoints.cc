@@ -11,7 +11,7 @@ namespace Voussoir
 
   namespace
   {
-    /** The same for all partitions of a mesh. */
+    /** Identifier of a mesh, the same for all partitions. */
     nlohmann::json
     mesh_identity(const Model &model)
     {
@@ -142,7 +142,8 @@ namespace Voussoir
   RunCheckpoints::write(State &state, const EnergyBalance &energy) const
   {
     if (!std::isfinite(largest_amount(state.velocity)))
-      return false; // the next line of the energy balance ends such a run
+      return false; // a run with such energies stops at the next line of the
+                    // energy balance
     StateContent content = content_of(state);
     for (const auto &[name, observer] : setup.plan.observers)
       content.documents["observers"][name] = observer->save();
@@ -160,7 +161,7 @@ namespace Voussoir
       Utilities::MPI::all_gather(log.communicator(), sums);
     try
       {
-        // a run that goes on from here does not write their lines again
+        // a run that continues from here does not write their lines again
         if (!log.write_growing_files())
           throw UserError("some of the results cannot be written.");
         files.write(state.step,
@@ -201,7 +202,7 @@ namespace Voussoir
         std::ostringstream text;
         text << "The checkpoint \"" << folder.checkpoint_file()
              << "\" is of a motion without end, given at the free surface and "
-                "followed down to the base for "
+                "deconvolved to the base for "
              << followed_to
              << " s; keep this \"End time\" in section \"Time\", or start "
                 "afresh.";
@@ -230,7 +231,7 @@ namespace Voussoir
     if (setup.water && setup.water->end)
       setup.water->end->load(content.documents["radiating end"]);
 
-    // on as many ranks each takes its own, so that nothing rounds differently;
+    // on as many ranks each takes its own part, so that round-off is the same;
     // else the first one takes all
     const std::vector<std::vector<double>> of_ranks =
       content.documents["sums of ranks"];
@@ -263,7 +264,7 @@ namespace Voussoir
           [&](const std::vector<double> &numbers) { *sum += numbers.at(i); });
         ++i;
       }
-    log.line("Going on from the checkpoint \"",
+    log.line("Continuing from the checkpoint \"",
              folder.checkpoint_file(),
              "\" at t = ",
              state.time,

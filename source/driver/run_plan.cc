@@ -31,8 +31,8 @@ namespace Voussoir
         "The constraints \"" + constraints[pair / constraints.size()].first +
         "\" and \"" + constraints[pair % constraints.size()].first +
         "\" both prescribe the component " + "xyz"[(found - 1) % 3] +
-        " of the same nodes; leave it out of one of them by "
-        "\"Components\", or name other faces.");
+        " of the same nodes; remove it from one of them by \"Components\", or "
+        "name other faces.");
     }
 
 
@@ -71,7 +71,7 @@ namespace Voussoir
           if (std::find(added.begin(), added.end(), observer->first) ==
               added.end())
             throw;
-          log.line("note: not looked at for the verdict: ",
+          log.line("note: not evaluated for the verdict: ",
                    observer->first,
                    ", because ",
                    error.what());

@@ -9,8 +9,9 @@ namespace Voussoir
 
   namespace
   {
-    // Between two polls [s]: a batch system may kill the process a second after
-    // its signal. And in steps, as short runs of small models take less.
+    // Interval of polls [s]: a batch system may kill the process a second after
+    // its signal. The largest number of steps between two polls, as short runs
+    // of small models take less than that.
     constexpr double poll_interval = 0.01, poll_steps = 100.;
   } // namespace
 

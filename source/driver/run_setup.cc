@@ -7,7 +7,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Before the modes are known that damping goes by there is none. */
+    /** Without the modes to which damping is fitted there is no damping yet. */
     DampingParameters
     damping_known(const Model &model, const Modes &modes)
     {
@@ -28,7 +28,8 @@ namespace Voussoir
     }
 
 
-    // Waves below the band are hardly damped, and those in it the mesh has not.
+    // Waves below the damped band are hardly damped, and the mesh carries no
+    // waves within it.
     void
     check_band(const Model &model, Log &log)
     {
@@ -38,11 +39,12 @@ namespace Voussoir
         return;
       const double carried = model.carried_frequency();
       if (damping.lowest_frequency > carried)
-        log.warn("\"Lowest frequency\" in section \"Damping\" is ",
-                 damping.lowest_frequency,
-                 " Hz, but the cells carry waves up to ",
-                 carried,
-                 " Hz only; give the natural frequencies that matter");
+        log.warn(
+          "\"Lowest frequency\" in section \"Damping\" is ",
+          damping.lowest_frequency,
+          " Hz, but the cells carry waves up to ",
+          carried,
+          " Hz only; give the band of the natural frequencies that matter");
     }
 
 
@@ -69,7 +71,7 @@ namespace Voussoir
 
 
     // The bars across interfaces are springs that the stable step does not
-    // know.
+    // include.
     void
     refuse_stiff_bars(const Model &model, const double time_step)
     {

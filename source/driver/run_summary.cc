@@ -118,7 +118,7 @@ namespace Voussoir
   }
 
 
-  // Whatever has such entries can be written to JSON and read from it.
+  // Conversion to JSON and back of any struct with such entries.
 
   template <typename Part>
   auto
@@ -155,8 +155,8 @@ namespace Voussoir
     }
 
 
-    /** Takes a part that a summary has if it has this name, and its names out
-     *  of those that are left. */
+    /** Reads the part of this name if the summary has it, and removes its names
+     *  from the remaining ones. */
     template <typename Part>
     void
     take(const nlohmann::json &json,
@@ -416,7 +416,7 @@ namespace Voussoir
     march.end_time      = run.state.time;
     march.loop_time     = run.times.seconds();
     march.throughput    = run.times.throughput(run.state.step);
-    // the rank that comes last to the exchange of contact does not wait there
+    // the rank that reaches the exchange of contact last does not wait there
     if (run.contact && march.loop_time > 0.)
       march.contact_share =
         Utilities::MPI::min(run.contact->seconds(), communicator) /
@@ -446,8 +446,9 @@ namespace Voussoir
   {
     std::ostringstream text;
     text << std::setprecision(3)
-         << (summary.missing_files.empty() ? "Done: " :
-                                             "Done, but not all is written: ")
+         << (summary.missing_files.empty() ?
+               "Done: " :
+               "Done, but some results are not written: ")
          << run.times.n_steps(run.state.step) << " steps in "
          << duration_text(summary.march->loop_time) << ", "
          << summary.march->throughput << " MDOF-steps/s, energy-balance error "

@@ -22,8 +22,9 @@ namespace Voussoir
                version(),
                " with deal.II " DEAL_II_PACKAGE_VERSION);
 #ifdef DEBUG
-      log.line("DEBUG build: every check is on, and it is some thirty times "
-               "slower than a Release build.");
+      log.line(
+        "DEBUG build: all checks are on, and it is some thirty times slower "
+        "than a Release build.");
 #endif
       log.line("Ranks: ",
                Utilities::MPI::n_mpi_processes(communicator),
@@ -35,9 +36,9 @@ namespace Voussoir
     }
 
 
-    /** The setup, unless it waits for the modes; then what can be refused of it
-     *  is refused all the same, before that costs time or leaves something
-     *  behind. After that the folder is that of this run. */
+    /** The setup, unless it waits for the modes; then it is checked as far as
+     *  possible all the same, before time is spent or files are written. After
+     *  that the folder is claimed for this run. */
     std::unique_ptr<RunSetup>
     early_setup(RunPlan          &plan,
                 ResultFolder     &folder,
@@ -66,8 +67,10 @@ namespace Voussoir
     }
 
 
-    /** Takes what the run that goes on from its checkpoint has stored in the
-     *  file, or else finds and stores it, so that no restart finds it again. */
+    /** Reads the result that the interrupted run has stored in the file, or
+     *  else computes and stores it, so that a restart need not compute it
+     *  again.
+     */
     template <typename Result>
     Result
     stored_or_found(const Model        &model,
@@ -95,7 +98,8 @@ namespace Voussoir
           }
         catch (const UserError &error)
           {
-            log.warn("a restart will have to find this again: ", error.what());
+            log.warn("a restart will have to compute this again: ",
+                     error.what());
           }
       return result;
     }
@@ -109,7 +113,7 @@ namespace Voussoir
         return std::move(*static_state);
       StaticState static_state = find_static_state(model, log);
       kept.keep(static_state);
-      // as all later runs, whatever their number of ranks, have it
+      // as in all later runs on any number of ranks
       if (model.solid.discretization.reproducible)
         {
           if (std::optional<StaticState> again = kept.find())

@@ -54,14 +54,14 @@ namespace Voussoir
                dissipated,
                " J at once, beside ",
                of_stages,
-               " J in the static state: its stress is beyond their laws");
+               " J in the static state: this stress exceeds their strength");
     return static_state;
   }
 
 
   namespace
   {
-    /** The interfaces with their gaps in the static state, or nothing. */
+    /** The interfaces with their gaps in the static state, or null. */
     std::optional<Contact>
     contact_at(const StaticState &static_state, const Model &model)
     {

@@ -68,16 +68,15 @@ namespace Voussoir
     const std::optional<double> whole = parse_number(strength),
                                 by    = parse_number(divisor);
     if (!whole)
-      throw UserError("\"Reduced strengths\" in section \"Study\" names \"" +
-                      entry +
-                      "\", to which this file gives no number; set it, or "
-                      "leave it out there.");
+      throw UserError(
+        "\"Reduced strengths\" in section \"Study\" names \"" + entry +
+        "\", to which this file gives no number; set it, or remove it there.");
     if (!is_strength(entry))
-      throw UserError("\"Reduced strengths\" in section \"Study\" names \"" +
-                      entry +
-                      "\", which is no strength, cohesion, friction or "
-                      "fracture energy of a material or an interface; leave "
-                      "it out there, or vary it by \"Vary\".");
+      throw UserError(
+        "\"Reduced strengths\" in section \"Study\" names \"" + entry +
+        "\", which is no strength, cohesion, friction or "
+        "fracture energy of a material or an interface; remove it there, or "
+        "vary it by \"Vary\".");
     if (!by || *by <= 0.)
       throw UserError("Section \"Study\" has a " + strength_reduction +
                       " of \"" + divisor + "\"; give numbers above 0.");

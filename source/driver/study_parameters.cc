@@ -52,10 +52,11 @@ namespace Voussoir
       vary,
       "Entries of this file with the values they take, separated by "
       "semicolons, as in \"Ground motion/Overload factor = 1, 1.2, 1.4; "
-      "Materials/rock/Young's modulus = 15e9, 20e9\". Each combination is a run "
-      "of its own. \"&\" instead of a semicolon pairs two entries: the first "
-      "values of both together, then the second. \"" +
-        strength_reduction + "\" divides what \"Reduced strengths\" names.");
+      "Materials/rock/Young's modulus = 15e9, 20e9\". Each combination is a "
+      "run of its own. \"&\" instead of a semicolon pairs two entries: the "
+      "first values of both together, then the second. \"" +
+        strength_reduction +
+        "\" divides the entries of \"Reduced strengths\".");
     prm.add_parameter(
       "Spread over",
       spread,
@@ -69,31 +70,32 @@ namespace Voussoir
       "Entries that the " + strength_reduction +
         " divides, separated by semicolons, as in \"Interfaces/planes/Friction "
         "coefficient; Interfaces/planes/Cohesion\"; of an angle of friction, "
-        "its tangent. Those of the case that are not named stay as they are, "
-        "which the log and study.json say.");
+        "its tangent. Other strengths of the case stay unchanged; log and "
+        "study.json name them.");
     prm.add_parameter(
       "Quantities",
       quantities,
-      "Numbers of summary.json that make the columns of study.csv, by their "
+      "Numbers of summary.json in the columns of study.csv, by their "
       "paths, separated by semicolons; a star stands for any letters, and of "
       "several numbers the largest is taken, or the smallest if the name "
       "begins with that. Empty: displacements of the histories, opening, slip "
       "and safety of interfaces and blocks, share of the faces and time of "
       "over-stress, cracks that go through, energy lost in cracks.");
-    prm.add_parameter("Ranks of a run",
-                      ranks_of_run,
-                      "Ranks that each run gets, so that several go on side by "
-                      "side; 0: all, one run after the other.",
-                      Patterns::Integer(0));
+    prm.add_parameter(
+      "Ranks of a run",
+      ranks_of_run,
+      "Ranks of each run, so that several run at the same time; 0: all, one "
+      "run after the other.",
+      Patterns::Integer(0));
 
     prm.enter_subsection("Limit");
     prm.add_parameter("Entry",
                       varied_to_limit,
-                      "What grows until a criterion is met, as \"Ground "
+                      "Entry that grows until a criterion is met, as \"Ground "
                       "motion/Overload factor\" or \"" +
                         strength_reduction +
                         "\", in each combination; empty: no limit is sought.");
-    prm.add_parameter("From", from, "Value at which nothing happens yet.");
+    prm.add_parameter("From", from, "Value at which the criterion is not met.");
     prm.add_parameter("To", to, "Value at which the criterion is met.");
     prm.add_parameter("Accuracy",
                       accuracy,
@@ -102,15 +104,16 @@ namespace Voussoir
     prm.add_parameter(
       "Criterion",
       criterion,
-      "What happens at the limit: \"PATH > VALUE\" or \"PATH < VALUE\" of a "
-      "number of summary.json, or \"stopped\", for a static stage that comes to "
-      "no equilibrium, or a run that is stopped for its energy; one of several, "
-      "separated by semicolons, is enough. A run that fails otherwise meets "
-      "nothing: it ends the search.");
-    prm.add_parameter("Extend",
-                      extend,
-                      "Goes beyond From and To where the limit is not between "
-                      "them, by up to four times their distance.");
+      "Criterion of the limit: \"PATH > VALUE\" or \"PATH < VALUE\" of a "
+      "number of summary.json, or \"stopped\", for a static stage that comes "
+      "to no equilibrium, or a run that is stopped for its energy; one of "
+      "several, separated by semicolons, is enough. A run that fails "
+      "otherwise meets no criterion and ends the search.");
+    prm.add_parameter(
+      "Extend",
+      extend,
+      "Whether to search beyond From and To where the limit is not between "
+      "them, by up to four times their distance.");
     prm.leave_subsection();
   }
 
@@ -143,9 +146,10 @@ namespace Voussoir
     combinations();
     spread_entries();
     if (seeks_limit() && criteria().empty())
-      throw UserError("\"Criterion\" in section \"Study/Limit\" is empty; say "
-                      "what happens at the limit of \"" +
-                      varied_to_limit + "\".");
+      throw UserError(
+        "\"Criterion\" in section \"Study/Limit\" is empty; give the "
+        "condition that is met at the limit of \"" +
+        varied_to_limit + "\".");
     if (seeks_limit() && !(from < to))
       throw UserError(
         "\"From\" in section \"Study/Limit\" is not below \"To\"; "

@@ -12,7 +12,7 @@ namespace Voussoir
     constexpr std::array<double, 3> shares{{0.16, 0.5, 0.84}};
 
 
-    /** Values of the entries that are not in a list. */
+    /** Values of the entries that the list does not contain. */
     StudyValues
     other_values(const StudyValues              &values,
                  const std::vector<std::string> &entries)

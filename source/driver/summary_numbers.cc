@@ -14,7 +14,7 @@ namespace Voussoir
 {
   namespace
   {
-    /** The names along a path; a stroke in brackets is part of a unit. */
+    /** The names along a path; a slash in brackets is part of a unit. */
     std::vector<std::string>
     names_along(const std::string &path)
     {
@@ -45,8 +45,8 @@ namespace Voussoir
     }
 
 
-    /** Visits what fits the rest of a path, with its object and the names that
-     *  lead there. */
+    /** Visits the values that match the rest of a path, with their object and
+     *  the names along the path. */
     void
     visit(const nlohmann::json                                    &part,
           const nlohmann::json                                    *around,
@@ -73,7 +73,7 @@ namespace Voussoir
     }
 
 
-    /** What stands beside a number under one of two names, or null. */
+    /** Value beside a number under one of two names, or null. */
     nlohmann::json
     beside(const nlohmann::json &around,
            const std::string    &own_name,

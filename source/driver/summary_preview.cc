@@ -28,7 +28,7 @@ namespace Voussoir
     }
 
 
-    /** The summary of a run, as far as its beginning gives it. */
+    /** The summary of a run, as far as it is known at the beginning. */
     nlohmann::json
     preview(Run &run)
     {
@@ -39,7 +39,7 @@ namespace Voussoir
         ("voussoir-preview-" +
          std::to_string(Utilities::MPI::broadcast(communicator, getpid())));
       observed.folder = name.string();
-      std::error_code ignored; // ranks may share it or not
+      std::error_code ignored; // the folder may be shared by the ranks or not
       fs::create_directories(name, ignored);
       MPI_Barrier(communicator);
       RunSummary summary = summary_of(run);

@@ -13,8 +13,8 @@ namespace Voussoir
 
   namespace
   {
-    // Between two checks of cracks and slips [s], and how wide a crack may be
-    // over its cell: at a fiftieth, it detaches a block.
+    // Interval of checks of cracks and slips [s], and limit of the opening of a
+    // crack over its cell: at a fiftieth, it detaches a block.
     constexpr double check_interval = 0.1, widest_share = 0.02;
   } // namespace
 
@@ -36,7 +36,7 @@ namespace Voussoir
     const std::string alarm = energy.alarm(energy_limit);
     if (!alarm.empty())
       return alarm;
-    // what damping takes between two evaluations is known to a per cent or two
+    // losses by damping between two evaluations are known to a per cent or two
     const bool is_large =
       energy.relative_error() > 0.01 || energy.error_of_losses() > 0.03;
     if (is_large && !warned_of_energy)
@@ -44,9 +44,10 @@ namespace Voussoir
         std::ostringstream text;
         text << std::setprecision(3) << "from t = " << state.time
              << " s on the energy-balance error is large: "
-             << 100. * energy.relative_error() << " % of what came in, "
+             << 100. * energy.relative_error()
+             << " % of the energy that came in, "
              << 100. * energy.error_of_losses()
-             << " % of what damping, cracks, friction and impacts took";
+             << " % of the losses by damping, cracks, friction and impacts";
         warned_of_energy = true;
         run.log.warn(text.str());
       }
@@ -89,8 +90,8 @@ namespace Voussoir
     text << std::setprecision(3) << "at t = " << time
          << " s a crack is open by " << 1e3 * widest.opening << " mm, "
          << 100. * widest.share
-         << " % of its cell: cracks have detached a block from the rest; that "
-            "they do can be relied on, how the block moves then cannot";
+         << " % of its cell: cracks have detached a block from the rest; its "
+            "detachment is a reliable result, its motion afterwards is not";
     run.log.warn(text.str());
   }
 
@@ -123,8 +124,8 @@ namespace Voussoir
          << run.contact->surface_names()[surface] << "\" has slipped by "
          << farthest
          << " m, more than half a cell of the interfaces: nodes still act on "
-            "those they faced at the start; that it slides so far can be "
-            "relied on, where it comes to rest cannot";
+            "those opposite at the start; that it slides is a reliable result, "
+            "where it comes to rest is not";
     run.log.warn(text.str());
   }
 
@@ -139,8 +140,8 @@ namespace Voussoir
       return;
     std::ostringstream text;
     text << std::setprecision(3) << "the contact of " << effort.unsolved
-         << " clusters of nodes was not solved: gaps miss the laws of their "
-            "interfaces by up to "
+         << " clusters of nodes was not solved: gaps deviate from the laws of "
+            "their interfaces by up to "
          << 100. * effort.residual
          << " % of the motion in a step; compare with a run with a smaller "
             "\"Safety factor\" in section \"Time\"";
@@ -154,7 +155,7 @@ namespace Voussoir
     return write_fields(run,
                         {{&last_good.displacement, {"displacement"}},
                          {&last_good.velocity, {"velocity"}}},
-                        // cracks have gone on since
+                        // cracks have grown since
                         has_memory ? nullptr : &last_good,
                         "last_good",
                         last_good.time);

@@ -83,7 +83,7 @@ namespace Voussoir
       text << std::setprecision(3) << "\"End time\" in section \"Time\" is "
            << end_time << " s, which takes " << end_time / step
            << " steps of the time step of " << step
-           << " s, more than can be made; give a shorter \"End time\" or a "
+           << " s, more than can be computed; give a shorter \"End time\" or a "
               "larger \"Time step\".";
       throw UserError(text.str());
     }
@@ -129,7 +129,7 @@ namespace Voussoir
     if (cracks)
       {
         // a spring k with a dashpot c k is stable up to x^2 + 2 x c/dt_0 = 1
-        // with x = dt/dt_0; some of it is enough
+        // with x = dt/dt_0
         const double x = std::min(0.999, length / undamped_limit);
         closing_viscosity =
           undamped_limit * std::min(0.2, 0.95 * (1. - x * x) / (2. * x));
@@ -138,10 +138,10 @@ namespace Voussoir
     std::ostringstream line;
     damping.print(line);
     if (cracks && damping.stiffening(1.) == 0.)
-      line
-        << "  note: materials can crack or yield, and this model hardly damps "
-           "the fast waves that cracks set free: one makes others, and their "
-           "number means little. The model Maxwell damps them.\n";
+      line << "  note: materials can crack or yield, and this model of "
+              "damping hardly damps the short waves of sudden cracks, which "
+              "cause more cracks: their number is unreliable. \"Model = "
+              "Maxwell\" damps these waves.\n";
     line << std::setprecision(4) << "Time step: " << length
          << " s, largest stable " << limit << " s";
     if (undamped_limit > 0.)

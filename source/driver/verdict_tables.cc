@@ -18,8 +18,8 @@ namespace Voussoir
                      least_jacobian = 0.1, most_lowered = 10., // [%]
       intensity_carried = 0.9, most_slip = 0.5, widest_crack_share = 0.02;
 
-    // An opening or slip below is that of an elastic mesh [mm]; what slides
-    // faster at the end has not come to rest [mm/s].
+    // An opening or slip below is that of an elastic mesh [mm]; a surface that
+    // slides faster at the end has not come to rest [mm/s].
     constexpr double visible = 0.1, at_rest = 1.;
 
 
@@ -52,14 +52,14 @@ namespace Voussoir
         }
       catch (const UserError &)
         {
-          // it has no strength left
+          // no strength is left
         }
       return most;
     }
 
 
-    /** Share by which a strength is less in cells with a crack band so wide
-     * than in short ones [%]. */
+    /** Reduction of a strength in cells with a wide crack band against short
+     *  ones [%]. */
     double
     lowered_by(const Material &material, const double band, const double sign)
     {
@@ -69,7 +69,7 @@ namespace Voussoir
     }
 
 
-    /** By how much cells lower a strength at most [%], and of which material.
+    /** Largest reduction of a strength by long cells [%], and its material.
      */
     std::pair<double, std::string>
     most_lowered_strength(const Model &model)
@@ -160,7 +160,7 @@ namespace Voussoir
     }
 
 
-    /** Of nothing if it cannot be seen, else to be judged. */
+    /** Met if it is below what can be distinguished, else to be judged. */
     nlohmann::json
     slip_line(const double slip)
     {
@@ -231,7 +231,7 @@ namespace Voussoir
           if (const nlohmann::json &safety = block.at("smallest safety");
               safety.is_number())
             {
-              // below one it slid: its slip is to be judged
+              // below one the block slid: its slip is to be judged
               nlohmann::json &line = results[name + ": safety against sliding"];
               line                 = at_least(safety, 1.);
               if (safety < 1.)

@@ -18,7 +18,7 @@ namespace Voussoir
   {
     const std::string first_mode = "first mode";
 
-    // Where no modes are computed that it could follow [Hz].
+    // Reference frequency where no modes are computed [Hz].
     constexpr double usual_reference = 3.;
   } // namespace
 
@@ -30,9 +30,10 @@ namespace Voussoir
       prm,
       "Model",
       model,
-      "Maxwell: the same ratio over the whole band, for a small price in the "
-      "time step. Rayleigh: the ratio at the two ends of the band, for a large "
-      "price. Mass proportional: the ratio at the lowest frequency only.");
+      "Maxwell: a constant ratio over the band, with a slightly smaller time "
+      "step. Rayleigh: the ratio at the two ends of the band, with a much "
+      "smaller time step. Mass proportional: the ratio at the lowest "
+      "frequency only.");
     prm.add_parameter("Ratio",
                       ratio,
                       "Fraction of critical damping; materials can scale it.",
@@ -55,16 +56,16 @@ namespace Voussoir
       reference,
       "Frequency of the free vibration for which the materials' "
       "moduli hold under Maxwell damping [Hz]; in slower motion "
-      "they are smaller, in faster motion larger. \"first mode\": the lowest natural frequency "
-      "where section \"Modes\" computes some, else 3; 0: the "
-      "relaxed moduli.");
+      "they are smaller, in faster motion larger. \"first mode\": the lowest "
+      "natural frequency where section \"Modes\" computes some, else 3; 0: "
+      "the relaxed moduli.");
     prm.add_parameter(
       "Mesh viscosity",
       mesh_viscosity,
-      "Where materials can crack or yield: damping of waves that the cells are "
-      "too long to carry, as a share of critical at the highest frequency of "
-      "the mesh; within the band at most 0.005. Without it the ringing of one "
-      "crack makes the next ones.",
+      "Where materials can crack or yield: damping ratio at the highest "
+      "frequency of the mesh, of waves that are too short for the cells; "
+      "within the band at most 0.005. Without it the oscillation after one "
+      "crack causes further cracks.",
       Patterns::Double(0., 0.3));
     prm.add_parameter("From modes",
                       modes,

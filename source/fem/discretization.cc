@@ -33,20 +33,20 @@ namespace Voussoir
       "cell. With one point a step costs about half, and walls of one or two "
       "cells bend as they should, while full integration at degree 1 makes "
       "them too stiff; but damage follows the mean strain of a cell only, and "
-      "a damaged cell keeps its stiffness against bending: let cracks have "
-      "full integration or several cells through the wall. \"One point where "
-      "elastic\" has one point in materials that stay elastic and Gauss points "
-      "in those that crack or yield: for a dam in much rock. The mass is "
-      "always lumped at the Gauss-Lobatto nodes.");
-    add_option(prm,
-               "Sums",
-               sums,
-               "As dealt: what cells bring to a node is summed in the order in "
-               "which the partition deals them, so that results on other "
-               "numbers of ranks differ by round-off, which pounding of cracks "
-               "and joints multiplies. Reproducible: so that results do not "
-               "depend on the number of ranks, bit for bit, at a price; "
-               "doc/running.md says which results.");
+      "a damaged cell keeps its stiffness against bending: where concrete "
+      "cracks take full integration or several cells through the wall. \"One "
+      "point where elastic\" has one point in materials that stay elastic and "
+      "Gauss points in those that crack or yield: for a dam in a large rock "
+      "mass. The mass is always lumped at the Gauss-Lobatto nodes.");
+    add_option(
+      prm,
+      "Sums",
+      sums,
+      "As dealt: contributions of cells to a node are summed in the order of "
+      "the partition, so that results on other numbers of ranks differ by "
+      "round-off, which pounding of cracks and joints amplifies. "
+      "Reproducible: results do not depend on the number of ranks, bit for "
+      "bit, at a cost in time; doc/running.md says which results.");
   }
 
 
@@ -72,8 +72,8 @@ namespace Voussoir
   namespace
   {
     // A crack across a row of cells of degree 2: strain is linear in a cell,
-    // force alike in its outer points, of which one opens with the centre while
-    // the other unloads.
+    // the force is equal in its outer points, of which one opens with the
+    // centre while the other unloads.
     double
     share_of_crack(const Quadrature<1> &quadrature, const unsigned int degree)
     {
@@ -368,7 +368,8 @@ namespace Voussoir
                             fe.base_element(0),
                             QMidpoint<2>(),
                             update_normal_vectors);
-    // ghost cells too: a rank must know the supports of all nodes it sees
+    // ghost cells too: a rank must have the supports of all its nodes, ghosts
+    // included
     for (const Support &support : supports)
       for (const auto &[cell, face] : grid.faces(support.set))
         {

@@ -45,7 +45,7 @@ namespace Voussoir
                          const Vector &,
                          const std::pair<unsigned int, unsigned int> &)>;
 
-    // What a cell loop does: run(material, cells, dst, src) for the runs of
+    // A cell loop: run(material, cells, dst, src) for the runs of
     // batches of one material.
     template <typename Run>
     CellLoop
@@ -144,7 +144,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Largest entry of a rank's own, or @p enough if it is not below that. */
+    /** Largest owned entry of a rank, or @p enough if it is not below that. */
     double
     largest_entry(const Vector &vector, const double enough)
     {
@@ -163,7 +163,7 @@ namespace Voussoir
   double
   InternalForce::limit_of_sweep(const SweepInput &input) const
   {
-    // beyond it linear kinematics mean nothing
+    // beyond it linear kinematics do not hold
     constexpr double largest_strain = 1. / 16.;
     const double     limit          = limit_of_forces(largest_strain);
     if (input.bound == nullptr)
@@ -221,7 +221,7 @@ namespace Voussoir
               run,
               discretization.reproducible ? &rounding : nullptr);
 
-    // what a sum begins with must be in quanta, too
+    // the initial value of a sum must be in quanta, too
     const auto begin_sums = [&](const unsigned int begin,
                                 const unsigned int end) {
       before(begin, end);

@@ -46,10 +46,10 @@ namespace Voussoir
           w.add(-beta.back(), previous);
         beta.push_back(norm_of(w));
         if (!std::isfinite(alpha.back() + beta.back()))
-          throw UserError("The stiffness over the mass of the model is no "
-                          "finite number, so no time step can be found; look "
-                          "for entries of extreme size in the sections "
-                          "\"Materials\" and \"Mesh\".");
+          throw UserError(
+            "The stiffness over the mass of the model is no "
+            "finite number, so no time step can be found; check for extreme "
+            "values in the sections \"Materials\" and \"Mesh\".");
 
         const bool exhausted = beta.back() <= 1e-12 * alpha.back();
         if (k == next_look || exhausted)
@@ -71,9 +71,10 @@ namespace Voussoir
         previous.swap(q);
         q.equ(1. / beta.back(), w);
       }
-    throw UserError("The largest natural frequency of the mesh, which limits "
-                    "the time step, is not found in 10000 iterations; look for "
-                    "moduli and densities out of proportion in section "
-                    "\"Materials\", and for distorted cells in the mesh.");
+    throw UserError(
+      "The largest natural frequency of the mesh, which limits "
+      "the time step, is not found in 10000 iterations; check the ratio of "
+      "moduli and densities in section \"Materials\", and the mesh for "
+      "distorted cells.");
   }
 } // namespace Voussoir

@@ -28,7 +28,8 @@ namespace Voussoir
   {
     if (from_corners)
       {
-        // FEValues keep the numbers of the cell before if it has the same shape
+        // FEValues reuse the values of the previous cell if it has the same
+        // shape
         for (unsigned int v = 0; v < 8; ++v)
           {
             Tensor<2, 3> edges;

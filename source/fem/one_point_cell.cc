@@ -69,7 +69,7 @@ namespace Voussoir
     const unsigned int *entries =
       dof_info.dof_indices_interleaved.data() +
       dof_info.row_starts[3 * batch * Lanes::size()].first;
-    // those of the next batch come from memory meanwhile
+    // the next batch is prefetched meanwhile
     for (unsigned int i = 0; i < 8 * Lanes::size(); i += 16)
       __builtin_prefetch(entries + 24 * Lanes::size() + i);
     // four entries are read, one more than needed
@@ -289,7 +289,7 @@ namespace Voussoir
   void
   OnePointCell::integrate(const EvaluationFlags::EvaluationFlags)
   {
-    // what the strains of `evaluate` do work on
+    // the stress that works on the strains of `evaluate`
     std::array<Vector3, 4> force;
     for (unsigned int k = 0; k < 3; ++k)
       {

@@ -56,8 +56,8 @@ namespace Voussoir
     std::vector<std::pair<types::global_dof_index, Send>> records;
     for (unsigned int p = 0; p < points.size(); ++p)
       {
-        // the lowest rank that finds the point has it, or that of the lowest
-        // cell
+        // the point belongs to the lowest rank that finds it, or to the rank of
+        // the lowest cell
         Discretization::Cell found;
         Point<3>             unit, here_unit;
         std::uint64_t        mine = nowhere;

@@ -131,7 +131,7 @@ namespace Voussoir
           }
       }
 
-    // the first rank speaks for the rank that holds the governing cell
+    // the first rank prints for the rank that owns the governing cell
     const MPI_Comm communicator = discretization.grid.communicator();
     const auto     all          = Utilities::MPI::all_gather(
       communicator,

@@ -12,11 +12,11 @@ namespace Voussoir
                       fixed,
                       "Face sets that do not move (relative to the ground, if "
                       "the earthquake enters through a rigid base).");
-    prm.add_parameter("Roller",
-                      roller,
-                      "Face sets that do not move at right angles to "
-                      "themselves; planes of constant x, y or z. A plane of "
-                      "symmetry is one.");
+    prm.add_parameter(
+      "Roller",
+      roller,
+      "Face sets that are fixed along their normal, as planes of symmetry; "
+      "planes of constant x, y or z.");
     prm.add_parameter("Antisymmetric",
                       antisymmetric,
                       "Face sets that move at right angles to themselves only, "

@@ -9,8 +9,8 @@ namespace Voussoir
 {
   namespace
   {
-    /** A spreadsheet takes what begins so for a formula, unless there is an
-     *  apostrophe before it; numbers are none. */
+    /** A spreadsheet takes a text with such a first character for a formula,
+     *  unless there is an apostrophe before it; numbers are safe. */
     bool
     is_like_formula(const std::string &text)
     {
@@ -46,7 +46,8 @@ namespace Voussoir
     for (std::size_t i = 0; i < values.size(); ++i)
       {
         line << (i > 0 ? "," : "");
-        // there is no such number, as the safety of a surface without shear
+        // a number that does not exist, as the safety of a surface without
+        // shear
         if (!std::isinf(values[i]))
           line << values[i];
       }
@@ -108,9 +109,9 @@ namespace Voussoir
         file->append(csv_heading(titles) + '\n');
         flush();
       }
-    // A table that goes on is left as it is until its first line is written:
-    // that at the start time, which the checkpoint counts, too, is written
-    // anew.
+    // After a restart the table stays unchanged until its first line is
+    // written: the line at the start time, which is in the checkpoint's size,
+    // too, is written anew.
   }
 
 

@@ -37,9 +37,8 @@ namespace Voussoir
     }
 
 
-    /** The patches of one rank without what comes before and after them in a
-     *  file; nothing if there are none, since ParaView takes no empty piece at
-     *  the beginning. */
+    /** The patches of one rank without head and end of the file; empty if there
+     *  are none, since ParaView accepts no empty piece at the beginning. */
     std::string
     piece_of(const std::string &file)
     {
@@ -68,7 +67,7 @@ namespace Voussoir
     output.set_flags(flags);
 
     // deal.II's own writer of parallel files leaves the other ranks waiting
-    // when one cannot write, and knows no texts. The time is among them: of
+    // when one cannot write, and has no strings. The time is among them: of
     // several elements of field data VTK reads the last one only.
     const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
     std::ostringstream own, part;

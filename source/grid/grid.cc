@@ -1,7 +1,6 @@
 #include <voussoir/base/error.h>
-#include <voussoir/base/parameter_file.h>
-#include <voussoir/base/parse_numbers.h>
 #include <voussoir/base/text.h>
+#include <voussoir/grid/chart_vertices.h>
 #include <voussoir/grid/grid.h>
 #include <voussoir/mesh/mesh_check.h>
 
@@ -9,15 +8,11 @@
 #include <deal.II/distributed/fully_distributed_tria.h>
 #include <deal.II/distributed/tria.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/grid/manifold.h>
 #include <deal.II/grid/tria_description.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <sstream>
-#include <tuple>
 
 namespace Voussoir
 {
@@ -68,240 +63,7 @@ namespace Voussoir
         return ((child >> (face / 2)) & 1) == face % 2;
       });
     }
-
-
-    // One item of the entry "Local refinement".
-    struct LocalRefinement
-    {
-      std::string  set; // empty: a box
-      Point<3>     lower, upper;
-      unsigned int levels;
-    };
-
-    std::vector<LocalRefinement>
-    parse_local_refinement(const std::string &text)
-    {
-      std::vector<LocalRefinement> items;
-      for (const std::string &item : split_list(text, ';'))
-        {
-          const auto        colon = item.rfind(':');
-          const std::string place = "\"Local refinement\" in section \"Mesh\"";
-          if (colon == std::string::npos)
-            throw UserError(place + ": \"" + item +
-                            "\" has no \": levels\"; write for example "
-                            "\"dam: 1\" or \"box 0 0 0 10 10 10: 1\".");
-          LocalRefinement    result;
-          std::istringstream levels(item.substr(colon + 1));
-          std::string        rest;
-          if (!(levels >> result.levels) || result.levels > 4 ||
-              (levels >> rest))
-            throw UserError(place + ": \"" + item +
-                            "\" must end in a number of levels from 0 to 4.");
-          result.set = Utilities::trim(item.substr(0, colon));
-          if (result.set.rfind("box ", 0) == 0)
-            {
-              const auto corners = parse_numbers(result.set.substr(4));
-              if (!corners || corners->size() != 6)
-                throw UserError(place + ": \"" + item +
-                                "\" needs six coordinates [m] after \"box\".");
-              for (unsigned int d = 0; d < 3; ++d)
-                {
-                  result.lower[d] = (*corners)[d];
-                  result.upper[d] = (*corners)[3 + d];
-                  if (result.lower[d] >= result.upper[d])
-                    throw UserError(place + ": in \"" + item +
-                                    "\" the second corner must lie above the "
-                                    "first in " +
-                                    "xyz"[d] + "; exchange the two.");
-                }
-              result.set.clear();
-            }
-          items.push_back(result);
-        }
-      return items;
-    }
-
-
-    // New vertices of what lies on a curved surface, in the coordinates of a
-    // chart.
-    class CurvedSurface : public FlatManifold<3>
-    {
-    public:
-      explicit CurvedSurface(const CoarseMesh::Chart &chart)
-        : onto_surface(chart.onto_surface)
-      {}
-
-      std::unique_ptr<Manifold<3>>
-      clone() const override
-      {
-        return std::make_unique<CurvedSurface>(*this);
-      }
-
-      Point<3>
-      get_new_point(const ArrayView<const Point<3>> &points,
-                    const ArrayView<const double>   &weights) const override
-      {
-        return onto_surface(FlatManifold<3>::get_new_point(points, weights));
-      }
-
-    private:
-      std::function<Point<3>(const Point<3> &)> onto_surface;
-    };
-
-    constexpr types::manifold_id curved_surface = 1;
-
-
-    void
-    attach_curved_surface(const CoarseMesh::Chart &chart,
-                          Triangulation<3>        &triangulation)
-    {
-      if (!chart.curved_faces.empty())
-        triangulation.set_manifold(curved_surface, CurvedSurface(chart));
-    }
-
-
-    // Places in space of a triangulation's vertices, by their index.
-    std::vector<Point<3>>
-    positions(const Triangulation<3>  &triangulation,
-              const CoarseMesh::Chart &chart)
-    {
-      std::vector<Point<3>> result = triangulation.get_vertices();
-      if (chart.vertices.empty())
-        return result;
-      std::vector<unsigned int> order;
-      for (unsigned int v = 0; v < result.size(); ++v)
-        if (triangulation.vertex_used(v))
-          order.push_back(v);
-      const auto line = [&](const unsigned int v) {
-        return std::make_tuple(result[v][0], result[v][2], result[v][1]);
-      };
-      std::sort(order.begin(), order.end(), [&](const auto a, const auto b) {
-        return line(a) < line(b);
-      });
-      std::vector<Point<3>> coordinates;
-      for (const unsigned int v : order)
-        coordinates.push_back(result[v]);
-      const auto places = chart.positions(coordinates);
-      for (std::size_t i = 0; i < order.size(); ++i)
-        result[order[i]] = places[i];
-      return result;
-    }
-
-
-    // Coarse ones before fine ones, since what a vertex hangs on may have ends
-    // that hang themselves. Returns which were moved.
-    std::vector<bool>
-    move_hanging_vertices(const Triangulation<3> &triangulation,
-                          std::vector<Point<3>>  &places)
-    {
-      std::vector<bool> is_hanging(places.size());
-      const auto move = [&](const unsigned int vertex, const auto &parent) {
-        is_hanging[vertex] = true;
-        places[vertex]     = Point<3>();
-        for (const unsigned int v : parent->vertex_indices())
-          places[vertex] += places[parent->vertex_index(v)] /
-                            static_cast<double>(parent->n_vertices());
-      };
-      for (unsigned int level = 0; level < triangulation.n_levels(); ++level)
-        for (const auto &cell :
-             triangulation.active_cell_iterators_on_level(level))
-          if (!cell->is_artificial())
-            {
-              for (const unsigned int line : cell->line_indices())
-                if (cell->line(line)->has_children())
-                  move(cell->line(line)->child(0)->vertex_index(1),
-                       cell->line(line));
-              for (const unsigned int face : cell->face_indices())
-                if (cell->face(face)->has_children())
-                  move(cell->face(face)->child(0)->vertex_index(3),
-                       cell->face(face));
-            }
-      return is_hanging;
-    }
-
-
-    // From the coordinates of the chart into space. Nothing is refined after
-    // that.
-    void
-    place_vertices(const CoarseMesh::Chart &chart,
-                   Grid::Triangulation     &triangulation)
-    {
-      if (chart.vertices.empty())
-        return;
-      std::vector<Point<3>> places = positions(triangulation, chart);
-      std::vector<bool> moved = move_hanging_vertices(triangulation, places);
-      for (const auto &cell : triangulation.cell_iterators())
-        for (const unsigned int v : cell->vertex_indices())
-          cell->vertex(v) = places[cell->vertex_index(v)];
-      // a ghost cell's neighbours are not all known here
-      const auto owned = GridTools::get_locally_owned_vertices(triangulation);
-      std::transform(moved.begin(),
-                     moved.end(),
-                     owned.begin(),
-                     moved.begin(),
-                     std::logical_and<bool>());
-      triangulation.communicate_locally_moved_vertices(moved);
-      triangulation.set_all_manifold_ids(numbers::flat_manifold_id);
-      triangulation.reset_all_manifolds();
-    }
   } // namespace
-
-
-  void
-  GridParameters::declare(ParameterHandler &prm)
-  {
-    prm.add_parameter("Global refinement",
-                      global_refinement,
-                      "How many times each cell is cut into eight. The new "
-                      "nodes of an arch dam without wedges lie on its true "
-                      "faces, joints and canyon; other meshes are refined by "
-                      "the middles of their edges. Every rank holds the mesh "
-                      "before it is refined, and only its part of the mesh "
-                      "after that: so large meshes are given as coarse ones.",
-                      Patterns::Integer(0, 6));
-    prm.add_parameter(
-      "Local refinement",
-      local_refinement,
-      "Further refinement where it is wanted, items separated by \";\": "
-      "\"set: levels\" for a cell set, or \"box x0 y0 z0 x1 y1 z1: levels\" "
-      "[m] for the cells whose centre lies in the box. Hanging nodes result.");
-    prm.add_parameter(
-      "Nodes per wavelength",
-      nodes_per_wavelength,
-      "Cells are refined, material by material, until the S waves of \"Highest "
-      "frequency\" have so many nodes on their length; 8 are enough where "
-      "amplitudes count, none leave the mesh as it is. Hanging nodes result, "
-      "so that far rock may be given in cells as large as these waves allow.",
-      Patterns::Double(0., 100.));
-    prm.add_parameter("Highest frequency",
-                      highest_frequency,
-                      "The one that \"Nodes per wavelength\" is for [Hz].",
-                      Patterns::Double(0.01, 1000.));
-    add_option(prm,
-               "Partition",
-               partition,
-               "How the cells are dealt to the ranks; the results are "
-               "the same.");
-    prm.add_parameter(
-      "Count partitions",
-      counted_ranks,
-      "Numbers of ranks, separated by commas, for which the log "
-      "says what a partition by p4est would be: balance, "
-      "neighbours of a rank and nodes that it exchanges with "
-      "them. The run itself needs no such ranks.",
-      Patterns::List(Patterns::Integer(1, 1000000)));
-  }
-
-
-  double
-  GridParameters::longest_edge(const double       s_wave_speed,
-                               const unsigned int degree) const
-  {
-    return nodes_per_wavelength > 0. ?
-             s_wave_speed * degree /
-               (nodes_per_wavelength * highest_frequency) :
-             std::numeric_limits<double>::infinity();
-  }
 
 
   double
@@ -492,8 +254,7 @@ namespace Voussoir
                "\"Global refinement\" in section \"Mesh\"",
                mpi_communicator);
     triangulation.refine_global(parameters.global_refinement);
-    for (const LocalRefinement &item :
-         parse_local_refinement(parameters.local_refinement))
+    for (const LocalRefinement &item : parameters.local_refinements())
       {
         if (!item.set.empty())
           check_cell_set(item.set, "\"Local refinement\" in section \"Mesh\"");

@@ -18,14 +18,14 @@ namespace Voussoir
 
   namespace
   {
-    // The rank that each cell is dealt to, owned ones and ghosts.
+    // The rank of each cell, owned ones and ghosts.
     std::vector<unsigned int>
     deal_cells(const Grid                                      &grid,
                const std::function<double(const Grid::Cell &)> &cost,
                const unsigned int                               n_ranks)
     {
       const auto &mesh = grid.triangulation();
-      // a CellId goes by the trees of p4est and the children in them
+      // a CellId is ordered by the trees of p4est and the children in them
       std::vector<std::pair<CellId, Grid::ActiveCell>> cells;
       for (const auto &cell : mesh.active_cell_iterators())
         if (cell->is_locally_owned())

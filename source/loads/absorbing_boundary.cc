@@ -15,9 +15,10 @@ namespace Voussoir
   void
   AbsorbingParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter("Absorbing",
-                      face_sets,
-                      "Face sets that let waves out, and the earthquake in.");
+    prm.add_parameter(
+      "Absorbing",
+      face_sets,
+      "Face sets through which waves leave and the earthquake enters.");
     add_option(
       prm,
       "Absorbing type",
@@ -32,15 +33,17 @@ namespace Voussoir
       "E/2r, G/2r; Liu 3D 4/3 G/r, 2/3 G/r; Liu 2D G/r, G/2r; Deeks-Randolph "
       "G/r, G/2r; Du-Zhao (lambda+2G)/1.8r, G/1.8r with dashpots 1.1 rho c. "
       "The others have dashpots rho c.");
-    prm.add_parameter("Source point",
-                      source,
-                      "Where scattered waves come from, x, y, z [m]: the "
-                      "springs go by the distance from here.");
-    prm.add_parameter("Radius",
-                      radius,
-                      "The distance itself, for all nodes [m]; 0 to measure it "
-                      "from the source point.",
-                      Patterns::Double(0.));
+    prm.add_parameter(
+      "Source point",
+      source,
+      "Where scattered waves come from, x, y, z [m]: the "
+      "stiffness of springs follows from the distance to this point.");
+    prm.add_parameter(
+      "Radius",
+      radius,
+      "One distance r for all nodes [m]; 0: the distance from the source "
+      "point.",
+      Patterns::Double(0.));
   }
 
 
@@ -221,7 +224,7 @@ namespace Voussoir
     }
 
 
-    /** What the points of the boundary contribute to the traction integrals of
+    /** Contributions of the points of the boundary to the traction integrals of
      *  the owned nodes. */
     std::vector<std::pair<unsigned int, Contribution>>
     find_tractions(const BoundaryFaces &faces, FEFaceValues<3> &at_points)

@@ -16,15 +16,15 @@ namespace Voussoir
     const std::string section = "section \"Reservoir/added mass\"";
 
 
-    // Where the river runs to, upwards, and across the valley.
+    // Directions along the river, upwards, and across the valley.
     struct Axes
     {
       Tensor<1, 3> river, up, across;
     };
 
 
-    // Where the thrust of the water cancels, as in a tank, the river runs
-    // along y.
+    // Where the resultant of the water is zero, as in a tank, the river is
+    // taken along y.
     Axes
     find_axes(const Discretization           &discretization,
               const std::vector<std::string> &sets,
@@ -179,7 +179,7 @@ namespace Voussoir
     prm.add_parameter("Face sets", face_sets, "Faces with water on them.");
     prm.add_parameter("Level",
                       level,
-                      "Height of the water's surface, z [m]." +
+                      "Elevation of the water's surface, z [m]." +
                         usually(Usual::elevation));
     prm.add_parameter(
       "Reduction",
@@ -194,7 +194,7 @@ namespace Voussoir
       "Normal: the water resists motion along the face's normal, which couples "
       "x, y and z on slanted faces. Uncoupled: motion along the river, across "
       "and upwards, each by itself. River: motion along the river only, the "
-      "way that the water pushes.");
+      "direction of the resultant of the water.");
   }
 
 

@@ -144,7 +144,7 @@ namespace Voussoir
     // without free surface K is singular; a square of this area has 1/area
     const double        shift = 1. / std::accumulate(m.begin(), m.end(), 0.);
     const ShiftedMatrix matrix(stiffness, areas, nodes, shift);
-    std::mt19937        random; // always the same start
+    std::mt19937        random; // the same start vectors on all ranks
     Vectors             x(n_vectors, dealii::Vector<double>(n));
     for (auto &vector : x)
       for (double &entry : vector)

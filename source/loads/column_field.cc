@@ -122,8 +122,8 @@ namespace Voussoir
     displacement.resize(geometry.nodes.size());
     velocity = force = displacement;
 
-    // many nodes and points share a level, to round-off, in which the first of
-    // a rank must not decide where results are reproducible
+    // many nodes and points share a level, to round-off, for which the first
+    // one of a rank must not count where results are reproducible
     const double tolerance = 1e-6 * (column.top() - column.bottom());
     const auto   key       = [&](const double z) -> double {
       return geometry.reproducible ?
@@ -145,7 +145,7 @@ namespace Voussoir
     };
     if (geometry.reproducible)
       {
-        // in the order of their places, in which a node sums them up
+        // in the order of their positions, in which a node sums them up
         std::map<std::pair<unsigned int, double>, WaveColumn::StressPoint> all;
         for (const auto &item : geometry.contributions)
           if (is_lateral(item))
@@ -248,7 +248,8 @@ namespace Voussoir
                        const double               longest,
                        const double               maximum_frequency)
   {
-    // not only as long as this run: one that goes on from it needs the same
+    // independent of this run's end time, since a run that continues it needs
+    // the same motion
     double duration = 0.;
     for (const auto &component : surface)
       if (component)
@@ -284,10 +285,10 @@ namespace Voussoir
         peak = std::max(peak, recent);
         if (excitation.values.size() > 200 * period)
           throw UserError(
-            "The layers at the sides of the model ring too long for a motion "
-            "\"Given at\" the free surface; lower the \"Maximum frequency\" in "
-            "section \"Wave field\" to what the mesh resolves, or give the "
-            "layers damping in section \"Damping\".");
+            "The layers at the sides of the model oscillate too long for a "
+            "motion \"Given at\" the free surface; lower the \"Maximum "
+            "frequency\" in section \"Wave field\" to what the mesh resolves, "
+            "or give the layers damping in section \"Damping\".");
       }
     while (recent > 1e-4 * peak);
 

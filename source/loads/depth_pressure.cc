@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/gravity.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/loads/face_forces.h>
 #include <voussoir/loads/load.h>
@@ -16,7 +17,7 @@ namespace Voussoir
     class DepthPressure : public Load
     {
     public:
-      /** @param surface what lies at the level */
+      /** @param surface noun for the description of the level */
       explicit DepthPressure(const std::string &surface)
         : surface(surface)
       {}
@@ -24,10 +25,11 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Face sets",
-                          face_sets,
-                          "Face sets it presses on, at right angles to them: "
-                          "one side of the dam, and the canyon by choice.");
+        prm.add_parameter(
+          "Face sets",
+          face_sets,
+          "Face sets under the pressure, which is normal to them: one side of "
+          "the dam, and optionally the canyon.");
         prm.add_parameter("Level",
                           level,
                           "Elevation of the " + surface +
@@ -97,7 +99,7 @@ namespace Voussoir
         DepthPressure::declare_parameters(prm);
         prm.add_parameter("Density",
                           density,
-                          "Of the water [kg/m3]." +
+                          "Density of the water [kg/m3]." +
                             usually(Usual::water_density),
                           Patterns::Double(0.));
         prm.add_parameter("Gravity",
@@ -114,7 +116,7 @@ namespace Voussoir
         return density * gravity;
       }
 
-      double density = 1000., gravity = 9.81;
+      double density = 1000., gravity = standard_gravity;
     };
 
     const Registry<Load>::Add<Water>
@@ -139,14 +141,15 @@ namespace Voussoir
           "Buoyant unit weight",
           unit_weight,
           "Weight of the silt under water less its buoyancy [N/m3]; 8e3 to "
-          "11e3. The water in it belongs to the load of the water." +
+          "11e3. Pore water belongs to the load of the water." +
             usually(Usual::silt_weight),
           Patterns::Double(0.));
-        prm.add_parameter("Friction angle",
-                          friction_angle,
-                          "Of the silt [degrees]; 10 to 20, 0 for a liquid." +
-                            usually(Usual::silt_friction_angle),
-                          Patterns::Double(0., 60.));
+        prm.add_parameter(
+          "Friction angle",
+          friction_angle,
+          "Angle of friction of the silt [degrees]; 10 to 20, 0 for a liquid." +
+            usually(Usual::silt_friction_angle),
+          Patterns::Double(0., 60.));
       }
 
     private:

@@ -37,7 +37,7 @@ namespace Voussoir
           const Complex u(k * step, 0.25 * numbers::PI);
           const Complex weight =
             step / numbers::PI / (std::cosh(u) * std::cosh(u) * std::cosh(u));
-          // with the conjugate; the first is its own
+          // with the conjugate; the first is its own conjugate
           terms.push_back(
             {k == 0 ? 0.5 * weight : weight, Complex(0., 1.) * std::tanh(u)});
         }
@@ -45,8 +45,8 @@ namespace Voussoir
     }
 
 
-    // At most what a dashpot of this share of 1/(rho c) with the wrong sign
-    // would, the error may give energy back.
+    // The error may supply at most the energy of a dashpot of this share of
+    // 1/(rho c) with the wrong sign.
     constexpr double error_of_kernel = 2e-4;
   } // namespace
 
@@ -95,7 +95,7 @@ namespace Voussoir
                                            2. * w * w * term.weight});
           }
         // the impulse goes by leapfrog, memory by the trapezoidal rule: without
-        // the second part this difference may give energy back, too
+        // the second part this difference may supply energy, too
         viscosity.push_back(error_of_kernel +
                             Utilities::fixed_power<2>(0.5 * omega * time_step));
         memory.emplace_back(terms.size());

@@ -92,7 +92,7 @@ namespace Voussoir
           above[v] = corners.quadrature_point(v)[2] - kink;
         const auto [lowest, highest] =
           std::minmax_element(above.begin(), above.end());
-        // a level at the edge of a face, but for round-off, cuts nothing
+        // a level at the edge of a face, but for round-off, does not cut it
         const double round_off = 1e-10 * cell->face(face)->diameter();
         if (*lowest<-round_off && * highest> round_off)
           {

@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/gravity.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/fem/lumped_mass.h>
 #include <voussoir/fem/named_sets.h>
@@ -18,20 +19,21 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Cell sets",
-                          cell_sets,
-                          "Cell sets that have weight; empty for all cells. "
-                          "Without the rock, whose settlement is long past, "
-                          "only the dam weighs.");
+        prm.add_parameter(
+          "Cell sets",
+          cell_sets,
+          "Cell sets that have weight; empty for all cells. "
+          "Usually the dam alone, as the settlement of the rock is long past.");
         prm.add_parameter("Acceleration",
                           acceleration,
                           "Acceleration of gravity, x, y, z [m/s2]." +
                             usually(Usual::acceleration));
-        factor.declare(prm,
-                       "Time function",
-                       "Factor on the acceleration, for weight that belongs to "
-                       "no static stage but comes with time; empty: it belongs "
-                       "to one.");
+        factor.declare(
+          prm,
+          "Time function",
+          "Factor on the acceleration, for weight that belongs to no static "
+          "stage but is applied over time; empty: the load belongs to a "
+          "static stage.");
       }
 
       bool
@@ -118,10 +120,11 @@ namespace Voussoir
         const std::string entry =
           "\"Acceleration\" in section \"" + place + "\" is ";
         if (acceleration.norm() == 0.)
-          throw UserError(entry + "zero, so that nothing weighs; give that of "
-                                  "gravity, 0, 0, -9.81, or leave the load "
-                                  "out.");
-        // it may be inclined, or more than one g by an earthquake's share
+          throw UserError(entry +
+                          "zero, so that there is no weight; give that of "
+                          "gravity, 0, 0, -9.81, or leave the load "
+                          "out.");
+        // it may be inclined, or above 1 g as for a pseudo-static earthquake
         if (acceleration.norm() < 5. || acceleration.norm() > 20.)
           log.warn(entry,
                    acceleration,
@@ -134,11 +137,11 @@ namespace Voussoir
       }
 
       std::string         cell_sets;
-      Tensor<1, 3>        acceleration{{0., 0., -9.81}};
+      Tensor<1, 3>        acceleration{{0., 0., -standard_gravity}};
       TimeFactor          factor{""};
       std::vector<double> mass; // of each owned node [kg]
 
-      // of a weight over time, nodes and their mass [kg]
+      // for weight over time, nodes and their mass [kg]
       std::vector<std::pair<unsigned int, double>> shares;
     };
 

@@ -33,24 +33,24 @@ namespace Voussoir
                "an artificial motion that follows a design spectrum "
                "(spectrum). Its details are in the section of that "
                "name; the other ones are not used.");
-    add_option(prm,
-               "Given at",
-               given_at,
-               "Where the motion belongs. outcrop: on rock that lies "
-               "bare, twice the wave that rises in the rock below; as in "
-               "most codes. free surface: on top of the modelled ground "
-               "without dam and canyon, from where the wave is followed "
-               "down. incident wave: the rising wave itself at the "
-               "bottom of the model.");
+    add_option(
+      prm,
+      "Given at",
+      given_at,
+      "Where the motion belongs. outcrop: on bare rock, twice the incident "
+      "wave in the rock below; as in most codes. free surface: on top of the "
+      "modelled ground without dam and canyon, from where the wave is "
+      "deconvolved. incident wave: the upgoing wave itself at the bottom of "
+      "the model.");
     for (unsigned int c = 0; c < 3; ++c)
-      prm.add_parameter("Peak acceleration " + axis_names[c],
-                        peak_entries[c],
-                        "Largest acceleration, " + axis_meanings[c] +
-                          ", before the overload factor, from 0 to 10 [g = "
-                          "9.81 m/s2]; 0 for no motion. \"as recorded\" leaves "
-                          "a record as its file has it; the other types have "
-                          "no motion then.",
-                        Anything());
+      prm.add_parameter(
+        "Peak acceleration " + axis_names[c],
+        peak_entries[c],
+        "Largest acceleration, " + axis_meanings[c] +
+          ", before the overload factor, from 0 to 10 [g = "
+          "9.81 m/s2]; 0 for no motion. \"as recorded\" takes a record "
+          "unscaled; with the other types there is no motion.",
+        Anything());
     prm.add_parameter("Overload factor",
                       overload_factor,
                       "Multiplies all components, for studies beyond the "
@@ -93,16 +93,17 @@ namespace Voussoir
                           " to take if it is a table, counted from 1 without "
                           "the time column.",
                         Integer(1));
-    add_option(prm,
-               "Unit",
-               unit,
-               "Of the accelerations in the files; g = 9.81 m/s2, "
-               "cm/s2 = gal.");
-    prm.add_parameter("Time step",
-                      time_step,
-                      "Of tables that have a single column and no time [s]; 0 "
-                      "for all other files.",
-                      Double(0.));
+    add_option(
+      prm,
+      "Unit",
+      unit,
+      "Unit of the accelerations in the files; g = 9.81 m/s2, cm/s2 = gal.");
+    prm.add_parameter(
+      "Time step",
+      time_step,
+      "Time step of tables that have a single column and no time [s]; 0 for "
+      "all other files.",
+      Double(0.));
     prm.add_parameter("Start time",
                       start_time,
                       "The part of the records before this time is left out "
@@ -110,7 +111,7 @@ namespace Voussoir
                       Double(0.));
     prm.add_parameter("Duration",
                       duration,
-                      "Length of the part used [s]; 0 for all that follows.",
+                      "Duration of the part used [s]; 0: to the end.",
                       Double(0.));
     baseline.declare(prm);
   }
@@ -123,17 +124,17 @@ namespace Voussoir
     add_option(prm,
                "Quantity",
                quantity,
-               "What has the shape of the Ricker wavelet.");
+               "Quantity with the shape of the Ricker wavelet.");
     prm.add_parameter("Frequency",
                       frequency,
                       "Central frequency f [Hz]; there is hardly any motion "
                       "above 3 f.",
                       Double(0.01, 1000.));
-    prm.add_parameter("Middle",
-                      middle,
-                      "Time of the middle of the wavelet [s], at least 1.5/f; "
-                      "0 stands for that.",
-                      Double(0.));
+    prm.add_parameter(
+      "Middle",
+      middle,
+      "Time of the middle of the wavelet [s], at least 1.5/f; 0: 1.5/f.",
+      Double(0.));
   }
 
 
@@ -147,16 +148,15 @@ namespace Voussoir
                       Double(0.01, 1000.));
     prm.add_parameter("Cycles",
                       cycles,
-                      "Number of cycles; 0 for shaking without end.",
+                      "Number of cycles; 0 for motion without end.",
                       Integer(0));
     prm.add_parameter(
       "Ramp cycles",
       ramp_cycles,
-      "Number of cycles in which the shaking swells and, in the end, "
-      "fades; it exceeds the peak acceleration meanwhile, by "
-      "15 % for 1 and by 2 % for 2. 0: the acceleration is a "
-      "full sine from the start, so that the ground drifts to "
-      "one side.",
+      "Number of cycles in which the motion is faded in and, at the end, out; "
+      "meanwhile it exceeds the peak acceleration, by 15 % for 1 and by 2 % "
+      "for 2. 0: the acceleration is a full sine from the start, so that the "
+      "ground drifts to one side.",
       Integer(0));
   }
 
@@ -168,12 +168,12 @@ namespace Voussoir
     add_option(prm,
                "Quantity",
                quantity,
-               "What has the shape of a single bump. displacement: the "
+               "Quantity with the shape of a single pulse. displacement: the "
                "ground returns. velocity: it stays displaced.",
                {Quantity::displacement, Quantity::velocity});
     prm.add_parameter("Duration",
                       duration,
-                      "Length of the bump [s].",
+                      "Duration of the pulse [s].",
                       Double(1e-4, 1000.));
   }
 
@@ -254,8 +254,8 @@ namespace Voussoir
 
     if (!moves(0) && !moves(1) && !moves(2))
       throw UserError(
-        "\"Peak acceleration x\", y and z in section \"Ground motion\" leave no "
-        "motion, which needs one above 0" +
+        "\"Peak acceleration x\", y and z in section \"Ground motion\" leave "
+        "no motion; one of them must be above 0" +
         std::string(type == GroundMotionType::record ?
                       ", or \"as recorded\", of a component with a file" :
                       "") +

@@ -16,10 +16,12 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Point", point, "Where it acts, x, y, z [m].");
+        prm.add_parameter("Point",
+                          point,
+                          "Point at which the force acts, x, y, z [m].");
         prm.add_parameter("Force",
                           force,
-                          "Its components x, y, z [N]." +
+                          "Components x, y, z of the force [N]." +
                             usually(Usual::force));
         factor.declare(prm, "Time function", "Factor on the force.");
       }

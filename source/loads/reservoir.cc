@@ -16,10 +16,12 @@ namespace Voussoir
 
   namespace
   {
-    // Nodes nearer than this part of the shortest edge on the wall meet.
+    // Nodes of water and solid coincide if nearer than this part of the
+    // shortest edge on the wall.
     constexpr double coincidence = 1e-4;
 
-    // The step that coupling is estimated for, at most, over the water's own.
+    // Largest time step for the estimate of the coupling, over that of the
+    // water by itself.
     constexpr double largest_relative_step = 0.95;
 
 
@@ -52,7 +54,8 @@ namespace Voussoir
     }
 
 
-    // It has no pressure, which is right on top of the water only.
+    // The free surface has no pressure, which is right on top of the water
+    // only.
     void
     check_surface(const AcousticSpace            &space,
                   const std::vector<std::string> &sets,
@@ -254,8 +257,8 @@ namespace Voussoir
         std::ostringstream text;
         text << "At (" << x
              << ") m a node of the solid on the wall of the reservoir meets "
-                "no node of the water; keep \"Local refinement\" in section "
-                "\"Mesh\" away from the water.";
+                "no node of the water; do not refine cells at the water by "
+                "\"Local refinement\" in section \"Mesh\".";
         throw UserError(text.str());
       }
 
@@ -273,8 +276,9 @@ namespace Voussoir
                        wall.get_partitioner()->global_to_local(pair.second),
                        area});
 
-    // the areas at the unknowns of this rank, whoever has their partners
-    std::array<Vector, 4> sums; // the last one says where there are any
+    // the areas at the unknowns of this rank, whichever rank owns the solid's
+    // nodes
+    std::array<Vector, 4> sums; // the last sum shows where there are any
     for (unsigned int d = 0; d < 4; ++d)
       {
         sums[d].reinit(wall);

@@ -168,7 +168,7 @@ namespace Voussoir
   void
   ReservoirEnd::find_modes()
   {
-    // one computes, so that all have the same to the last bit
+    // one rank computes the modes, so that all have the same to the last bit
     if (Utilities::MPI::this_mpi_process(communicator) == 0)
       modes =
         find_channel_modes(stiffness, areas, in_surface, speed, most_modes);
@@ -177,7 +177,7 @@ namespace Voussoir
     modes.shapes = Utilities::MPI::broadcast(communicator, modes.shapes);
     const unsigned int n = modes.frequencies.size();
 
-    // the bottom takes rho c^2 C / M of a mode's amplitude twice
+    // the decay rate of amplitude is half of rho c^2 C / M at the bottom
     modes.decay.assign(n, 0.);
     for (unsigned int i = 0; i < areas.size(); ++i)
       for (unsigned int j = 0; j < n; ++j)

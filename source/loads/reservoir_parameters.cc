@@ -13,9 +13,9 @@ namespace Voussoir
       "Model",
       model,
       "How the water moves with the dam. Added mass: incompressible, for low "
-      "dams or first estimates. Compressible: cells of water in which sound "
-      "travels; it matters where the dam's frequencies come near to sound "
-      "speed / (4 depth), 1.25 Hz at 289 m.");
+      "dams or first estimates. Compressible: cells of compressible water, "
+      "needed where the dam's frequencies come near to sound speed / (4 "
+      "depth), 1.25 Hz at 289 m.");
     prm.add_parameter("Density",
                       density,
                       "Density of the water [kg/m3]." +
@@ -24,44 +24,46 @@ namespace Voussoir
     prm.enter_subsection("added mass");
     added_mass.declare(prm);
     prm.leave_subsection();
-    prm.add_parameter("Cell sets",
-                      cell_sets,
-                      "Compressible, or where section \"Modes\" wants cells of "
-                      "water: their cell sets.");
+    prm.add_parameter(
+      "Cell sets",
+      cell_sets,
+      "Cell sets of the water, with the model compressible or where section "
+      "\"Modes\" needs them.");
     prm.add_parameter("Sound speed",
                       sound_speed,
                       "Compressible: speed of sound in the water [m/s]." +
                         usually(Usual::sound_speed),
                       Patterns::Double(1.));
-    prm.add_parameter("Free surface",
-                      surface,
-                      "Of cells of water: face sets of their surface, without "
-                      "pressure.");
+    prm.add_parameter(
+      "Free surface",
+      surface,
+      "Face sets of the surface of the water's cells, without pressure.");
     prm.add_parameter(
       "Radiating end",
       end,
-      "Compressible: face sets of the water, upright, through which sound "
-      "leaves upstream; other ends reflect.");
+      "Compressible: face sets of the water, upright, through which pressure "
+      "waves leave upstream; other ends reflect.");
     add_option(
       prm,
       "Far reservoir",
       far_reservoir,
-      "Compressible: what lies behind the radiating end. Channel: the section "
-      "of the end goes on without end, and takes no energy below its cut-off "
-      "frequency, sound speed / (4 depth) where the bottom is level, but what "
-      "its bottom absorbs. Plane waves: a dashpot of density times sound speed, as in most "
-      "programs, which takes some there, too. Both leave alone what the motion "
-      "of floor and banks makes along the whole reservoir.");
+      "Compressible: model of the reservoir behind the radiating end. "
+      "Channel: the section of the end continues without end, and takes no "
+      "energy below its cut-off frequency, sound speed / (4 depth) where the "
+      "bottom is level, except by absorption at its bottom. Plane waves: a "
+      "dashpot of density times sound speed, as in most programs, which takes "
+      "energy below that frequency, too. Neither affects the pressure by the "
+      "motion of floor and banks along the whole reservoir.");
     prm.add_parameter("Dam",
                       dam,
                       "Compressible: face sets of the dam. All other walls of "
                       "the water are its bottom.");
-    prm.add_parameter("Bottom reflection coefficient",
-                      bottom_reflection,
-                      "Compressible: pressure of a wave thrown back by the "
-                      "sediment at the bottom over that of the wave, at normal "
-                      "incidence; 1 without sediment. The rock below takes its "
-                      "share by moving [-].",
-                      Patterns::Double(0., 1.));
+    prm.add_parameter(
+      "Bottom reflection coefficient",
+      bottom_reflection,
+      "Compressible: reflected over incident pressure of a wave at the "
+      "sediment of the bottom, at normal incidence; 1 without sediment. The "
+      "rock below radiates by its own motion [-].",
+      Patterns::Double(0., 1.));
   }
 } // namespace Voussoir

@@ -16,7 +16,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Face sets", face_sets, "Face sets it acts on.");
+        prm.add_parameter("Face sets",
+                          face_sets,
+                          "Face sets on which the load acts.");
         prm.add_parameter("Traction",
                           traction,
                           "Force per area, x, y, z [Pa]." +

@@ -19,15 +19,16 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Cell sets",
-                          cell_sets,
-                          "Cell sets that it changes in, with their outer "
-                          "nodes; in the cells beside them it fades to zero.");
+        prm.add_parameter(
+          "Cell sets",
+          cell_sets,
+          "Cell sets of the change of temperature, with their outer nodes; in "
+          "the cells beside them it decreases to zero.");
         prm.add_parameter("Uniform change",
                           uniform,
                           "Change of temperature since the joints were closed, "
                           "the same everywhere [K]; negative where it is "
-                          "colder. The table comes on top.");
+                          "colder. The table is added to it.");
         prm.add_parameter(
           "Table",
           table_text,
@@ -38,10 +39,10 @@ namespace Voussoir
           "beyond them.");
         prm.add_parameter("Upstream faces",
                           upstream_faces,
-                          "Face sets from which the thickness counts.");
+                          "Face sets from which the thickness is measured.");
         prm.add_parameter("Downstream faces",
                           downstream_faces,
-                          "Face sets to which the thickness counts.");
+                          "Face sets to which the thickness is measured.");
       }
 
       bool
@@ -66,8 +67,9 @@ namespace Voussoir
         const Discretization &discretization = solid.discretization;
         const auto            sets           = split_list(cell_sets);
         if (sets.empty())
-          throw UserError("\"Cell sets\"" + section +
-                          " is empty; name the cell sets that it changes in.");
+          throw UserError(
+            "\"Cell sets\"" + section +
+            " is empty; name the cell sets whose temperature changes.");
         double                            largest_expansion = 0.;
         std::set<types::global_dof_index> touched;
         for_each_cell(discretization,
@@ -121,7 +123,7 @@ namespace Voussoir
           {
             const Point<3> &x = discretization.node_positions[heated_nodes[i]];
             const double    from = upstream(x), to = downstream(x);
-            // where the two faces meet it is the mean
+            // where the two faces meet, the mean
             const double part = from + to > 0. ? from / (from + to) : 0.5;
             changes[i] +=
               interpolate(elevations, means, x[2]) +

@@ -19,7 +19,7 @@ namespace Voussoir
     FaceNodes face_nodes(discretization.mapping,
                          discretization.fe.base_element(0));
     double    bottom = std::numeric_limits<double>::max(), top = -bottom;
-    double    level_area = 0., upright_area = 0.; // as seen from above, aside
+    double    level_area = 0., upright_area = 0.; // in the horizontal direction
     for_each_face(discretization,
                   sets,
                   place,

@@ -13,7 +13,7 @@ namespace Voussoir
     Quadrature<1>
     stiffness_quadrature(const QuadratureRule rule, const unsigned int degree)
     {
-      // one point in linear elements does what two do
+      // one point in linear elements suffices
       if (rule == QuadratureRule::gauss_lobatto)
         return QGaussLobatto<1>(degree + 1);
       return QGauss<1>(degree + 1);

@@ -25,7 +25,7 @@ namespace Voussoir
       "Type",
       type,
       "Vertical: x and y components travel upwards as S waves, z as a P wave, "
-      "through the layers at the model's sides. Oblique waves come in a "
+      "through the layers at the model's sides. Oblique waves travel in a "
       "homogeneous half-space; their motion is the one component given.");
     prm.add_parameter("Angle",
                       angle,
@@ -41,8 +41,8 @@ namespace Voussoir
     prm.add_parameter(
       "Maximum frequency",
       maximum_frequency,
-      "For motions given at the free surface: what lies above is removed when "
-      "the wave at the base is computed from it [Hz].",
+      "For motions given at the free surface: frequencies above are removed "
+      "when the wave at the base is computed [Hz].",
       Patterns::Double(1.));
   }
 
@@ -88,7 +88,7 @@ namespace Voussoir
     };
 
 
-    /** That of an oblique wave, which is one along the boundary. */
+    /** Rock of an oblique wave, the same along the whole boundary. */
     ElasticConstants
     rock_at(const AbsorbingBoundary &boundary, const Solid &solid)
     {
@@ -164,12 +164,12 @@ namespace Voussoir
         return component != nullptr;
       });
     if (n_given > 1)
-      throw UserError("\"Type\" in section \"Wave field\" is an oblique wave, "
-                      "which has one motion, but section \"Ground motion\" "
-                      "gives " +
-                      std::to_string(n_given) +
-                      " components; leave one of them, which becomes that "
-                      "of the wave.");
+      throw UserError(
+        "\"Type\" in section \"Wave field\" is an oblique wave, "
+        "which has one motion, but section \"Ground motion\" "
+        "gives " +
+        std::to_string(n_given) +
+        " components; keep one of them, which becomes that of the wave.");
     const ElasticConstants rock = rock_at(boundary, solid);
     const double           critical =
       std::asin(rock.s_wave_speed() / rock.p_wave_speed());

@@ -54,7 +54,7 @@ namespace Voussoir
      */
     struct ConcreteDamage : SplitDamage
     {
-      // after the numbers of a SplitDamage e_p
+      // e_p after the internal variables of a SplitDamage
       static constexpr unsigned int n_history = n_split_numbers + 6;
 
       double compressive_strength  = 25e6;
@@ -80,28 +80,30 @@ namespace Voussoir
                           "Uniaxial compressive strength fc [Pa]." +
                             usually(Usual::compressive_strength),
                           Patterns::Double(1.));
-        prm.add_parameter("Crushing energy",
-                          crushing_energy,
-                          "Energy that crushing takes per area beyond the peak "
-                          "[N/m]." +
-                            usually(Usual::crushing_energy),
-                          Patterns::Double(1e-3));
+        prm.add_parameter(
+          "Crushing energy",
+          crushing_energy,
+          "Fracture energy in crushing, per area beyond the peak [N/m]." +
+            usually(Usual::crushing_energy),
+          Patterns::Double(1e-3));
         prm.add_parameter("Biaxial ratio",
                           biaxial_ratio,
                           "Strength under equal compression in two directions "
                           "over the uniaxial one.",
                           Patterns::Double(1.01, 1.5));
-        prm.add_parameter("Strength increase",
-                          strength_increase,
-                          "Factor on strengths and energies under an "
-                          "earthquake; codes give 1.2 to 1.3.",
-                          Patterns::Double(1., 5.));
-        prm.add_parameter("Relaxation time",
-                          relaxation_time,
-                          "Time that damage lags behind by, which strengthens "
-                          "under fast loading [s]; 0 for no effect of rate." +
-                            usually(Usual::relaxation_time),
-                          Patterns::Double(0.));
+        prm.add_parameter(
+          "Strength increase",
+          strength_increase,
+          "Factor on strengths and fracture energies in an earthquake; codes "
+          "give 1.2 to 1.3.",
+          Patterns::Double(1., 5.));
+        prm.add_parameter(
+          "Relaxation time",
+          relaxation_time,
+          "Delay of damage, which raises the strength under fast loading [s]; "
+          "0: rate-independent." +
+            usually(Usual::relaxation_time),
+          Patterns::Double(0.));
         add_option(prm,
                    "Tension law",
                    tension_law,
@@ -139,7 +141,7 @@ namespace Voussoir
       void
       check(const std::string &place)
       {
-        alpha       = (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
+        alpha       = lubliner_alpha(biaxial_ratio);
         tension     = SofteningCurve(increased(tension_nodes(place)),
                                  young_modulus,
                                  irreversible_tension,
@@ -220,8 +222,8 @@ namespace Voussoir
         if (elastic < 1.1 * fc)
           throw UserError(
             place +
-            ": \"Compressive strength\" is too high for its Young's modulus: by GB 50010 "
-            "the strain at the peak would be elastic. Give a "
+            ": \"Compressive strength\" is too high for its Young's modulus: "
+            "by GB 50010 the strain at the peak would be elastic. Give a "
             "\"Compression table\".");
         const double n      = elastic / (elastic - fc);
         const auto   rising = [&](const double x) {
@@ -291,7 +293,8 @@ namespace Voussoir
                 3. * pressed[0]);
       }
 
-      /** Share of what damage lags behind by that this step makes up for. */
+      /** Share of the delayed growth of damage that takes place in this step.
+       */
       template <typename Number>
       double
       followed(const PointSituation<Number> &situation) const
@@ -337,7 +340,7 @@ namespace Voussoir
         return result;
       }
 
-      /** Adds to the plastic strain where the step has made some. */
+      /** Adds the plastic strain of the step. */
       template <typename Number>
       static void
       flow(const SymmetricTensor3<Number>       &strain,
@@ -381,7 +384,7 @@ namespace Voussoir
 
     const Registry<Material>::Add<MaterialOf<ConcreteDamage>> registered(
       "concrete damage",
-      "Concrete with damage in tension and compression on the effective stress; "
-      "cracks close with their stiffness back.");
+      "Concrete with damage in tension and compression on the effective "
+      "stress; cracks close with their stiffness back.");
   } // namespace
 } // namespace Voussoir

@@ -56,10 +56,10 @@ namespace Voussoir
           prm,
           "Fit",
           fit,
-          "Where the cone is as strong as the Mohr-Coulomb law with its "
-          "cohesion and angles: in triaxial compression, or in plane strain, "
-          "there with equal angles of friction and dilation. The second cone "
-          "is nowhere stronger.");
+          "State of stress in which the cone is as strong as the Mohr-Coulomb "
+          "law of the same cohesion and angles: triaxial compression, or "
+          "plane strain with equal angles of friction and dilation. The "
+          "second cone is nowhere stronger.");
       }
 
       /** Slope of the cone of an angle, and k / c. */

@@ -1,4 +1,5 @@
-// Concrete of the plastic-damage model that dams are compared by.
+// Concrete of the plastic-damage model that most published analyses of dams
+// use.
 
 #include <voussoir/base/error.h>
 #include <voussoir/base/usual_range.h>
@@ -30,12 +31,12 @@ namespace Voussoir
      * where s_c is the part of s of a material without tensile strength: w of
      * the stiffness comes back when a crack closes. Lee and Fenves put (1 -
      * D_c) (1 - D_t + w (1 - r) D_t) s, which has no potential: a block that
-     * rocks and slides on its crack gains energy at every turn.
+     * rocks and slides on its crack gains energy in every cycle.
      *
      * In the return mapping the deviator of s keeps its direction and its trace
      * falls in proportion, which leaves one equation. Beyond the apex the
-     * return goes on along the hydrostatic axis to zero stress, which is always
-     * inside: the root is bracketed for every trial stress.
+     * return continues along the hydrostatic axis to zero stress, which is
+     * always inside: the root is bracketed for every trial stress.
      */
     struct LeeFenves : IsotropicElasticity
     {
@@ -66,15 +67,16 @@ namespace Voussoir
                           "Uniaxial tensile strength ft0 [Pa]." +
                             usually(Usual::tensile_strength),
                           Patterns::Double(1.));
-        prm.add_parameter("Fracture energy",
-                          fracture_energy,
-                          "Plastic work that a crack takes per area, the "
-                          "integral of the stress over the plastic opening "
-                          "[N/m]. The loss of stiffness takes "
-                          "energy besides, in proportion to the size of the "
-                          "cells." +
-                            usually(Usual::fracture_energy),
-                          Patterns::Double(1e-3));
+        prm.add_parameter(
+          "Fracture energy",
+          fracture_energy,
+          "Fracture energy: plastic work of a crack per area, the "
+          "integral of the stress over the plastic opening "
+          "[N/m]. The loss of stiffness takes "
+          "energy besides, in proportion to the size of the "
+          "cells." +
+            usually(Usual::fracture_energy),
+          Patterns::Double(1e-3));
         prm.add_parameter("Yield strength in compression",
                           yield_strength,
                           "Uniaxial stress fc0 where crushing begins [Pa]." +
@@ -100,7 +102,7 @@ namespace Voussoir
           dilatancy,
           "Coefficient a_p of the first invariant in the plastic potential. "
           "Lee and Fenves take 0.2; above 0.099 (with a biaxial ratio of 1.16) "
-          "plastic flow under high confinement makes energy.",
+          "plastic flow under high confinement gains energy.",
           Patterns::Double(0., 0.4));
         prm.add_parameter(
           "Damage ratio in tension",
@@ -113,14 +115,14 @@ namespace Voussoir
                           crushing_ratio,
                           "The same in compression.",
                           Patterns::Double(1., 1.9));
-        prm.add_parameter("Stiffness recovery",
-                          recovery,
-                          "Share w of the stiffness that comes back when a "
-                          "crack closes; Lee and Fenves take 1. With 0 a body "
-                          "that has been cut through falls through itself. "
-                          "With 1 a crack takes 4 % more energy, as it is "
-                          "relieved of lateral stress too.",
-                          Patterns::Double(0., 1.));
+        prm.add_parameter(
+          "Stiffness recovery",
+          recovery,
+          "Share w of the stiffness that comes back when a "
+          "crack closes; Lee and Fenves take 1. With 0 parts on both sides of "
+          "a crack through the body penetrate each other. With 1 a crack "
+          "takes 4 % more energy, as it is relieved of lateral stress too.",
+          Patterns::Double(0., 1.));
       }
 
       void
@@ -131,7 +133,7 @@ namespace Voussoir
                           ": the \"Compressive strength\" is below the \"Yield "
                           "strength in compression\"; it must be as large or "
                           "larger.");
-        alpha = (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
+        alpha = lubliner_alpha(biaxial_ratio);
         // the largest sigma_c is fc0 (1 + a)^2 / (4 a)
         const double ratio = peak_strength / yield_strength;
         hardening = 2. * ratio - 1. + 2. * std::sqrt(ratio * (ratio - 1.));
@@ -414,9 +416,9 @@ namespace Voussoir
 
     const Registry<Material>::Add<MaterialOf<LeeFenves>> registered(
       "lee-fenves",
-      "Concrete with plastic strain and damage in tension and compression after "
-      "Lee and Fenves (1998), modified: a crack that closes gets the stiffness "
-      "of the pressed directions back, not of all, so that the stress has a "
-      "potential.");
+      "Concrete with plastic strain and damage in tension and compression "
+      "after Lee and Fenves (1998), modified: a crack that closes gets the "
+      "stiffness of the pressed directions back, not of all, so that the "
+      "stress has a potential.");
   } // namespace
 } // namespace Voussoir

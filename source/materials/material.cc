@@ -11,7 +11,7 @@ namespace Voussoir
   {
     prm.add_parameter("Cell sets",
                       cell_sets,
-                      "Names of the cell sets that are of this material.");
+                      "Names of the cell sets of this material.");
     prm.add_parameter("Density",
                       density,
                       "Mass density [kg/m3]." + usually(Usual::density),
@@ -20,16 +20,17 @@ namespace Voussoir
       "Inertia factor",
       inertia_factor,
       "Factor on the density in the equation of motion. A factor of 0.01 on "
-      "the rock makes the massless foundation of older practice; it costs time "
-      "steps, which shrink with its root. A rock with a factor below one takes "
-      "no inertial earthquake force.",
+      "the rock makes the massless foundation of older practice; time steps "
+      "shrink with its root. A rock with a factor below one takes no inertial "
+      "earthquake force.",
       Patterns::Double(1e-4, 1.));
-    prm.add_parameter("Damping factor",
-                      damping,
-                      "Damping of this material relative to the section "
-                      "\"Damping\"; 0 for none. What is proportional to the "
-                      "mass is the same in all materials.",
-                      Patterns::Double(0., 4.));
+    prm.add_parameter(
+      "Damping factor",
+      damping,
+      "Damping of this material relative to the section "
+      "\"Damping\"; 0 for none. Mass-proportional damping is the same in all "
+      "materials.",
+      Patterns::Double(0., 4.));
     prm.add_parameter("Static factor",
                       static_factor,
                       "Modulus under the loads of the static stage over the "
@@ -48,8 +49,8 @@ namespace Voussoir
   Material::check(const std::string &place)
   {
     if (cell_sets.empty())
-      throw UserError(place + " has no \"Cell sets\"; name the cell sets that "
-                              "are of this material.");
+      throw UserError(
+        place + " has no \"Cell sets\"; name the cell sets of this material.");
   }
 
 

@@ -17,11 +17,11 @@ namespace Voussoir
      * The model of Mazars (1986): one damage D of the whole stiffness,
      *   sigma = (1 - D) C : e ,   D = a_t D_t + a_c D_c ,
      * driven by the largest of sqrt(sum <e_i>^2) over the principal strains.
-     * Of these, a_t is the share that the tensile principal stresses bring.
+     * Of these strains, a_t is the share due to the tensile principal stresses.
      * D_t follows the exponential curve of a crack band; in compression
      *   D_c = 1 - (1 - A) k0 / k - A exp(-B (k - k0)) ,   k0 = ft / E.
      * A crack that closes does not get its stiffness back: the model is for
-     * loads that grow, not for cycles.
+     * monotonic loads, not for cycles.
      */
     struct Mazars : IsotropicElasticity, TensileCrack
     {
@@ -223,7 +223,7 @@ namespace Voussoir
 
     const Registry<Material>::Add<MaterialOf<Mazars>> registered(
       "mazars",
-      "Concrete with one damage by Mazars, for growing loads: cracks that close "
-      "do not get their stiffness back.");
+      "Concrete with one damage by Mazars, for monotonic loads: cracks that "
+      "close do not get their stiffness back.");
   } // namespace
 } // namespace Voussoir

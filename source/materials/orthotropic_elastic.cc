@@ -65,8 +65,8 @@ namespace Voussoir
         prm.add_parameter(
           "Dip direction",
           dip_direction,
-          "Where the joints dip to, from the y axis towards the "
-          "x axis [degrees]: a compass with y to the north.",
+          "Dip direction of the joints, from the y axis towards the x axis "
+          "[degrees]: a compass with y to the north.",
           Patterns::Double(-360., 360.));
         prm.add_parameter("Dip",
                           dip,
@@ -167,9 +167,9 @@ namespace Voussoir
 
       /**
        * The shear modulus of Voigt's mean, and the P wave of the fastest wave
-       * of all directions. Direction and polarisation of that wave change
-       * roles without changing its speed, so that each is the best for the
-       * other in turns.
+       * of all directions. Direction and polarisation of that wave can be
+       * exchanged without changing its speed, so that each is optimised for the
+       * other in turn.
        */
       void
       find_equivalent()

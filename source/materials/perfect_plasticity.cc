@@ -33,7 +33,7 @@ namespace Voussoir
     if (dilation_angle > friction_angle)
       throw UserError(place +
                       ": the \"Dilation angle\" is larger than the \"Friction "
-                      "angle\", so that plastic flow would make energy; lower "
+                      "angle\", so that plastic flow would gain energy; lower "
                       "it.");
   }
 

@@ -65,7 +65,7 @@ namespace Voussoir
                           "strength. Control the strain of the failing "
                           "component instead.");
         FullMatrix<double> tangent(unknown.size(), unknown.size());
-        // small beside what misses and away from the wanted stress, as a law
+        // small against the residual and away from the wanted stress, as a law
         // may have a kink there
         const double size =
           std::max(1e-14, std::min(1e-9, 0.1 * residual.l2_norm() / modulus));
@@ -77,7 +77,8 @@ namespace Voussoir
             const auto changed = miss(moved);
             for (unsigned int l = 0; l < unknown.size(); ++l)
               tangent(l, k) = (changed(l) - residual(l)) / difference;
-            tangent(k, k) += 1e-8 * modulus; // where it has lost all stiffness
+            tangent(k, k) +=
+              1e-8 * modulus; // where the point has lost all stiffness
           }
         tangent.gauss_jordan();
         dealii::Vector<double> change(unknown.size());

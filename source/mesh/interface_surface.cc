@@ -20,8 +20,8 @@ namespace Voussoir
 
 
     /**
-     * Tells on which sides of two faces, which share an edge, one gets from one
-     * to the other through cells around that edge.
+     * Which sides of two faces, which share an edge, are connected through
+     * cells around that edge.
      */
     class Surface
     {
@@ -53,7 +53,8 @@ namespace Voussoir
       }
 
       /** By face, which of its sides (0 or 1) lies on the same side of the
-       * surface as side 0 of the lowest face connected to it; and that face. */
+       *  surface as side 0 of the lowest face connected to it; and that face.
+       */
       std::vector<std::pair<unsigned int, unsigned int>>
       orient() const
       {
@@ -84,7 +85,7 @@ namespace Voussoir
              std::vector<std::pair<unsigned int, unsigned int>> &result,
              std::vector<unsigned int>                          &front) const
       {
-        // at the end of the surface one would come to the other side
+        // at the end of the surface the way leads to the other side
         if (faces_at_edge.at(edge).size() == 1)
           return;
         if (faces_at_edge.at(edge).size() > 2)

@@ -45,8 +45,8 @@ namespace Voussoir
     }
 
 
-    // Give the cells around a vertex that hang together through faces outside
-    // the interfaces vertices of their own. Returns the copies.
+    // Give each group of cells around a vertex that is connected through faces
+    // outside the interfaces a vertex of its own. Returns the copies.
     std::vector<unsigned int>
     split_vertex(CoarseMesh                      &mesh,
                  const FaceNeighbours            &neighbours,

@@ -5,6 +5,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <algorithm>
+#include <sstream>
 #include <tuple>
 
 namespace Voussoir
@@ -115,5 +116,24 @@ namespace Voussoir
                 cross_product_3d(a + p[1] * c, b + p[0] * c).norm();
       }
     return area;
+  }
+
+
+  std::array<Point<3>, 8>
+  cell_vertices(const CoarseMesh &mesh, const unsigned int cell)
+  {
+    std::array<Point<3>, 8> vertices;
+    for (unsigned int v = 0; v < 8; ++v)
+      vertices[v] = mesh.vertices[mesh.cells[cell][v]];
+    return vertices;
+  }
+
+
+  std::string
+  describe_point(const Point<3> &point)
+  {
+    std::ostringstream text;
+    text << "(" << point[0] << ", " << point[1] << ", " << point[2] << ")";
+    return text.str();
   }
 } // namespace Voussoir

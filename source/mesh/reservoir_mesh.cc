@@ -72,8 +72,9 @@ namespace Voussoir
           normal *= -1.;
       }
 
-      /** How far in front of this piece another one lies that looks back at it;
-       *  nothing if it is not before it, or further than this one is large. */
+      /** Distance in front of this piece of another one that faces it; none if
+       *  the other is not in front, or further away than the size of this one.
+       */
       std::optional<double>
       distance_to(const Piece &other) const
       {
@@ -91,8 +92,8 @@ namespace Voussoir
     };
 
 
-    // Water that was meshed on its own may leave a gap, in which nothing would
-    // press on the dam.
+    // Water that was meshed on its own may leave a gap, across which water
+    // would not press on the dam.
     void
     check_gap(const CoarseMesh               &mesh,
               const std::vector<bool>        &is_water,

@@ -16,7 +16,7 @@ namespace Voussoir
     using Numbers = AbaqusSets::Numbers;
 
     // Solid elements that are no trilinear hexahedra, by the beginning of their
-    // type; what is in neither list has no meaning here (beams, masses, ...).
+    // type; other elements are ignored (beams, masses, ...).
     const std::vector<std::pair<std::string, std::string>> refused_types = {
       {"C3D4", "tetrahedra"},
       {"C3D5", "pyramids"},
@@ -109,7 +109,7 @@ namespace Voussoir
         else if (keyword.name == "END ASSEMBLY")
           is_in_assembly = false;
         else if (keyword.name == "TIE")
-          note("*TIE is not read, what it joins stays apart");
+          note("*TIE is not read, tied surfaces stay separate");
         else if (std::count(refused_keywords.begin(),
                             refused_keywords.end(),
                             keyword.name) > 0)
@@ -119,8 +119,8 @@ namespace Voussoir
       }
 
 
-      // Numbers of nodes and elements start anew in each part. They stand in
-      // the part or in its instance, whichever was meshed.
+      // Numbers of nodes and elements start anew in each part. They are in the
+      // part or in its instance, whichever was meshed.
       void
       read_part(const AbaqusKeyword &keyword)
       {
@@ -210,7 +210,7 @@ namespace Voussoir
 
 
       // The element's number and its nodes (0: not known how many). An element
-      // goes on in the next line while nodes are missing or after a comma.
+      // continues in the next line while nodes are missing or after a comma.
       Numbers
       read_element(const unsigned int n_nodes)
       {
@@ -396,7 +396,8 @@ namespace Voussoir
       }
 
 
-      // An element of another type is left out, one that is nowhere is a slip.
+      // An element of another type is left out, one that does not exist is an
+      // error.
       void
       refuse_missing(const std::string &name, const std::int64_t number) const
       {

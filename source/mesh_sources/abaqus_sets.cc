@@ -97,7 +97,7 @@ namespace Voussoir
     for (unsigned int i = 0; i < 3 && i < items.size(); ++i)
       range[i] = file.to_number<std::int64_t>(items[i], "an integer number");
     const auto first = range[0], last = range[1], step = range[2];
-    // More than 100 million members would be a slip, and fill the memory.
+    // More than 100 million members would be a mistake, and fill the memory.
     if (items.size() < 2 || first < 0 || step < 1 || last < first ||
         (last - first) / step > 100000000)
       file.fail("GENERATE needs the first number, the last, not below the "

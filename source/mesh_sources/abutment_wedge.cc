@@ -25,31 +25,33 @@ namespace Voussoir
   void
   AbutmentWedgeParameters::declare(ParameterHandler &prm)
   {
-    prm.add_parameter("Elevation",
-                      elevation,
-                      "At which the wedge's bottom meets the bank on the dam's "
-                      "middle surface; columns of cells, and so the joints of "
-                      "that bank, make way for it [m above the base]. 0: no "
-                      "wedge.",
-                      Patterns::Double(0.));
-    prm.add_parameter("Dip",
-                      dip,
-                      "Of the bottom, which is a plane; cells beside it become "
-                      "flat with a steep one [degrees].",
-                      Patterns::Double(0., 45.));
-    prm.add_parameter("Dip direction",
-                      direction,
-                      "In which the bottom falls: 0 across the river into the "
-                      "canyon, 90 downstream, -90 upstream [degrees].",
-                      Patterns::Double(-90., 90.));
-    prm.add_parameter("Width",
-                      width,
-                      "Into the bank, from where the bottom meets the canyon, "
-                      "rounded to columns of cells [m].",
-                      Patterns::Double(1e-3));
+    prm.add_parameter(
+      "Elevation",
+      elevation,
+      "Elevation at which the base plane of the wedge meets the bank on the "
+      "dam's middle surface; columns of cells, and so the joints of that "
+      "bank, are moved to it [m above the base]. 0: no wedge.",
+      Patterns::Double(0.));
+    prm.add_parameter(
+      "Dip",
+      dip,
+      "Dip of the base plane; cells beside a steep one become flat [degrees].",
+      Patterns::Double(0., 45.));
+    prm.add_parameter(
+      "Dip direction",
+      direction,
+      "Dip direction of the base plane: 0 across the river into the canyon, "
+      "90 downstream, -90 upstream [degrees].",
+      Patterns::Double(-90., 90.));
+    prm.add_parameter(
+      "Width",
+      width,
+      "Extent into the bank, from where the base plane meets the canyon, "
+      "rounded to columns of cells [m].",
+      Patterns::Double(1e-3));
     prm.add_parameter("Length",
                       length,
-                      "Downstream of the dam, rounded to cells [m].",
+                      "Extent downstream of the dam, rounded to cells [m].",
                       Patterns::Double(1e-3));
     prm.add_parameter("Cut",
                       cut,

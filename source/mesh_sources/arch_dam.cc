@@ -39,12 +39,13 @@ namespace Voussoir
                           Patterns::Selection(
                             join(ArchDamShape::preset_names(), "|") +
                             "|custom"));
-        prm.add_parameter("Joints",
-                          n_joints,
-                          "Number of contraction joints, at equal distances "
-                          "along the crest; beside a wedge those of its bank "
-                          "move a little.",
-                          Patterns::Integer(0, 99));
+        prm.add_parameter(
+          "Joints",
+          n_joints,
+          "Number of contraction joints, at equal distances "
+          "along the crest; beside a wedge the joints of its bank are moved a "
+          "little.",
+          Patterns::Integer(0, 99));
         prm.add_parameter("Cell size",
                           cell_size,
                           "Length of the dam's cells along the crest [m]; "
@@ -68,9 +69,9 @@ namespace Voussoir
         prm.add_parameter(
           "Largest rock cell",
           largest_cell,
-          "At which the rock's cells stop growing [m]; waves need about eight "
-          "cells per wavelength, so 60 m of rock with S waves of 2000 m/s carry "
-          "4 Hz.",
+          "Largest size of the rock's cells [m]; waves need about eight "
+          "cells per wavelength, so 60 m of rock with S waves of 2000 m/s "
+          "carry 4 Hz.",
           Patterns::Double(1.));
         prm.add_parameter(
           "Reservoir level",
@@ -78,12 +79,12 @@ namespace Voussoir
           "Fill the canyon with water up to the row of cells nearest to this "
           "level, cell set \"reservoir\" [m above the base]; 0: no water.",
           Patterns::Double(0.));
-        prm.add_parameter("Reservoir length",
-                          relative_water_length,
-                          "From the crown upstream over the dam's height, "
-                          "rounded to whole cells [-]; 0: to the end of the "
-                          "rock.",
-                          Patterns::Double(0., 20.));
+        prm.add_parameter(
+          "Reservoir length",
+          relative_water_length,
+          "Length of the reservoir from the crown upstream over the dam's "
+          "height, rounded to whole cells [-]; 0: to the end of the rock.",
+          Patterns::Double(0., 20.));
         for (const int bank : {0, 1})
           {
             prm.enter_subsection(wedge_section(bank));
@@ -136,11 +137,12 @@ namespace Voussoir
                    const std::shared_ptr<const ArchDamSweep>    &sweep,
                    CoarseMesh::Chart                            &chart) const;
 
-      /** Refuses many more cells than the memory holds. */
+      /** Refuses meshes with many more cells than fit into memory. */
       void
       check_cells(const ArchDamSections &sections, const double height) const;
 
-      /** Those that are asked for; they lay lines of the section straight. */
+      /** The wedges of the case; lines of the section are made straight for
+       *  them. */
       std::vector<AbutmentWedge>
       make_wedges(const ArchDamSweep        &sweep,
                   const ArchDamCrossSection &section) const;
@@ -276,7 +278,7 @@ namespace Voussoir
       const std::shared_ptr<const ArchDamSweep>    &sweep,
       CoarseMesh::Chart                            &chart) const
     {
-      // the sweep looks at the sections
+      // the sweep refers to the sections
       chart.positions = [sections,
                          sweep](const CoarseMesh::Chart::Points &coordinates) {
         return sweep->positions(coordinates);

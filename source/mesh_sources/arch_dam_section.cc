@@ -12,14 +12,14 @@ namespace Voussoir
 
   namespace
   {
-    // How near the surface of a reservoir may come to the next row, and how far
-    // it must and may lie above where its own row meets the contour and the
-    // water slopes down to, over the height of a row.
+    // Over the height of a row: how near the surface of a reservoir may come to
+    // the next row, and how far it must and may lie above the point where its
+    // own row meets the contour.
     constexpr double surface_distance = 0.3;
 
     constexpr std::pair<double, double> surface_rise{0.2, 0.4};
 
-    // Of smoothing, until the vertices hardly move.
+    // Sweeps of smoothing, until the vertices hardly move.
     constexpr unsigned int n_first_steps = 120;
   } // namespace
 
@@ -182,7 +182,7 @@ namespace Voussoir
 
 
   // The surface is the row of vertices, or of middles between two rows, that
-  // can be laid nearest to the level. Its ends on the banks stay where the
+  // is nearest to the level. Its ends on the banks stay where the
   // columns meet the contour.
   void
   ArchDamCrossSection::lay_surface(const double water_level)

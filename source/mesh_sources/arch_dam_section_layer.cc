@@ -8,17 +8,17 @@ namespace Voussoir
 
   namespace
   {
-    // Where a layer begins, over the distance to the vertices beyond; smoothing
-    // finds its thickness.
+    // Initial thickness of a layer, over the distance to the vertices beyond;
+    // smoothing changes it.
     constexpr double first_thickness = 0.4;
   } // namespace
 
 
   // Without these layers three, five or six quadrilaterals meet on the contour
   // wherever it steps to another row, and the edge of dam and rock is where
-  // stresses are sharpest. So the quadrilaterals of either side let go of the
-  // contour, hold copies of its vertices, and a sheet of new ones fills the gap
-  // (Mitchell and Tautges 1995, "pillowing").
+  // stresses are sharpest. So the quadrilaterals of either side are detached
+  // from the contour, get copies of its vertices, and a layer of new ones fills
+  // the gap (Mitchell and Tautges 1995, "pillowing").
   void
   ArchDamCrossSection::line_contour()
   {
@@ -63,7 +63,7 @@ namespace Voussoir
     std::vector<Quad> layer;
     for (const Side &side : sides)
       {
-        // in the place of the one that lets go
+        // in the place of the detached vertex
         Quad quad = quads[side.quad];
         for (const unsigned int i : {0, 1})
           quad.vertices[(side.edge + 3 - i) % 4] =

@@ -18,18 +18,19 @@ namespace Voussoir
     // height of a row.
     constexpr double ledge_rise = 0.3;
 
-    // How much wider or narrower columns may become that make way for the foot
-    // of a ledge.
+    // Limits of the change of width of columns that are moved to the foot of a
+    // ledge.
     constexpr double column_stretch = 1.8;
 
-    // That the foot of one that dips keeps from a joint, in blocks of many.
+    // Distance of the foot of an inclined ledge from a joint, in blocks of
+    // several columns.
     constexpr double columns_to_joint = 3.;
 
-    // Steps while a ledge moves a little.
+    // Steps in which a ledge is moved.
     constexpr unsigned int n_later_steps = 20;
 
-    // Beside a ledge: of the angle between edges of a quadrilateral, and length
-    // of an edge over the size of a cell.
+    // Beside a ledge: least sine of the angle between edges of a quadrilateral,
+    // and least length of an edge over the size of a cell.
     constexpr double least_sine = 0.2, least_edge = 0.1;
   } // namespace
 
@@ -72,7 +73,7 @@ namespace Voussoir
         .first *
       end;
 
-    // by how much the columns on both sides of one become wider or narrower
+    // change of width of the columns on both sides of one
     const auto stretch = [&](const int i) {
       const double towards = foot / columns[i],
                    beyond  = (end - foot) / (end - columns[i]);
@@ -109,15 +110,15 @@ namespace Voussoir
 
 
   // From its foot to the column nearest to the width. The rows above and below
-  // make way for it.
+  // are moved.
   void
   ArchDamCrossSection::lay_ledge(Ledge &ledge, const int bank)
   {
     const int    n_rows     = rows.size();
     const double row_height = height / (n_rows - 1 - base_row);
 
-    // neither the crest's end, where the layer along the contour comes out of
-    // the ground, nor the last column but one
+    // neither the crest's end, where the layer along the contour reaches the
+    // ground surface, nor the last column but one
     const int foot      = ledge.foot_column;
     ledge.side_column   = foot + bank;
     const auto too_near = [&](const int column) {
@@ -163,7 +164,7 @@ namespace Voussoir
   {
     std::ostringstream text;
     text.precision(3);
-    text << "The bottom of the wedge of section \"" << ledge.place
+    text << "The base plane of the wedge of section \"" << ledge.place
          << "\" comes out of the ground, or close to it, " << std::abs(distance)
          << " m from its foot; choose another "
          << "\"Elevation\" or a smaller \"Dip\", \"Width\" or \"Cell size\".";
@@ -221,7 +222,7 @@ namespace Voussoir
             a.norm() < least_edge * std::min(quad.width, quad.height);
           const Ledge &ledge = ledges[moved[quad.vertices[i]].s < 0. ? 0 : 1];
           if (ledge.foot_column >= 0 && is_flat)
-            throw UserError("The bottom of the wedge of section \"" +
+            throw UserError("The base plane of the wedge of section \"" +
                             ledge.place +
                             "\" makes cells beside it nearly flat; choose "
                             "another \"Elevation\", a smaller \"Dip\" or "

@@ -59,7 +59,7 @@ namespace Voussoir
                                    b = x[(i + 3) % 4] - x[i];
                 const double det     = a[0] * b[1] - a[1] * b[0];
                 // stays positive where a corner is turned inside out, so that
-                // it finds the way back
+                // smoothing can turn it back
                 const double size =
                   0.5 * (det + std::sqrt(det * det + flat * flat));
                 const double inverse =

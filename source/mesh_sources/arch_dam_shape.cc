@@ -24,7 +24,8 @@ namespace Voussoir
     // Length over the dam's height in which the arch turns, inside the rock.
     constexpr double relative_turning_length = 0.75;
 
-    // To which lines are cut and the contour is found, over the dam's height.
+    // Tolerance of intersections with lines and the contour, over the dam's
+    // height.
     constexpr double tolerance = 1e-12;
 
 
@@ -120,9 +121,9 @@ namespace Voussoir
       "drawings give them, from below, separated by semicolons, each with nine "
       "numbers [m]: elevation above the base; y of the upstream face and "
       "thickness, at the crown; thickness at the right and at the left "
-      "abutment; radius of the centre line (at the crown, of a parabola) on the "
-      "right and on the left; x of its ends on the right and on the left, both "
-      "taken positive. In between parabolas are blended.");
+      "abutment; radius of the centre line (at the crown, of a parabola) on "
+      "the right and on the left; x of its ends on the right and on the left, "
+      "both taken positive. In between parabolas are blended.");
   }
 
 

@@ -18,14 +18,14 @@ namespace Voussoir
     constexpr double relative_turning_length = 0.35;
 
 
-    // Part of a cell by which the foot of a ledge moves at once.
+    // Part of a cell by which the foot of a ledge moves in one step.
     constexpr double relative_step = 0.1;
 
 
     using LedgeLines = std::array<ArchDamCrossSection::LedgeLine, 2>;
 
 
-    // A part of the way from some lines to others.
+    // Linear interpolation between two sets of lines.
     LedgeLines
     between(const LedgeLines &from, const LedgeLines &to, const double part)
     {
@@ -152,8 +152,8 @@ namespace Voussoir
   }
 
 
-  // Step by step from the middle of the dam, so that no cell is overrun. Beyond
-  // the ledges the section stays as it is at their ends.
+  // Step by step from the middle of the dam, so that no cell is inverted.
+  // Beyond the ledges the section stays the same as at their ends.
   void
   ArchDamSweep::lay_ledges(const ArchDamCrossSection &section,
                            const double               step)
@@ -226,11 +226,10 @@ namespace Voussoir
           return {foot, level};
         foot -= std::clamp(height / slope, -largest_step, largest_step);
       }
-    throw UserError("The bank is too flat for the \"Dip\" in section \"" +
-                    ledge.place +
-                    "\": the wedge's bottom does not come out of it "
-                    "everywhere; choose a smaller one or another "
-                    "\"Elevation\".");
+    throw UserError(
+      "The bank is too flat for the \"Dip\" in section \"" + ledge.place +
+      "\": the base plane of the wedge does not come out of it everywhere; "
+      "choose a smaller one or another \"Elevation\".");
   }
 
 

@@ -13,7 +13,7 @@ namespace Voussoir
 
   namespace
   {
-    /** A box of hexahedra, by choice in horizontal layers; a column is a box.
+    /** A box of hexahedra, optionally in horizontal layers; a column is a box.
      */
     class Box : public MeshGenerator
     {
@@ -32,7 +32,7 @@ namespace Voussoir
           layers_text,
           "Cell sets by height, from below, \"name: top elevation\" [m] "
           "separated by \";\"; the last one reaches to the top and needs no "
-          "elevation. Cells go by their centres.");
+          "elevation. Cells belong to sets by their centres.");
         prm.add_parameter(
           "Distortion",
           distortion,
@@ -166,6 +166,6 @@ namespace Voussoir
     };
 
     const Registry<MeshGenerator>::Add<Box>
-      registered("box", "A box, or a column, by choice in layers.");
+      registered("box", "A box, or a column, optionally in layers.");
   } // namespace
 } // namespace Voussoir

@@ -14,7 +14,7 @@ namespace Voussoir
 
   namespace
   {
-    /** A slice of a gravity dam, by choice on rock. */
+    /** A slice of a gravity dam, optionally on rock. */
     class GravitySection : public MeshGenerator
     {
     public:
@@ -23,25 +23,27 @@ namespace Voussoir
       {
         const Patterns::Double positive(1e-3);
         prm.add_parameter("Height", height, "Base to crest [m].", positive);
-        prm.add_parameter("Base width",
-                          base_width,
-                          "Along the river, from the heel to the toe [m].",
-                          positive);
-        prm.add_parameter("Upstream batter",
-                          batter,
-                          "How far the heel stands out from the crest's "
-                          "upstream edge, which is at y = 0 [m]; 0 for an "
-                          "upright face.",
-                          Patterns::Double(0.));
-        prm.add_parameter("Batter elevation",
-                          batter_elevation,
-                          "Up to which the upstream face leans [m above the "
-                          "base]; 0: up to the crest.",
-                          Patterns::Double(0.));
+        prm.add_parameter(
+          "Base width",
+          base_width,
+          "Base width along the river, from the heel to the toe [m].",
+          positive);
+        prm.add_parameter(
+          "Upstream batter",
+          batter,
+          "Distance of the heel upstream of the crest's upstream edge, which "
+          "is at y = 0 [m]; 0 for an upright face.",
+          Patterns::Double(0.));
+        prm.add_parameter(
+          "Batter elevation",
+          batter_elevation,
+          "Elevation up to which the upstream face is inclined [m above the "
+          "base]; 0: up to the crest.",
+          Patterns::Double(0.));
         prm.add_parameter(
           "Neck elevation",
           neck_elevation,
-          "Where the downstream face changes its slope [m above "
+          "Elevation at which the downstream face changes its slope [m above "
           "the base].",
           positive);
         prm.add_parameter("Neck width",
@@ -54,7 +56,7 @@ namespace Voussoir
                           positive);
         prm.add_parameter("Thickness",
                           thickness,
-                          "Of the slice, along the dam's axis x [m].",
+                          "Thickness of the slice, along the dam's axis x [m].",
                           positive);
         prm.add_parameter("Cells",
                           cells,
@@ -167,8 +169,8 @@ namespace Voussoir
       }
 
     private:
-      /** What the cells are cut from: rows of them between elevations, upwards,
-       *  and between points of the base, from downstream to upstream. */
+      /** The lattice of the cells: rows between elevations, upwards, and
+       *  between points of the base, from downstream to upstream. */
       struct Lattice
       {
         std::vector<double> base, elevations;
@@ -245,8 +247,8 @@ namespace Voussoir
                values.begin();
       }
 
-      /** Above the base the rows lean with the faces, and the water with the
-       *  upstream one; its end is upright. */
+      /** Above the base the rows are inclined like the faces, and the water
+       *  like the upstream one; the end of the water is vertical. */
       Point<3>
       lattice_point(const Lattice     &lattice,
                     const unsigned int i,
@@ -407,6 +409,6 @@ namespace Voussoir
 
     const Registry<MeshGenerator>::Add<GravitySection> registered(
       "gravity section",
-      "A slice of a gravity dam (the default is Koyna's), by choice on rock.");
+      "A slice of a gravity dam (the default is Koyna's), optionally on rock.");
   } // namespace
 } // namespace Voussoir

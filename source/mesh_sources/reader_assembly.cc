@@ -72,7 +72,7 @@ namespace Voussoir
         for (const auto &[kind, number] : file.ignored)
           kinds.push_back(kind + ": " + std::to_string(number));
         if (!kinds.empty())
-          note("elements of no use here left out (" + join(kinds, ", ") + ")");
+          note("ignored elements left out (" + join(kinds, ", ") + ")");
         if (file.hexahedra.empty())
           throw UserError(filename +
                           ": there is no hexahedron in the file; mesh the "

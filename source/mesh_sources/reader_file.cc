@@ -20,7 +20,7 @@ namespace Voussoir
   MeshFile::MeshFile(const std::string &filename)
     : name(filename)
   {
-    // a pipe would be waited for
+    // opening a pipe would block
     std::error_code error;
     std::ifstream   in;
     if (std::filesystem::is_regular_file(filename, error))

@@ -309,7 +309,8 @@ namespace Voussoir
                   mesh.hexahedron_sets["material " + material].push_back(
                     mesh.hexahedra.size());
                 auto vertices = vertices_of<8>(i);
-                if (type == 11) // a voxel runs lexicographically
+                if (type ==
+                    11) // the vertices of a voxel are in lexicographic order
                   {
                     std::swap(vertices[2], vertices[3]);
                     std::swap(vertices[6], vertices[7]);

@@ -21,7 +21,8 @@ namespace Voussoir
     }
 
     // ... and no more than the trapezoidal rule needs: the loss of the cells
-    // may change by so much of itself, or of this share of what came in.
+    // may change by this share of itself, or this share of the energy that came
+    // in.
     constexpr double largest_change = 0.06, share_that_counts = 0.01;
   } // namespace
 
@@ -135,7 +136,7 @@ namespace Voussoir
       n == 0 ? known_loss :
                      known_loss + 0.5 * ((n + 1.) * next_loss + (n - 1.) * next) +
                  0.5 * ((n - 1.) * last_loss + (n + 1.) * last);
-    // evaluations beside the schedule leave it as it is
+    // evaluations beside the schedule do not change it
     if (!first && (n == 0 || !is_due(step)))
       return loss;
 
@@ -234,10 +235,11 @@ namespace Voussoir
     first        = false;
     most_damping = std::max(most_damping, terms.damping);
 
-    // waves that pass through the rock are a thousand times what stays; neither
-    // they nor the static energy may be known better than to their round-off
+    // the energy of waves that pass through the rock is a thousand times the
+    // one that stays; the balance cannot be more accurate than the round-off of
+    // that and of the static energy
     const double net = terms.input - terms.boundary;
-    // which each step adds to, as it does to the last digits of exact sums
+    // which grows with each step, as the last digits of exact sums do
     const double of_step =
       std::numeric_limits<double>::epsilon() * static_work +
       (is_exact ? 0x1p-62 * equation.discretization.owned_dofs.size() : 0.);
@@ -276,7 +278,7 @@ namespace Voussoir
 
   namespace
   {
-    /** What damping, which must not fall, has given back [J]. */
+    /** Decrease of the losses of damping, which must not fall [J]. */
     double
     given_back(const EnergyTerms &terms, const double most_damping)
     {
@@ -284,7 +286,7 @@ namespace Voussoir
     }
 
 
-    /** What cracks made when they closed [J]. */
+    /** Energy gained by cracks that closed [J]. */
     double
     made_by_closing(const EnergyTerms &terms)
     {
@@ -327,8 +329,8 @@ namespace Voussoir
                "strained by more than a sixteenth, where \"Sums = "
                "reproducible\" does not hold" :
                "the motion is no longer finite (NaN or infinite)";
-    // an unstable step keeps the sum: strain energy falls as the kinetic grows,
-    // as it does, within bounds, when parts fall
+    // with an unstable step the sum is constant: strain energy falls as the
+    // kinetic grows, as it does, within bounds, when parts fall
     if (std::max(terms_now.kinetic, terms_now.stored()) >
         100. * (came_in + static_work + 1e-9))
       return "the motion has grown to a hundred times all energy that came in";
@@ -339,8 +341,8 @@ namespace Voussoir
              << " % of the energy that came in are the energy-balance error ("
              << terms_now.error(initial) << " J unaccounted for, "
              << given_back(terms_now, most_damping)
-             << " J given back by damping, " << made_by_closing(terms_now)
-             << " J made by cracks that close)";
+             << " J of negative loss by damping, " << made_by_closing(terms_now)
+             << " J gained by cracks that close)";
         return text.str();
       }
     return "";

@@ -126,8 +126,7 @@ namespace Voussoir
           }
       }
 
-      /** Of all cells those that are sampled; all ranks must call this
-       *  together. */
+      /** Whether each cell is sampled; all ranks must call this together. */
       double
       share_of_cells() const
       {
@@ -250,7 +249,7 @@ namespace Voussoir
         return batch;
       }
 
-      /** Of the values that @p cells has read. */
+      /** Strain at a point from the values that @p cells has read. */
       SymmetricTensor3<Lanes>
       strain(const Evaluation  &cells,
              const Batch       &batch,
@@ -362,7 +361,7 @@ namespace Voussoir
       };
 
       /** The least stress of a cell that is exceeded in at most 5 % of the
-       *  volume. By bisection, so that no rank holds the cells of all. */
+       *  volume. By bisection, so that no rank stores the cells of all. */
       double
       percentile(const MPI_Comm communicator) const
       {
@@ -432,33 +431,33 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Interval",
-                          interval,
-                          "Time over which the mean acceleration is taken, "
-                          "which leaves out what is above 0.44 over it, and "
-                          "between two samples of that of a single step [s]. "
-                          "Displacement and velocity are sampled each "
-                          "twentieth of the shortest period that the mesh "
-                          "carries with eight nodes per wavelength, if that is "
-                          "shorter.",
-                          Patterns::Double(1e-6));
+        prm.add_parameter(
+          "Interval",
+          interval,
+          "Duration of the mean acceleration, which leaves out frequencies "
+          "above 0.44 over it, and interval of the samples of the "
+          "acceleration of a single step [s]. Displacement and velocity are "
+          "sampled each twentieth of the shortest period that the mesh "
+          "carries with eight nodes per wavelength, if that is shorter.",
+          Patterns::Double(1e-6));
         prm.add_parameter("Stress",
                           wants_stress,
                           "Whether to sample the principal stresses at the "
                           "nodes of each cell, the points that pictures show.");
-        prm.add_parameter("Stress interval",
-                          stress_interval,
-                          "Time between two samples of these [s]; 0 for a "
-                          "twentieth of the shortest period that the mesh "
-                          "carries with eight nodes per wavelength, or so much "
-                          "more that samples cost no more than 2 % of the time "
-                          "steps: the fewer cells, the shorter. summary.json "
-                          "has it.",
-                          Patterns::Double(0.));
-        prm.add_parameter("Stress in",
-                          stress_sets,
-                          "Cell sets whose stresses are sampled, as those of "
-                          "the dam; empty for all cells.");
+        prm.add_parameter(
+          "Stress interval",
+          stress_interval,
+          "Time between two samples of these [s]; 0 for a "
+          "twentieth of the shortest period that the mesh "
+          "carries with eight nodes per wavelength, or longer if samples "
+          "would cost more than 2 % of the time steps: the fewer cells, the "
+          "shorter. summary.json has it.",
+          Patterns::Double(0.));
+        prm.add_parameter(
+          "Stress in",
+          stress_sets,
+          "Cell sets whose stresses are sampled, such as those of the dam; "
+          "empty for all cells.");
       }
 
       void
@@ -490,7 +489,7 @@ namespace Voussoir
       {
         schedule = Schedule(interval, run().time_step);
         samples  = Schedule(run().sampling_interval(interval), run().time_step);
-        // the three components of a node hold three numbers each
+        // three numbers per node in the entries of its three components
         keep("envelope", largest);
         keep("envelope accelerations", accelerations);
         keep("envelope velocity", previous);
@@ -594,7 +593,7 @@ namespace Voussoir
       }
 
       /** A law without strength has no limit of tension, concrete and rock
-       * have. */
+       *  have. */
       void
       check_tension(const unsigned int material, const nlohmann::json &found)
       {

@@ -46,7 +46,7 @@ namespace Voussoir
     };
 
 
-    /** What the static stage left there. */
+    /** Strain and temperature of the static stage there. */
     struct InitialPoints
     {
       explicit InitialPoints(const ObservedRun &run)
@@ -78,7 +78,7 @@ namespace Voussoir
 
 
     /** Principal stresses in MPa from the gradient of u, or of u + s w where
-     * all materials have the same damping. */
+     *  all materials have the same damping. */
     class PrincipalStresses : public DataPostprocessor<3>
     {
     public:
@@ -151,7 +151,7 @@ namespace Voussoir
       const ObservedRun                   &run;
       const QIterated<3>                   points;  // that are drawn
       const std::unique_ptr<InitialPoints> initial; // null: no static stage
-      const std::unique_ptr<DrawnStrains>  memory;  // null: none of its own
+      const std::unique_ptr<DrawnStrains>  memory;  // null: none
     };
 
 
@@ -203,7 +203,7 @@ namespace Voussoir
       const std::vector<NodalField> &fields;
       const std::vector<CellField>   cell_fields = {};
 
-      // stress, and the displacement that it goes with; or null
+      // state of the stress, and its displacement; or null
       std::unique_ptr<const PrincipalStresses> stress   = nullptr;
       Vector                                   filtered = {};
     };

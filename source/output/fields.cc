@@ -19,7 +19,7 @@ namespace Voussoir
       {
         prm.add_parameter("Quantities",
                           quantities,
-                          "What to write: displacement [m], also since the "
+                          "Fields to write: displacement [m], also since the "
                           "static state or the last grouting of joints, "
                           "velocity [m/s], principal stress [MPa], mesh "
                           "quality (scaled Jacobian and aspect ratio of the "
@@ -117,7 +117,7 @@ namespace Voussoir
       std::string   quantities = "displacement, principal stress";
       PictureSeries pictures{"fields", "Output/fields"};
 
-      // of the cells, once a picture wants them
+      // of the cells, once a picture needs them
       dealii::Vector<float> scaled_jacobian, aspect_ratio;
     };
 

@@ -40,11 +40,11 @@ namespace Voussoir
         recorder.declare_parameters(
           prm,
           "Name of the point whose motion is subtracted from that of the "
-          "others, which the headings then say; its own stays absolute. Empty "
-          "for absolute motion.");
+          "others, as the headings then say; the motion of the named point "
+          "stays absolute. Empty for absolute motion.");
         prm.add_parameter("Quantities",
                           quantities,
-                          "What to write: displacement [m], velocity [m/s], "
+                          "Columns to write: displacement [m], velocity [m/s], "
                           "acceleration [m/s2], in which pounding of cracks "
                           "and joints shows as single steps, and the same "
                           "below the filter frequency; displacement also since "
@@ -53,13 +53,14 @@ namespace Voussoir
                             "displacement|velocity|acceleration|filtered "
                             "acceleration|" +
                             since_static_state + "|" + since_grouting));
-        prm.add_parameter("Filter frequency",
-                          filter_frequency,
-                          "Of the filtered acceleration, which is the mean "
-                          "over 0.443 of its period: what has this frequency "
-                          "passes by 0.71 [Hz]; 0 for the highest that the "
-                          "mesh carries with eight nodes per wavelength.",
-                          Patterns::Double(0.));
+        prm.add_parameter(
+          "Filter frequency",
+          filter_frequency,
+          "Filter frequency of the filtered acceleration, which is the mean "
+          "over 0.443 of its period: amplitudes at this frequency are "
+          "multiplied by 0.71 [Hz]; 0 for the highest that the mesh carries "
+          "with eight nodes per wavelength.",
+          Patterns::Double(0.));
         declare_interval(prm,
                          "Time between two lines [s]; the largest amounts in "
                          "summary.json are those of all steps.");
@@ -154,7 +155,7 @@ namespace Voussoir
       }
 
       /** Whether the motion of a point is written relative to another one,
-       * which itself is not. */
+       *  which itself is not. */
       bool
       is_relative(const unsigned int point) const
       {
@@ -226,7 +227,7 @@ namespace Voussoir
           table.write(line.time, values);
       }
 
-      /** The static state, which a run without steps ends with. */
+      /** Writes the static state, the only line of a run without steps. */
       void
       take_rest(const State &state)
       {

@@ -67,7 +67,7 @@ namespace Voussoir
   surface_values(const double *sum, const double *largest, const double area)
   {
     // Of the plane as a whole, (c A + f N) / T. Infinite without shear, as in
-    // an open joint without keys or one that keys hold, or with as good as
+    // an open joint without keys or one whose keys prevent slip, or with nearly
     // none.
     const Tensor<1, 3> shear({sum[shear_x], sum[shear_y], sum[shear_z]}),
       driving({sum[driving_x], sum[driving_y], sum[driving_z]});
@@ -107,7 +107,7 @@ namespace Voussoir
       {
         const double *sum  = sums + n_quantities * plane.surface;
         const double  area = areas[plane.surface];
-        // it cannot slide as long as keys hold it
+        // it cannot slide as long as keys prevent it
         if (sum[locked_area] > 0.)
           return std::numeric_limits<double>::infinity();
         force += force_on_block(plane, sums);

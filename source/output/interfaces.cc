@@ -38,23 +38,24 @@ namespace Voussoir
         prm.add_parameter(
           "Blocks",
           blocks_text,
-          "Blocks of rock whose safety against sliding as a whole is watched: "
-          "\"cell set: surface, surface\", separated by \";\", with all "
-          "surfaces of contact of the block, one for each plane. It is "
-          "that of limit equilibrium under the driving forces, weight, "
-          "water, uplift, thrust of the dam, and its inertia as if it went with "
-          "its base: along one plane or along the line where two of them meet, "
-          "zero if the block lifts off, infinite without a driving force or if "
-          "other planes prevent the slip. The mobilised ratio is the shear of "
-          "the contact forces over the resistance of the planes, at most one. "
-          "Both are means "
-          "over 0.443 of the shortest period that the mesh carries.");
-        declare_interval(prm,
-                         "Time between two lines of interfaces.csv [s]. In it "
-                         "the sliding safety of a surface is (c A + f N) / T, "
-                         "the resistance by friction and cohesion over the "
-                         "resultant of the shear, both where no keys hold. "
-                         "Extremes in summary.json are those of all steps.");
+          "Blocks of rock whose safety against sliding as a whole is "
+          "evaluated: \"cell set: surface, surface\", separated by \";\", "
+          "with all surfaces of contact of the block, one for each plane. It "
+          "is that of limit equilibrium under the driving forces, weight, "
+          "water, uplift, thrust of the dam, and its inertia as if it moved "
+          "with its base: along one plane or along the line where two of them "
+          "meet, zero if the block lifts off, infinite without a driving "
+          "force or if other planes prevent the slip. The mobilised ratio is "
+          "the shear of the contact forces over the resistance of the planes, "
+          "at most one. Both are means over 0.443 of the shortest period that "
+          "the mesh carries.");
+        declare_interval(
+          prm,
+          "Time between two lines of interfaces.csv [s]. In it "
+          "the sliding safety of a surface is (c A + f N) / T, "
+          "the resistance by friction and cohesion over the "
+          "resultant of the shear, both where no keys prevent slip. "
+          "Extremes in summary.json are those of all steps.");
       }
 
       void
@@ -63,8 +64,8 @@ namespace Voussoir
         if (model.interfaces == nullptr)
           throw UserError(
             "\"Observers\" in section \"Output\" names \"interfaces\", but the "
-            "case has none; list some in section \"Interfaces\", or leave the "
-            "observer out.");
+            "case has none; list some in section \"Interfaces\", or remove "
+            "the observer.");
         parse_points(points_text, place);
         find_sliding_blocks(blocks_text,
                             blocks_place,
@@ -260,7 +261,8 @@ namespace Voussoir
               largest_opening[s] = {{sample.largest[2 * s], sample.time}};
             const double safety = values.back();
             smallest_safety[s]  = std::min(smallest_safety[s], safety);
-            // what slides is at its limit, up to the waves inside
+            // sliding points are at their limit, except for waves inside the
+            // block
             if (safety < 1. + 1e-3)
               time_at_one[s] += since;
           }
@@ -276,7 +278,7 @@ namespace Voussoir
         return line;
       }
 
-      /** Goes on with the means of a block. */
+      /** Updates the means of a block. */
       void
       evaluate_block(const unsigned int b,
                      const double       time,
@@ -322,8 +324,8 @@ namespace Voussoir
         std::fill_n(means, n_sums, 0.);
       }
 
-      /** Keeps the contact forces of the planes of a block, and what drives it:
-       *  D - M (a - a_s) , see safety_from_sums. */
+      /** Stores the contact forces of the planes of a block, and the force that
+       *  drives it: D - M (a - a_s) , see safety_from_sums. */
       void
       keep_forces(const unsigned int  b,
                   const double       *sums,
@@ -411,7 +413,7 @@ namespace Voussoir
                    {"largest slip [mm]", 1e3 * largest[1]}};
       }
 
-      /** What finding the contact forces took, in the static stage too. */
+      /** Statistics of the contact solver, static stages included. */
       nlohmann::json
       effort() const
       {
@@ -440,7 +442,8 @@ namespace Voussoir
       std::vector<SlidingBlock>  blocks;
       std::vector<SafetyHistory> safety_of_blocks;
 
-      // of each block: contact forces of its planes, and what drives it [N]
+      // of each block: contact forces of its planes, and the force that drives
+      // it [N]
       std::vector<std::vector<double>> forces_at_smallest;
 
       // largest open area [m2] and opening [m] of each surface, and when [s]
@@ -467,7 +470,7 @@ namespace Voussoir
     const Registry<Observer>::Add<Interfaces> registered(
       "interfaces",
       "Opening, slip, forces and sliding safety of the interfaces, in "
-      "interfaces.csv; extremes on their faces in interface_envelopes.vtu, with "
-      "the state at the end: 0 closed, 1 sliding, 2 open.");
+      "interfaces.csv; extremes on their faces in interface_envelopes.vtu, "
+      "with the state at the end: 0 closed, 1 sliding, 2 open.");
   } // namespace
 } // namespace Voussoir

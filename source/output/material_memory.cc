@@ -21,11 +21,11 @@ namespace Voussoir
 
     /**
      * Opening of the crack of an active point at its last step [m], and not
-     * more than the largest one, which has been found already: the largest
+     * more than the largest one so far, an internal variable: the largest
      * principal value of e_in = e - C^-1 : sigma times the band, but not more
-     * than the strain across the crack, n . e . n. Where that is pressed it is
-     * closed, also if shear opens it along an inclined strut; and crushed
-     * concrete that swells is no crack.
+     * than the strain across the crack, n . e . n. Where that strain is
+     * compressive the crack is closed, also if shear opens it along an inclined
+     * strut; and the expansion of crushed concrete is no crack.
      */
     double
     opening_of(const Material            &material,
@@ -54,8 +54,8 @@ namespace Voussoir
     }
 
 
-    /** The names of the outputs of a material, and of what follows from all
-     *  that its points remember. */
+    /** The names of the outputs of a material, and of results computed from its
+     *  internal variables. */
     std::vector<std::string>
     names_of(const Material &material)
     {
@@ -66,7 +66,7 @@ namespace Voussoir
     }
 
 
-    /** Of the largest value of all points at the end. */
+    /** Name of the largest value of all points at the end. */
     std::string
     summary_name(const std::string &name)
     {
@@ -77,7 +77,7 @@ namespace Voussoir
 
 
     /** Calls visit(cell, band, values of these names) for all points of a
-     *  material; without band [m] where it is elastic still. */
+     *  material; with a band of zero [m] where the point is still elastic. */
     void
     for_each_point(
       const Material                                         &material,

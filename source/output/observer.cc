@@ -15,9 +15,8 @@ namespace Voussoir
       return;
     std::ostringstream text;
     text << std::setprecision(2) << place << " is " << interval
-         << " s, at which extremes of what oscillates at the "
-         << carried_frequency
-         << " Hz that the mesh carries come out too small by up to "
+         << " s, at which extremes of oscillations at the " << carried_frequency
+         << " Hz that the mesh carries are too small by up to "
          << 100. * (1. - std::cos(std::min(dealii::numbers::PI * interval *
                                              carried_frequency,
                                            dealii::numbers::PI_2)))

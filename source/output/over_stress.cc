@@ -160,26 +160,26 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Face sets", sets, "Faces to evaluate.");
-        add_option(prm,
-                   "Stress",
-                   compared,
-                   "What is compared with the strength: the largest "
-                   "principal stress, or the larger one of arch and "
-                   "cantilever stress.");
+        add_option(
+          prm,
+          "Stress",
+          compared,
+          "Stress that is compared with the strength: the largest principal "
+          "stress, or the larger one of arch and cantilever stress.");
         prm.add_parameter(
           "Tensile strength",
           strengths,
           "Static tensile strength of the concrete, one for all faces or one "
-          "for each [Pa]; 0 for that of the materials. The demand-capacity ratio "
-          "is the tension over it." +
+          "for each [Pa]; 0 for the strength of the materials. The "
+          "demand-capacity ratio is the tension over it." +
             usually(Usual::tensile_strength_or_none),
           Patterns::List(Patterns::Double(0.), 1));
         prm.add_parameter(
           "Strengths of materials",
           of_materials,
-          "The same by material, \"concrete: 2e6; crest: 3e6\", where \"Tensile "
-          "strength\" is 0. Without it those that linear elastic materials have "
-          "themselves.");
+          "The same by material, \"concrete: 2e6; crest: 3e6\", where "
+          "\"Tensile strength\" is 0. Without it the strengths of the linear "
+          "elastic materials.");
         prm.add_parameter("Ratios",
                           ratios,
                           "Demand-capacity ratios above which time and area "
@@ -189,23 +189,25 @@ namespace Voussoir
         prm.add_parameter(
           "Longest time",
           longest_time,
-          "Accumulated time above the ratio 1 that a linear analysis allows "
-          "[s]. It falls linearly to zero at the \"Largest ratio\". The limits "
-          "are those ascribed to USACE EM 1110-2-6053 for arch dams, gravity "
-          "dams have 0.3 s; compare them with the code that applies." +
+          "Accumulated time above the ratio 1 that is allowed in a linear "
+          "analysis [s]. It falls linearly to zero at the \"Largest ratio\". "
+          "The limits are those ascribed to USACE EM 1110-2-6053 for arch "
+          "dams, gravity dams have 0.3 s; compare them with the code that "
+          "applies." +
             usually(Usual::accumulated_time),
           Patterns::Double(0.));
-        prm.add_parameter("Largest ratio",
-                          largest_ratio,
-                          "Demand-capacity ratio that it allows [-]." +
-                            usually(Usual::demand_capacity_ratio),
-                          Patterns::Double(1.));
-        prm.add_parameter("Largest share",
-                          largest_share,
-                          "Share of a face above the ratio 1 at any time that "
-                          "it allows [%]; gravity dams have 15 % of the "
-                          "section.",
-                          Patterns::Double(0., 100.));
+        prm.add_parameter(
+          "Largest ratio",
+          largest_ratio,
+          "Demand-capacity ratio that is allowed in a linear analysis [-]." +
+            usually(Usual::demand_capacity_ratio),
+          Patterns::Double(1.));
+        prm.add_parameter(
+          "Largest share",
+          largest_share,
+          "Share of a face above the ratio 1 at any time that is allowed in a "
+          "linear analysis [%]; gravity dams have 15 % of the section.",
+          Patterns::Double(0., 100.));
       }
 
       void
@@ -239,7 +241,7 @@ namespace Voussoir
       void
       observe(const State &state) override
       {
-        if (state.step < next_step) // that of the checkpoint, seen before
+        if (state.step < next_step) // that of the checkpoint, evaluated before
           return;
         const double interval = state.step == 0 ? 0. : run().time_step;
         next_step             = state.step + 1;
@@ -353,7 +355,7 @@ namespace Voussoir
                         model.names.face_sets);
       }
 
-      /** Strength at each node of the faces, the least of what meets there
+      /** Strength at each node of the faces, the least of the materials there
        *  [Pa]. */
       std::vector<double>
       strengths_of_nodes(const ObservedModel &model,
@@ -403,7 +405,7 @@ namespace Voussoir
         return strength;
       }
 
-      /** The tension of cracked concrete is no measure of its demand. */
+      /** The tension in cracked concrete is no measure of the demand. */
       static void
       check_elastic(const ObservedModel            &model,
                     const std::vector<std::string> &face_sets)
@@ -423,8 +425,8 @@ namespace Voussoir
             "The faces of " + section + " have cells of the material \"" +
             model.names.materials[cracking] +
             "\", whose stress is limited by its strength, but over-stress is "
-            "that of a linear analysis; choose a linear elastic law, or leave "
-            "out the observer \"over-stress\".");
+            "that of a linear analysis; choose a linear elastic law, or "
+            "remove the observer \"over-stress\".");
       }
 
       unsigned int
@@ -433,7 +435,7 @@ namespace Voussoir
         return ratios.size();
       }
 
-      /** Of each set and ratio. */
+      /** Number of areas, one for each set and ratio. */
       std::size_t
       n_areas() const
       {
@@ -494,7 +496,8 @@ namespace Voussoir
         waiting_times.clear();
       }
 
-      /** Time above each ratio, whatever the next one, of a node [s]. */
+      /** Time above each ratio, the time above the next one included, of a node
+       *  [s]. */
       std::vector<double>
       accumulated_times(const unsigned int node) const
       {
@@ -705,9 +708,9 @@ namespace Voussoir
       std::unique_ptr<FaceStress> stress;
       std::unique_ptr<AreaAbove>  areas;
 
-      // of each node: arch and cantilever if they are wanted, strength [Pa],
-      // ratio now, largest one and when [s], and for each ratio of the list the
-      // time above it, but not above the next one [s]
+      // of each node: arch and cantilever stress if they are needed, strength
+      // [Pa], ratio now, largest one and when [s], and for each ratio of the
+      // list the time above it, but not above the next one [s]
       std::vector<std::array<Tensor<1, 3>, 2>> directions;
       std::vector<double>                      strength_of_node, ratio_of_node;
       std::vector<double>                      largest, times;

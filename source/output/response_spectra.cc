@@ -22,23 +22,23 @@ namespace Voussoir
       {
         recorder.declare_parameters(
           prm,
-          "Name of the point whose largest acceleration the amplification in "
-          "the summary is relative to; empty for none.");
+          "Name of the point by whose largest acceleration the summary "
+          "divides spectra for the amplification; empty for none.");
         prm.add_parameter("Components",
                           components,
                           "Directions of motion.",
                           Patterns::MultipleSelection("x|y|z"));
         prm.add_parameter("Damping ratio",
                           damping_ratio,
-                          "Of the oscillators [-].",
+                          "Damping ratio of the oscillators [-].",
                           Patterns::Double(0., 0.99));
         prm.add_parameter("Shortest period",
                           shortest,
-                          "Of the oscillators [s].",
+                          "Shortest period of the oscillators [s].",
                           Patterns::Double(1e-3));
         prm.add_parameter("Longest period",
                           longest,
-                          "Of the oscillators [s].",
+                          "Longest period of the oscillators [s].",
                           Patterns::Double(1e-3));
         prm.add_parameter("Number of periods",
                           n_periods,

@@ -97,7 +97,7 @@ namespace Voussoir
     }
 
 
-    /** The point of the surface nearest to @p p (its y left out by choice), by
+    /** The point of the surface nearest to @p p (optionally without its y), by
      *  Newton's method for least squares, kept inside. */
     Hit
     nearest(const Surface &surface, const Point<3> &p, const bool without_y)
@@ -348,7 +348,7 @@ namespace Voussoir
     normal = horizontal_normal(faces[0], upstream, size, refuse);
     const double downstream =
       distance_of_downstream_face(faces[1], upstream, normal, size, refuse);
-    // outward is away from the downstream face, wherever that is met
+    // outward is away from the downstream face, at whatever distance
     if (downstream > 0.)
       normal *= -1.;
     thickness = std::abs(downstream);
@@ -365,7 +365,7 @@ namespace Voussoir
     const std::vector<double>         breaks =
       find_breaks(discretization, upstream, -normal, thickness, cells);
     const QGauss<1>           gauss(discretization.degree + 2);
-    std::vector<unsigned int> n_cells; // that have the point
+    std::vector<unsigned int> n_cells; // that contain the point
     std::vector<unsigned int> number;  // of the integration point
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
       for (unsigned int q = 0; q < gauss.size(); ++q)

@@ -14,7 +14,7 @@ namespace Voussoir
   namespace
   {
     /** The side of a surface on which a block lies: 1 if on the second, -1 if
-     * on the first. */
+     *  on the first. */
     double
     side_of(const std::string &block,
             const std::string &surface,
@@ -121,7 +121,7 @@ namespace Voussoir
                               const double        resistance,
                               const std::size_t   i,
                               const std::size_t   j) {
-      // without a driving force, or with as good as none
+      // without a driving force, or with nearly none
       const double driving = against.norm();
       if (driving <= 1e-6 * std::max(resistance, force.norm()))
         return;
@@ -173,7 +173,7 @@ namespace Voussoir
         smallest         = safety;
         time_of_smallest = time;
       }
-    // what slides is at its limit, up to the waves inside
+    // sliding planes are at their limit, except for waves inside the block
     if (safety < 1. + 1e-3)
       time_at_one += interval;
     return is_smallest;

@@ -51,7 +51,7 @@ namespace Voussoir
         for (const auto &carrier : discretization.carriers(nodes[j]))
           {
             const Tensor<1, 3> unit = scalar.shape_grad(j, place.unit);
-            // at a node only those in line with it count
+            // at a node only the gradients along its own lines are not zero
             if (unit.norm() > 1e-12)
               sample.weights[carrier.node] +=
                 carrier.weight * (to_space * unit);
@@ -139,7 +139,7 @@ namespace Voussoir
         weights.resize(begin + longest);
         for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
           {
-            // where a lane has nothing more, an entry of its own counts nothing
+            // a lane without further points gets an entry that is not used
             const auto &own =
               samples[first + (lane < n_samples ? lane : 0)].weights;
             for (std::size_t i = begin; i < weights.size(); ++i)

@@ -35,10 +35,10 @@ namespace Voussoir
           "Face sets",
           face_sets,
           "Faces that a support of section \"Boundaries\" or a prescribed "
-          "motion holds; for each of them support_forces.csv has the force "
-          "of the support on the model, x, y, z [MN]; static state, loads and "
-          "inertia of its nodes included. An edge of several sets counts for "
-          "the first of them.");
+          "motion constrains; for each of them support_forces.csv has the "
+          "force of the support on the model, x, y, z [MN]; static state, "
+          "loads and inertia of its nodes included. An edge of several sets "
+          "counts for the first of them.");
         declare_interval(prm,
                          "Time between two lines of support_forces.csv [s].");
       }
@@ -202,8 +202,8 @@ namespace Voussoir
               throw UserError(
                 place + " names \"" + set +
                 "\", on which neither a support of section "
-                "\"Boundaries\" nor a prescribed motion holds all "
-                "nodes; name faces that are fixed.");
+                "\"Boundaries\" nor a prescribed motion constrains all nodes; "
+                "name faces that are fixed.");
             if (Utilities::MPI::logical_or(meets_interface, communicator))
               throw UserError(place + " names \"" + set +
                               "\", whose nodes an interface touches, the "
@@ -214,8 +214,8 @@ namespace Voussoir
         return result;
       }
 
-      /** Of each owned node, as if none were fixed; what a rigid base does not
-       *  move as inertia has none [kg]. */
+      /** Mass of each owned node, as if none were fixed; zero where a rigid
+       *  base exerts no inertial force [kg]. */
       std::vector<double>
       driven_mass() const
       {

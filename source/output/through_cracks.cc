@@ -45,10 +45,10 @@ namespace Voussoir
     };
 
 
-    /** A way from face to face. */
+    /** A path from face to face. */
     struct Way
     {
-      double   opening = 0.; // where it is narrowest [mm]
+      double   opening = 0.; // smallest opening along it [mm]
       Point<3> where;        // that is [m]
     };
 
@@ -57,8 +57,8 @@ namespace Voussoir
      * The widest opening that a chain of eighths of cells has everywhere on its
      * way from one face to the other; 0 if there is no such chain. Eighths of
      * one cell are next to each other unless they lie across its middle, those
-     * of two cells if an edge of both begins in their corner. They are taken in
-     * from the most open one on until a chain is whole.
+     * of two cells if an edge of both begins in their corner. They are added in
+     * the order of their opening until a chain is complete.
      */
     Way
     widest_way(std::vector<CrackedEighth> eighths)
@@ -160,7 +160,7 @@ namespace Voussoir
     }
 
 
-    /** Cracks that go through from one face of the dam to the other. */
+    /** Through cracks from one face of the dam to the other. */
     class ThroughCracks : public TableObserver
     {
     public:
@@ -175,7 +175,7 @@ namespace Voussoir
         prm.add_parameter("To", to, "Face sets on which it ends.");
         declare_interval(prm,
                          "Time between two lines of through_cracks.csv [s]; "
-                         "cracks are looked at each twentieth of the shortest "
+                         "cracks are evaluated each twentieth of the shortest "
                          "period that the mesh carries with eight nodes per "
                          "wavelength, if that is shorter.");
       }
@@ -196,10 +196,10 @@ namespace Voussoir
                          [](const Material *material) {
                            return tells_of_cracks(*material);
                          }))
-          throw UserError("No material of the case cracks, but " + section +
-                          " looks for cracks; leave out the observer "
-                          "\"through cracks\", or give a material a law that "
-                          "cracks.");
+          throw UserError(
+            "No material of the case cracks, but " + section +
+            " looks for cracks; remove the observer \"through cracks\", or "
+            "give a material a law that cracks.");
       }
 
       void
@@ -359,7 +359,7 @@ namespace Voussoir
 
     const Registry<Observer>::Add<ThroughCracks> registered(
       "through cracks",
-      "Cracks that go through the dam: how wide they are open at one moment all "
-      "the way from one face to the other, in through_cracks.csv.");
+      "Cracks that go through the dam: how wide they are open at one moment "
+      "all the way from one face to the other, in through_cracks.csv.");
   } // namespace
 } // namespace Voussoir

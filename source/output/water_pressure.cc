@@ -26,7 +26,7 @@ namespace Voussoir
       {
         if (model.reservoir == nullptr)
           throw UserError("\"Observers\" in section \"Output\" names \"water "
-                          "pressure\", but there is no water to look into; set "
+                          "pressure\", but there is no compressible water; set "
                           "\"Model = compressible\" in section \"Reservoir\".");
         pictures.check(model);
       }
@@ -65,9 +65,8 @@ namespace Voussoir
       PictureSeries pictures{"water_pressure", "Output/water pressure"};
     };
 
-    const Registry<Observer>::Add<WaterPressure>
-      registered("water pressure",
-                 "What the motion adds to the pressure in compressible water, "
-                 "in water_pressure.pvd.");
+    const Registry<Observer>::Add<WaterPressure> registered(
+      "water pressure",
+      "Hydrodynamic pressure in compressible water, in water_pressure.pvd.");
   } // namespace
 } // namespace Voussoir

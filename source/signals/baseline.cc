@@ -13,7 +13,7 @@
 #include <numeric>
 
 // The correction removes from the tapered record w a the polynomial p of degree
-// four, tapered alike, that leaves the least displacement,
+// four, tapered likewise, that leaves the least displacement,
 //
 //   a_corrected = w (a - p),   w(0) = w(T) = 0,
 //   integral of d_corrected^2 dt -> min  with  v(T) = 0, d(T) = 0.
@@ -24,7 +24,7 @@
 // al., PEER report 2013/03), with the end conditions added. The high-pass
 // filter that may precede it is the acausal four-pole Butterworth filter, with
 // pads of zeros after Boore (Bull. Seism. Soc. Am. 95, 2005). The pads are cut
-// off afterwards, what this does to the end of the motion is left to p.
+// off afterwards, their effect on the end of the motion is removed by p.
 
 namespace Voussoir
 {
@@ -95,7 +95,7 @@ namespace Voussoir
                      integrate);
 
       // Normal equations bordered by the two constraints. They are in units of
-      // the duration T, so that all entries have a like size.
+      // the duration T, so that all entries are of similar size.
       const double               T  = acceleration.time_step * (a.size() - 1.);
       const double               T2 = T * T;
       constexpr unsigned int     n  = n_coefficients;
@@ -159,14 +159,14 @@ namespace Voussoir
       prm,
       "Baseline correction",
       method,
-      "How the drift of the velocity and displacement is removed that small "
-      "errors of the recorded acceleration cause. polynomial: a polynomial of "
+      "Method that removes the drift of velocity and displacement due to "
+      "small errors of the recorded acceleration. polynomial: a polynomial of "
       "fourth degree is subtracted from the acceleration, so that the motion "
       "ends at rest where it began. high-pass: the same after a Butterworth "
       "filter without phase shift. none: the record as it is.");
     prm.add_parameter("Corner frequency",
                       corner_frequency,
-                      "Of the high-pass filter [Hz].",
+                      "Corner frequency of the high-pass filter [Hz].",
                       Double(0.01, 10.));
     prm.add_parameter("Taper",
                       taper,

@@ -21,32 +21,33 @@ namespace Voussoir
                "plateau from 0.1 s to the characteristic period and "
                "then decays. table: the entries Periods and "
                "Amplifications.");
-    prm.add_parameter("Maximum amplification",
-                      maximum_amplification,
-                      "Of the code's spectrum: spectral acceleration on the "
-                      "plateau over peak ground acceleration [-]; 2.5 for arch "
-                      "dams, 2.0 for gravity dams.",
-                      Double(1., 10.));
+    prm.add_parameter(
+      "Maximum amplification",
+      maximum_amplification,
+      "Spectral acceleration on the plateau of the code's spectrum over peak "
+      "ground acceleration [-]; 2.5 for arch dams, 2.0 for gravity dams.",
+      Double(1., 10.));
     prm.add_parameter("Characteristic period",
                       characteristic_period,
-                      "Of the code's spectrum: end of the plateau [s]; 0.2 to "
+                      "End of the plateau of the code's spectrum [s]; 0.2 to "
                       "0.3 on rock.",
                       Double(0.1, 2.));
-    prm.add_parameter("Decay exponent",
-                      decay_exponent,
-                      "Of the code's spectrum: it decays with the period to "
-                      "minus this power [-].",
-                      Double(0., 2.));
+    prm.add_parameter(
+      "Decay exponent",
+      decay_exponent,
+      "Exponent of the decay of the code's spectrum, period to minus this "
+      "power [-].",
+      Double(0., 2.));
     prm.add_parameter("Periods",
                       periods,
-                      "Of the table: natural periods [s], increasing.",
+                      "Natural periods of the table [s], increasing.",
                       List(Double(0.), 2));
-    prm.add_parameter("Amplifications",
-                      amplifications,
-                      "Of the table: spectral acceleration at these periods "
-                      "over peak ground acceleration [-]; linear in between, "
-                      "constant outside.",
-                      List(Double(1e-3), 2));
+    prm.add_parameter(
+      "Amplifications",
+      amplifications,
+      "Spectral acceleration of the table at these periods over peak ground "
+      "acceleration [-]; linear in between, constant outside.",
+      List(Double(1e-3), 2));
   }
 
 

@@ -20,7 +20,8 @@
 // once (Lilhanand and Tseng 1988; wavelet and its width after Al Atik and
 // Abrahamson, Earthquake Spectra 26, 2010). As peaks move, this is repeated.
 // The wavelets hold enough cycles to leave velocity and displacement at rest;
-// what the start of the record cuts off is left to the baseline correction.
+// parts before the start of the record are cut off, and the baseline correction
+// compensates for that.
 
 namespace Voussoir
 {
@@ -222,16 +223,16 @@ namespace Voussoir
       "How records are fitted to a target spectrum, which is the one of "
       "section \"Ground motion/Spectrum\" (Shape to Amplifications, Damping "
       "ratio) times the Peak acceleration of the component. each component: by "
-      "wavelets at the times of the peak responses, after a factor. one factor: "
-      "all components by the same factor, so that their shapes and ratios stay. "
-      "none: a record is scaled to the Peak acceleration only.");
+      "wavelets at the times of the peak responses, after a factor. one "
+      "factor: all components by the same factor, so that their shapes and "
+      "ratios stay. none: a record is scaled to the Peak acceleration only.");
     prm.add_parameter("Shortest period",
                       shortest_period,
-                      "Of the oscillators whose responses are fitted [s].",
+                      "Shortest natural period whose response is fitted [s].",
                       Double(0.01));
     prm.add_parameter("Longest period",
                       longest_period,
-                      "Of the oscillators whose responses are fitted [s].",
+                      "Longest natural period whose response is fitted [s].",
                       Double(0.01, 20.));
   }
 

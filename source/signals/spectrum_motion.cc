@@ -59,13 +59,14 @@ namespace Voussoir
                       Double(4., 200.));
     prm.add_parameter("Time step",
                       time_step,
-                      "Between the samples of the motion [s].",
+                      "Time step of the samples of the motion [s].",
                       Double(0.001, 0.02));
-    prm.add_parameter("Rise time",
-                      rise_time,
-                      "Time in which the shaking grows to its full intensity, "
-                      "with the square of time [s].",
-                      Double(0.));
+    prm.add_parameter(
+      "Rise time",
+      rise_time,
+      "Time in which the motion grows to its full intensity, with the square "
+      "of time [s].",
+      Double(0.));
     prm.add_parameter("Plateau duration",
                       plateau_duration,
                       "Time of full intensity after the rise [s].",
@@ -120,7 +121,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Intensity of the shaking over time, at most 1. */
+    /** Intensity of the motion over time, at most 1. */
     std::vector<double>
     envelope(const SpectrumMotion &parameters)
     {

@@ -176,7 +176,8 @@ namespace Voussoir
     if (!is_reproducible) // ends the run at the next line of the energy balance
       state.velocity = std::numeric_limits<double>::quiet_NaN();
 
-    // (M + M_a + dt/2 C) v+ = ... + dt (F_n - K_b u_n) where nodes have such
+    // (M + M_a + dt/2 C) v+ = ... + dt (F_n - K_b u_n) at nodes with these
+    // terms
     nodal_update.correct(state, forces);
     state.time = ++state.step * time_step;
 

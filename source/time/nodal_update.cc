@@ -7,8 +7,8 @@ namespace Voussoir
 
   namespace
   {
-    // The water that moves with the dam is mass of the modes, and damped as
-    // such.
+    // The added mass of water is part of the mass of the modes, and damped
+    // likewise.
     NodalTerms::Matrix
     damping_at(const NodalTerms  &terms,
                const unsigned int slot,
@@ -107,7 +107,7 @@ namespace Voussoir
         const Tensor<1, 3> &last     = last_velocity[slot];
         const auto         &dashpots = terms.dashpots[slot];
         const auto         &water    = terms.added_mass[slot];
-        // what drives the added mass is the ground under a rigid base
+        // the added mass is driven by the motion of a rigid base
         applied[slot] = forces.of_slot(slot) - water * base;
         Tensor<1, 3> momentum =
           water * last +
@@ -129,7 +129,7 @@ namespace Voussoir
         state.accounts.loss_by_mass +=
           time_step * mass_coefficient *
           (mean * (water * leap_frog.damped(last, next)));
-        // the sweep counted these on the motion without terms
+        // the sweep has added these for the motion without terms
         const Tensor<1, 3> swept        = node_value(state.velocity, node);
         const Tensor<1, 3> damped       = leap_frog.damped(last, next),
                            damped_swept = leap_frog.damped(last, swept);

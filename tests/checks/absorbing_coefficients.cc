@@ -160,9 +160,11 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Frequencies", frequencies, "To look at [Hz].");
+        prm.add_parameter("Frequencies",
+                          frequencies,
+                          "Frequencies of the comparison [Hz].");
         prm.add_parameter("Tolerance", tolerance, "On |R| itself.");
-        prm.add_parameter("Largest", largest, "What |R| may be at most.");
+        prm.add_parameter("Largest", largest, "Upper bound of |R|.");
       }
 
       void

@@ -158,7 +158,7 @@ namespace Voussoir
         return result;
       }
 
-      /** Of the joints in plan. */
+      /** Joints in plan. */
       static double
       largest_bend(const CoarseMesh &mesh)
       {

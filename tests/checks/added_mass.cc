@@ -19,9 +19,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Depth", depth, "Of the water [m].");
-        prm.add_parameter("Width", width, "Of the wall [m].");
-        prm.add_parameter("Mass", mass, "Of the block [kg].");
+        prm.add_parameter("Depth", depth, "Depth of the water [m].");
+        prm.add_parameter("Width", width, "Width of the wall [m].");
+        prm.add_parameter("Mass", mass, "Mass of the block [kg].");
         prm.add_parameter("Force", force, "On the block [N].");
         prm.add_parameter("Tolerance", tolerance, "On the resultant.");
       }

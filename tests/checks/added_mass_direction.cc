@@ -136,7 +136,7 @@ namespace Voussoir
       }
 
 
-      /** In plan across the face: the way that the water pushes on it. */
+      /** Horizontal normal of the face: the direction of the water pressure. */
       static Tensor<1, 3>
       river_before(const Tensor<1, 3> &n)
       {
@@ -216,7 +216,7 @@ namespace Voussoir
         verdicts.below(name + ": nodes against m n n^T",
                        difference / largest,
                        1e-12);
-        // the root at the surface is what the sum over nodes misses
+        // the sum over nodes misses the root at the surface
         verdicts.near(name + ": trace over 7/12 rho H^2 b",
                       sum / (7. / 12. * density * level * level * length *
                              direction.norm()),
@@ -225,7 +225,7 @@ namespace Voussoir
       }
 
 
-      /** On an upright face that looks along x, so does the river. */
+      /** With an upright face that is normal to x the river is along x. */
       static void
       across(const ParameterFile &file,
              const std::string   &option,

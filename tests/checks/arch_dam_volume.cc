@@ -28,9 +28,9 @@ namespace Voussoir
 
 
     /**
-     * What a mesh of an arch dam measures. Its faces are flat between the
-     * vertices, which lie on the dam's, so that what it lacks goes with the
-     * square of the cell size.
+     * Volume and length of a mesh of an arch dam. Its faces are flat between
+     * the vertices, which lie on the dam's, so that its error is proportional
+     * to the square of the cell size.
      */
     class MeasuredDam
     {
@@ -153,7 +153,9 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Cell sizes", sizes, "From coarse to fine [m].");
-        prm.add_parameter("Tolerance", tolerance, "Of the finest mesh.");
+        prm.add_parameter("Tolerance",
+                          tolerance,
+                          "Tolerance of the finest mesh.");
       }
 
       void

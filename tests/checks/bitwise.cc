@@ -12,7 +12,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Numbers by what they are and by a key that no partition changes. */
+    /** Numbers by name and by a key that does not depend on the partition. */
     using Content = std::map<std::string, std::map<std::uint64_t, std::string>>;
 
 
@@ -32,7 +32,7 @@ namespace Voussoir
     }
 
 
-    /** All that the next step goes by. */
+    /** All state that the next step depends on. */
     Content
     content_of(Simulation &simulation)
     {
@@ -74,7 +74,7 @@ namespace Voussoir
     /**
      * With reproducible sums all ranks together, with either partition, compute
      * bit for bit what one rank computes by itself, and without they do not:
-     * else this would show nothing.
+     * otherwise the comparison would prove nothing.
      */
     class Bitwise : public Check
     {
@@ -83,8 +83,10 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Tables", tables, "Files that must be the same.");
-        prm.add_parameter("Cracked points", cracked, "At least, at the end.");
-        prm.add_parameter("Slip", slip, "Of an interface, at least [m].");
+        prm.add_parameter("Cracked points",
+                          cracked,
+                          "Largest displacement, at least, at the end.");
+        prm.add_parameter("Slip", slip, "Slip of an interface, at least [m].");
       }
 
       void
@@ -149,7 +151,7 @@ namespace Voussoir
       }
 
     private:
-      /** Keeps what shows that joints and cracks take part. */
+      /** Stores numbers that show that joints and cracks take part. */
       void
       evaluate(const Run &run)
       {

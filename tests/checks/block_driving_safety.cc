@@ -10,10 +10,10 @@ namespace Voussoir
     /**
      * A rigid block on a level plane that moves by a_x = A s along it and by
      * a_z = r A s upwards, with s = sin(2 pi (t - 0.1 s)): its safety against
-     * sliding, as if it went with the base, is
+     * sliding, as if it moved with the base, is
      *   f (g + a_z) / |a_x| ,
      * which passes through one where s = f g / (A (1 - f r)), and is least at
-     * s = 1. Friction caps what the contact forces mobilise at one.
+     * s = 1. The mobilised ratio of the contact forces is at most one.
      */
     class BlockDrivingSafety : public Check
     {
@@ -110,8 +110,8 @@ namespace Voussoir
     };
 
     // Reference: closed form
-    const Registry<Check>::Add<BlockDrivingSafety> registered(
-      "block driving safety",
-      "A block on a shaken plane: what drives it over what holds it.");
+    const Registry<Check>::Add<BlockDrivingSafety>
+      registered("block driving safety",
+                 "A block on a shaken plane: driving force over resistance.");
   } // namespace
 } // namespace Voussoir

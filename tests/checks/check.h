@@ -8,9 +8,9 @@
 namespace Voussoir
 {
   /**
-   * The lines a test prints: one quantity each, with what it is compared with
-   * and a verdict. Values are rounded to four digits, so that the reference
-   * output holds on other processors.
+   * The lines a test prints: one quantity each, with its reference and a
+   * verdict. Values are rounded to four digits, so that the reference output
+   * holds on other processors.
    */
   class Verdicts
   {
@@ -38,13 +38,13 @@ namespace Voussoir
     void
     is_true(const std::string &name, const bool value);
 
-    /** A text beside what it must be. */
+    /** A text beside the expected one. */
     void
     same_text(const std::string &name,
               const std::string &text,
               const std::string &expected);
 
-    /** What the lines below are about; no verdict. */
+    /** A heading for the lines below; no verdict. */
     void
     heading(const std::string &text);
 
@@ -81,7 +81,7 @@ namespace Voussoir
   }
 
 
-  /** Zero for what is below; a NaN stays. */
+  /** Zero for a value below; a NaN stays. */
   inline double
   positive_part(const double value)
   {

@@ -96,7 +96,7 @@ namespace Voussoir
     }
 
 
-    /** Base class: what the laws have in common. */
+    /** Base class: common part of the laws. */
     class LayerCheck : public Check
     {
     protected:
@@ -133,7 +133,7 @@ namespace Voussoir
         prm.add_parameter("Pressure", pressure, "In the shear test [Pa].");
         prm.add_parameter("Modulus over height",
                           stiffness,
-                          "Of the layer [Pa/m].");
+                          "Modulus over height of the layer [Pa/m].");
       }
 
       void
@@ -207,7 +207,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Way", way, "Of the base, away and along [m].");
+        prm.add_parameter("Way", way, "Way of the base, away and along [m].");
       }
 
       void
@@ -259,10 +259,10 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Way", way, "Of the base [m].");
+        prm.add_parameter("Way", way, "Way of the base [m].");
         prm.add_parameter("Modulus over height",
                           stiffness,
-                          "Of the layer [Pa/m].");
+                          "Modulus over height of the layer [Pa/m].");
       }
 
       void

@@ -106,8 +106,8 @@ namespace Voussoir
     }
 
 
-    /** What is exact in a cluster makes several points reach a limit at once,
-     *  and motions that no force has to resist. */
+    /** Exact symmetry of a cluster makes several points reach a limit at once,
+     *  and motions that no force resists. */
     struct Cluster
     {
       bool                      exact;
@@ -188,8 +188,8 @@ namespace Voussoir
         inverse_mass.resize(8);
       }
 
-      /** A node on planes of fixed ones, which may hold it more often than it
-       *  can move. */
+      /** A node on planes of fixed ones, which may constrain it by more points
+       *  than it has degrees of freedom. */
       void
       add_wedge(Random &random)
       {
@@ -287,7 +287,7 @@ namespace Voussoir
     }
 
 
-    /** The law of a point, from its strength and what was before the step. */
+    /** The law of a point, from its strength and its state before the step. */
     struct Law
     {
       double tension, bond, cohesion, friction, opening;
@@ -311,7 +311,7 @@ namespace Voussoir
         return opening > 0. ? 0. : -tension;
       }
 
-      /** How far opening and normal force are from the law's line. */
+      /** Distance of opening and normal force from the law's line. */
       double
       normal_violation(const double gap,
                        const double force,
@@ -338,9 +338,9 @@ namespace Voussoir
         return nearest;
       }
 
-      /** How far slip and shear are from the law: shear against the slip at
+      /** Distance of slip and shear from the law: shear against the slip at
        *  its limit, or below it and no slip. Where a point opens, its cohesion
-       *  goes from all to none. */
+       *  falls from its full value to zero. */
       double
       shear_violation(const Tensor<1, 3> &gap,
                       const Tensor<1, 3> &force,
@@ -402,8 +402,8 @@ namespace Voussoir
       }
 
     private:
-      /** A node between two walls that leave it no room; how many clusters are
-       *  said to be unsolved. */
+      /** A node between two walls whose distance is negative; number of
+       *  clusters that are reported as unsolved. */
       static unsigned long long
       squeeze()
       {
@@ -432,7 +432,7 @@ namespace Voussoir
         return solver.solve(contact, displacement, force).unsolved;
       }
 
-      /** What is worst over several steps of many clusters. */
+      /** Largest errors over several steps of many clusters. */
       struct Worst
       {
         double       motion = 0., law = 0.;
@@ -461,7 +461,7 @@ namespace Voussoir
         const double size = random.one_in(8) ? 1e-6 : 1.;
         for (unsigned int step = 0; step < 3; ++step)
           {
-            // what is fixed does not move
+            // fixed nodes do not move
             for (unsigned int i = 0; i < n_nodes; ++i)
               displacement[i] +=
                 size *
@@ -525,10 +525,10 @@ namespace Voussoir
             keep_largest(violation, positive_part(-gap[0]) / motion_size);
             const Tensor<2, 3> sum = cluster.inverse_mass[point.first] +
                                      cluster.inverse_mass[point.second];
-            if (sum.norm() == 0.) // forces between fixed nodes do nothing
+            if (sum.norm() == 0.) // forces between fixed nodes have no effect
               continue;
             const Law law(contact, before[k]);
-            // nor does one across a gap whose nodes are fixed
+            // nor has a force across a gap whose nodes are fixed
             if (point.frame[0] * (sum * point.frame[0]) > 1e-12 * compliance)
               keep_largest(violation,
                            law.normal_violation(

@@ -27,10 +27,11 @@ namespace Voussoir
         prm.add_parameter("Section", section, "Width, height [m].");
         prm.declare_entry("Pressure", "1e6", Patterns::Double(), "[Pa].");
         prm.add_parameter("Traction", traction, "At its end [Pa].");
-        prm.add_parameter("Duration",
-                          duration,
-                          "Of each of the three ways of the load [s]; 0 for "
-                          "static stages.");
+        prm.add_parameter(
+          "Duration",
+          duration,
+          "Duration of each of the three ways of the load [s]; 0 for "
+          "static stages.");
         prm.declare_entry("Stages",
                           "",
                           Patterns::Anything(),
@@ -41,7 +42,7 @@ namespace Voussoir
           settings,
           "Entries that are changed, each time after a name, as "
           "in \"name: entry = value & entry = value | ...\".");
-        prm.add_parameter("Tolerance", tolerance, "Of the slip.");
+        prm.add_parameter("Tolerance", tolerance, "Tolerance of the slip.");
       }
 
       void
@@ -86,7 +87,7 @@ namespace Voussoir
                        section[0] * section[1] *
                        std::stod(file.given("Materials/stone/Young's modulus")),
                      force = traction * section[0] * section[1];
-        // what a change of the force adds
+        // increment by a change of the force
         const auto change = [&](const double by, const double d) {
           const double size = std::abs(by);
           return Slip{by * size / (2. * d * stiffness * resistance),

@@ -21,7 +21,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Height", height, "Of the layer [m].");
+        prm.add_parameter("Height", height, "Height of the layer [m].");
         prm.add_parameter("Tractions", tractions, "After the stages [Pa].");
         prm.add_parameter("Cohesion", cohesion, "Whole and broken [Pa].");
         prm.add_parameter("Friction", friction, "Whole and broken.");

@@ -19,7 +19,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Length", length, "Of a bar [m].");
+        prm.add_parameter("Length", length, "Length of a bar [m].");
         prm.add_parameter("Contact at", contact_at, "Elevation [m].");
         prm.add_parameter("Wall", wall, "The lower bar is fixed.");
       }

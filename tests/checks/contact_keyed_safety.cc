@@ -10,9 +10,9 @@ namespace Voussoir
   namespace
   {
     /**
-     * Keys hold a block on an incline on which it would slide: the interface
+     * Keys prevent a block from sliding on an incline: the interface
      * resists more shear than friction could, and has no sliding safety.
-     * Without keys it has one, on a slope that it stands on.
+     * Without keys it has one, on a slope on which it does not slide.
      */
     class KeyedSafety : public Check
     {
@@ -20,7 +20,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Weight", weight, "Of the block [N].");
+        prm.add_parameter("Weight", weight, "Weight of the block [N].");
         prm.add_parameter("Slopes",
                           slopes,
                           "Tangent over the friction coefficient, with keys "
@@ -115,7 +115,7 @@ namespace Voussoir
         prm.set("Blocks", "block: plane");
         observer->check(model);
         observer->begin(model);
-        // two looks, so that time could pass at a safety below one
+        // two samples, so that time could pass at a safety below one
         observer->observe(simulation->run.state);
         State later = simulation->run.state;
         later.time  = 1.;
@@ -143,6 +143,6 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<KeyedSafety>
-      registered("keyed safety", "No sliding safety of what keys hold.");
+      registered("keyed safety", "No sliding safety where keys prevent slip.");
   } // namespace
 } // namespace Voussoir

@@ -20,8 +20,8 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Laws", laws, "Of the joint.");
-        prm.add_parameter("Length", length, "Of the bar [m].");
+        prm.add_parameter("Laws", laws, "Laws of the joint.");
+        prm.add_parameter("Length", length, "Length of the bar [m].");
       }
 
       void

@@ -11,7 +11,7 @@ namespace Voussoir
   {
     /**
      * A box of 4 x 4 x 4 cells, cut by up to three planes through its centre:
-     * vertices, pairs, areas, normals, and what cannot be an interface.
+     * vertices, pairs, areas, normals, and sets that cannot be an interface.
      */
     class ContactMeshBox : public Check
     {

@@ -10,7 +10,7 @@ namespace Voussoir
   {
     /**
      * Newmark's block: a stiff block under its weight on a base that moves with
-     * A sin(wt), by choice pushed by a steady force along it or shaken up and
+     * A sin(wt), optionally pushed by a steady force along it or shaken up and
      * down at the same time, against the motion of a point mass with dry
      * friction f m (g + a_v), and with cohesion that breaks.
      */

@@ -16,7 +16,7 @@ namespace Voussoir
      * largest angle of the motion. An impact costs energy and never gives any:
      * Housner's, on the other edge alone, leaves r = 1 - 3/2 b^2 / (b^2 + h^2)
      * of the angular velocity. An elastic block keeps more of it, or less, as
-     * waves in it come and go.
+     * waves in it interfere.
      */
     class Rocking : public Check
     {
@@ -25,7 +25,7 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Width", width, "[m].");
-        prm.add_parameter("Height", height, "Of the block [m].");
+        prm.add_parameter("Height", height, "Height of the block [m].");
         prm.add_parameter("Base", base, "Elevation of the joint [m].");
         prm.add_parameter("Angular velocity", rate, "At the start [1/s].");
         prm.add_parameter("Ways", ways, "From impact to impact, to compare.");
@@ -83,7 +83,8 @@ namespace Voussoir
                       1e3 * 0.5 * rate * rate * inertia /
                         (0.5 * gravity * width),
                       0.03);
-        // a way takes as long as the angular velocity at its beginning is large
+        // the duration of a half cycle is proportional to the angular velocity
+        // at its beginning
         if (on_edges && duration.size() == ways)
           verdicts.near("angular velocity after an impact over that before",
                         std::pow(duration.back() / duration.front(),

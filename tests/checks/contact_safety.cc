@@ -21,8 +21,8 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Weight", weight, "Of the block [N].");
-        prm.add_parameter("Area", area, "Of its base [m2].");
+        prm.add_parameter("Weight", weight, "Weight of the block [N].");
+        prm.add_parameter("Area", area, "Area of its base [m2].");
       }
 
       void

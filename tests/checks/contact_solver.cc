@@ -120,7 +120,7 @@ namespace Voussoir
     };
 
 
-    /** How far a solution is from the law of contact, over the size of the
+    /** Distance of a solution from the law of contact, over the size of the
      *  predicted motion or of the forces. */
     double
     violation(const ContactPoints             &contact,
@@ -302,7 +302,7 @@ namespace Voussoir
         const Strength smooth({0., 0., 0., 0.});
         double         difference = 0., residual = 0.;
         unsigned int   closed = 0;
-        // trees and rings of at most as many points as the nodes can bear
+        // trees and rings of points whose constraints are linearly independent
         for (unsigned int trial = 0; trial < 200; ++trial)
           {
             const unsigned int n_nodes = 2 + trial % 7;
@@ -363,9 +363,9 @@ namespace Voussoir
           }
       }
 
-      /** A node on two or three planes of fixed nodes, which more points hold
-       *  than it can move: from sliding along a line to forces that are not
-       *  unique. */
+      /** A node on two or three planes of fixed nodes, which is constrained by
+       *  more points than it has degrees of freedom: from sliding along a line
+       *  to forces that are not unique. */
       static void
       between_fixed_nodes(Verdicts &verdicts)
       {
@@ -437,7 +437,7 @@ namespace Voussoir
         worst.report("blocks on a base: ", verdicts);
       }
 
-      /** Friction that follows the pressure is next to none long after a point
+      /** Friction that follows the pressure is nearly none long after a point
        *  has opened. */
       static void
       friction_that_fades(Verdicts &verdicts)
@@ -492,10 +492,10 @@ namespace Voussoir
         return difference < 1e-9;
       }
 
-      /** What is worst over several steps of many clusters. Each step is also
-       *  solved from forces a thousand times as large. Friction may then hold
-       *  what it does not hold otherwise; but where the motion is the same,
-       *  nothing of these forces may stay. */
+      /** Largest errors over several steps of many clusters. Each step is also
+       *  solved from forces a thousand times as large. Friction may then
+       *  prevent a slip that it does not prevent otherwise; but where the
+       *  motion is the same, the forces must not depend on their start. */
       struct Worst
       {
         double       penetration = 0., run_away = 0.;

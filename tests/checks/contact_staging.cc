@@ -21,7 +21,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Length", length, "Of a block along the row [m].");
+        prm.add_parameter("Length",
+                          length,
+                          "Length of a block along the row [m].");
         prm.add_parameter("Height", height, "[m].");
       }
 
@@ -95,8 +97,8 @@ namespace Voussoir
 
     /**
      * Blocks between rigid walls that slide on their base: their weight makes
-     * them wider. Joined from the start they press against each other with
-     * nu rho g H^2 / 2 per width, standing free they do not; pressed from both
+     * them wider. Joined from the start they press against each other with nu
+     * rho g H^2 / 2 per width, free-standing they do not; pressed from both
      * sides with q after that, they do with nu q H. All stresses are those of
      * plane sections.
      */
@@ -177,8 +179,8 @@ namespace Voussoir
                          1e-9);
 
           // The gap begins where the blocks were when they met; away from
-          // the base all of them together grow by nu sigma L / E each. Where
-          // they stand between the walls nothing says.
+          // the base all of them together grow by nu sigma L / E each. Their
+          // position between the walls is indeterminate.
           const unsigned int n_surfaces =
             simulation->run.contact->surface_names().size();
           std::vector<double> overlap(n_surfaces), points(n_surfaces);

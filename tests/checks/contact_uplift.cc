@@ -19,8 +19,8 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Length", length, "From heel to toe [m].");
-        prm.add_parameter("Width", width, "Of the block [m].");
-        prm.add_parameter("Weight", weight, "Of the block [N].");
+        prm.add_parameter("Width", width, "Width of the block [m].");
+        prm.add_parameter("Weight", weight, "Weight of the block [N].");
         prm.add_parameter("Heads", heads, "Heel, toe [m].");
         prm.add_parameter("Drains", drains, "Position, factor.");
       }
@@ -120,7 +120,7 @@ namespace Voussoir
 
     /**
      * A block that the water in its joint lifts, unless that on its top presses
-     * it down: the uplift must not be there before the reservoir is.
+     * it down: the uplift must not act before the reservoir.
      */
     class UpliftByStage : public Check
     {
@@ -128,8 +128,8 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Area", area, "Of the joint [m2].");
-        prm.add_parameter("Weight", weight, "Of the block [N].");
+        prm.add_parameter("Area", area, "Area of the joint [m2].");
+        prm.add_parameter("Weight", weight, "Weight of the block [N].");
         prm.add_parameter("Heads", heads, "On the top, in the joint [m].");
       }
 

@@ -19,8 +19,10 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Left dip", left, "Of the left plane [degrees].");
-        prm.add_parameter("Right dip", right, "Of the right plane [degrees].");
+        prm.add_parameter("Left dip", left, "Dip of the left plane [degrees].");
+        prm.add_parameter("Right dip",
+                          right,
+                          "Dip of the right plane [degrees].");
       }
 
       void
@@ -110,7 +112,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Plunge", plunge, "Of the line [degrees].");
+        prm.add_parameter("Plunge", plunge, "Plunge of the line [degrees].");
         prm.add_parameter("Friction", friction, "Left, right.");
         prm.add_parameter("Cohesion", cohesion, "Left, right [Pa].");
       }
@@ -216,8 +218,8 @@ namespace Voussoir
         verdicts.below("motion while the load leaves a safety of 1.05 [mm]",
                        1e3 * before,
                        0.05);
-        // Where points stick under the weight is not unique, and on other ranks
-        // other by some thousandths of the forces.
+        // The points that stick under the weight are not unique, and on other
+        // numbers of ranks their forces differ by some thousandths.
         const auto off = [&](const std::string &name,
                              const double       value,
                              const double       reference,

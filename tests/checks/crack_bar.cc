@@ -10,8 +10,9 @@ namespace Voussoir
   namespace
   {
     /**
-     * A bar along z whose weak cells crack: as many layers of cells as should,
-     * for the energy of as many cracks, while cracks that shut make no energy.
+     * A bar along z whose weak cells crack: the expected number of layers of
+     * cells, for the energy of as many cracks, while cracks that close gain no
+     * energy.
      */
     class CrackBar : public Check
     {
@@ -22,7 +23,7 @@ namespace Voussoir
         prm.add_parameter("Cracks", cracks, "Layers that crack.");
         prm.add_parameter("Crack energy",
                           crack_energy,
-                          "What one crack takes [J]; 0: not compared.");
+                          "Energy of one crack [J]; 0: not compared.");
         prm.add_parameter("Tolerance", tolerance, "Of that energy.");
       }
 

@@ -8,7 +8,7 @@ namespace Voussoir
   {
     /**
      * A damped bar is pulled apart: no energy jumps as its points leave the
-     * elastic range, none comes from damping, and the run goes on to its end.
+     * elastic range, none comes from damping, and the run continues to its end.
      */
     class CrackBegins : public Check
     {

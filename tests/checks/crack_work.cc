@@ -11,7 +11,7 @@ namespace Voussoir
     /**
      * A bar along z with a weak layer is pulled apart slowly, without damping,
      * between linear elastic parts that show its traction by their elongation.
-     * What the law says that it loses is the work of the traction on the
+     * The loss that the law reports is the work of the traction on the
      * opening of the layer.
      */
     class CrackWork : public Check
@@ -23,7 +23,7 @@ namespace Voussoir
         prm.add_parameter("Planes",
                           planes,
                           "Ends of an elastic part and of the layer [m].");
-        prm.add_parameter("Area", area, "Of the bar [m2].");
+        prm.add_parameter("Area", area, "Area of the bar [m2].");
         prm.add_parameter("Tolerances", tolerances, "For each law.");
       }
 

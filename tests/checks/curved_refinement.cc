@@ -21,7 +21,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Tolerance", tolerance, "Of the dam's volume.");
+        prm.add_parameter("Tolerance",
+                          tolerance,
+                          "Tolerance of the dam's volume.");
       }
 
       void
@@ -71,9 +73,10 @@ namespace Voussoir
         verdicts.below("from its crest [m]", largest(of_crest), 1e-9);
         // its elevation is found to 1e-9 of the dam's height
         verdicts.below("from the canyon [m]", largest(of_canyon), 1e-6);
-        verdicts.below("hanging nodes from the middle of what they hang on [m]",
-                       largest(of_hanging),
-                       1e-9);
+        verdicts.below(
+          "hanging nodes from the middle of their edge or face [m]",
+          largest(of_hanging),
+          1e-9);
 
         verdicts.near(
           "volume", volume(grid), CylinderDam::volume(), tolerance, "m3");

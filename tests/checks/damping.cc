@@ -18,7 +18,9 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Frequencies", frequencies, "Undamped [Hz].");
-        prm.add_parameter("Ratios", ratios, "Of the free decay [%].");
+        prm.add_parameter("Ratios",
+                          ratios,
+                          "Damping ratios of the free decay [%].");
         prm.add_parameter("Decays", decays, "Their frequencies [Hz].");
       }
 
@@ -77,7 +79,7 @@ namespace Voussoir
                 a = b;
                 b = c;
               }
-            // the first peak still feels the start of the memory
+            // the first peak is still influenced by the start of the filters
             const double decrement =
               std::log(peaks[1] / peaks[6]) / (5. * 2. * numbers::PI);
             const double period = (times[6] - times[1]) / 5.;

@@ -8,8 +8,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * A wall with added mass that is let go in one of its natural modes, those
-     * that Rayleigh damping goes by: with C = alpha (M + M_a) + beta K it
+     * A wall with added mass that is let go in one of the natural modes to
+     * which Rayleigh damping is fitted: with C = alpha (M + M_a) + beta K it
      * decays with the ratio that was asked for, in this mode alone.
      */
     class DampingWithWater : public Check

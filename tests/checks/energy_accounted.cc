@@ -8,14 +8,14 @@ namespace Voussoir
   namespace
   {
     /** The energy of a driven, damped, absorbing model, whose concrete may
-     * crack, balances. */
+     *  crack, balances. */
     class EnergyAccounted : public Check
     {
     public:
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Limit", limit, "Of the energy-balance error.");
+        prm.add_parameter("Limit", limit, "Limit of the energy-balance error.");
       }
 
       void
@@ -27,7 +27,7 @@ namespace Voussoir
         const auto simulation = make_simulation(*parameters, communicator);
         const bool cracks =
           simulation->run.equation.internal_force.has_memory();
-        double in_dampers = 0.; // what they lose, step by step
+        double in_dampers = 0.; // loss of the dampers, step by step
         march_with_energy(simulation->run, [&](const bool) {
           if (!cracks)
             in_dampers +=
@@ -64,7 +64,7 @@ namespace Voussoir
     private:
       double limit = 1e-6;
 
-      /** What the dampers of the cells and of the mass lose per time [W]. */
+      /** Power lost in the dampers of the cells and of the mass [W]. */
       static double
       loss_rate(const Simulation &simulation)
       {

@@ -14,9 +14,9 @@ namespace Voussoir
   namespace
   {
     /**
-     * The list of what an engineer may mistype: a line for each number that a
+     * The list of numbers that may be mistyped: a line for each number that a
      * class declares, with the values that are allowed or usual. A value far
-     * beyond is refused or said. An entry that has neither range is WRONG
+     * beyond is refused or warned of. An entry that has neither range is WRONG
      * unless the test names it as one that can have any value.
      */
     class EntryRanges : public Check

@@ -9,10 +9,10 @@ namespace Voussoir
   namespace
   {
     /**
-     * The numbers of the summary do not know how often lines are written: the
+     * The numbers of the summary do not depend on the interval of lines: the
      * largest motion of a block that moves by a (1 - cos(2 pi f t)) is 2 a,
-     * 2 pi f a and (2 pi f)^2 a at every interval, and what observers find of a
-     * case is the same at all intervals.
+     * 2 pi f a and (2 pi f)^2 a at every interval, and the results of observers
+     * are the same at all intervals.
      */
     class Extremes : public Check
     {
@@ -21,7 +21,9 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Amplitude", amplitude, "Half the distance [m].");
-        prm.add_parameter("Frequency", frequency, "Of the motion [Hz].");
+        prm.add_parameter("Frequency",
+                          frequency,
+                          "Frequency of the motion [Hz].");
         prm.add_parameter("Intervals", intervals, "Of lines [s].");
         prm.add_parameter("Observers", observers, "With such an interval.");
       }

@@ -19,16 +19,20 @@ namespace Voussoir
     const char *const too_large =
       "it would be larger than files may be here (ulimit -f)";
 
-    /** Lets files grow no further in a part of a run. */
+    /** Limits the size of files during a part of a run. */
     class FullDisk : public TestObserver
     {
     public:
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("From", from, "When it is full [s].");
-        prm.add_parameter("To", to, "When there is room again [s].");
-        prm.add_parameter("Size", size, "To which files may grow [bytes].");
+        prm.add_parameter("From",
+                          from,
+                          "Time from which the disk is full [s].");
+        prm.add_parameter("To",
+                          to,
+                          "Time from which there is space again [s].");
+        prm.add_parameter("Size", size, "Largest size of files [bytes].");
       }
 
       void
@@ -49,7 +53,7 @@ namespace Voussoir
 
     /**
      * A disk that is full for a while costs pictures of that time, and nothing
-     * else; one that stays full is said, and the run does not end well.
+     * else; one that stays full is reported, and the run ends with an error.
      */
     class FailedWrites : public Check
     {
@@ -88,7 +92,7 @@ namespace Voussoir
 
         const std::string rest =
           std::string(" (see the warnings) could not be written because ") +
-          too_large + "; see to it and run the case again.";
+          too_large + "; remove the cause and run the case again.";
         verdicts.same_text("with room", march("room", "9", "9"), "done");
         verdicts.same_text(
           "full for a while",
@@ -233,6 +237,6 @@ namespace Voussoir
 
     // Reference: ourselves
     const Registry<Check>::Add<FailedWrites>
-      registered("failed writes", "What becomes of results without room.");
+      registered("failed writes", "Results on a full disk.");
   } // namespace
 } // namespace Voussoir

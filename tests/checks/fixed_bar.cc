@@ -20,7 +20,7 @@ namespace Voussoir
      *
      * with t = ft (1 - w ft/(2 Gf)) (linear) or ft exp(-w ft/Gf) (exponential).
      * The layer of Lee and Fenves' law opens beside its plastic opening k by
-     * what its damage D = 1 - (t/ft)^q makes of the elastic strain,
+     * the elastic strain due to its damage D = 1 - (t/ft)^q,
      *
      *   w = k + l (sigma / (1 - D) - sigma)/(a E) ,   t = ft exp(-k ft/Gf) .
      *
@@ -42,8 +42,12 @@ namespace Voussoir
         prm.add_parameter("Layer", layer, "Its ends on z [m].");
         prm.add_parameter("Length", length, "L [m].");
         prm.add_parameter("Cooling", cooling, "In all [K].");
-        prm.add_parameter("Static factors", factors, "a, one after the other.");
-        prm.add_parameter("Tolerance", tolerance, "Of ft, 2 Gf/ft and Gf.");
+        prm.add_parameter("Static factors",
+                          factors,
+                          "Static factors a, one after the other.");
+        prm.add_parameter("Tolerance",
+                          tolerance,
+                          "Tolerance of ft, 2 Gf/ft and Gf.");
       }
 
       void
@@ -127,7 +131,7 @@ namespace Voussoir
                        });
         reported = Utilities::MPI::max(
           reported, simulation.model.solid.discretization.grid.communicator());
-        // of lee-fenves what damage opens follows the modulus
+        // with lee-fenves the opening by damage follows the modulus
         if (curve != "lee-fenves" &&
             tells_of_cracks(*simulation.model.solid.materials[1]))
           verdicts.near(name + "opening reported",
@@ -187,7 +191,7 @@ namespace Voussoir
                            (std::pow(share, -ratio) - 1.);
       }
 
-      /** What the crack has taken then, per area. */
+      /** Energy that the crack has taken then, per area. */
       double
       energy_at(const double share, const double modulus) const
       {

@@ -15,9 +15,8 @@ namespace Voussoir
      * where the ground rises with unit acceleration, the pressure of the water
      * between walls that all rise is p = rho (H - z), whatever their shape. The
      * modes take part by phi^T M r + int p phi . n dA , n out of the dam, as
-     * inertia and this pressure push it together. The
-     * water pushes the floor's motion into the modes, which no motion of the
-     * dam alone does.
+     * inertia and this pressure push it together. By the water the motion of
+     * the floor excites the modes, unlike any motion of the dam alone.
      */
     class FixedWall : public Check
     {
@@ -25,7 +24,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Level", level, "Of the water [m].");
+        prm.add_parameter("Level", level, "Level of the water [m].");
         prm.add_parameter("Face sets", faces, "Wet faces of the dam.");
         prm.add_parameter("Tolerance", tolerance, "Relative.");
       }

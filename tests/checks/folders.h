@@ -10,7 +10,7 @@
 
 namespace Voussoir
 {
-  /** Does something to files on the first rank, while the others wait. */
+  /** Runs an action on files on the first rank, while the others wait. */
   inline void
   on_first(const MPI_Comm communicator, const std::function<void()> &action)
   {
@@ -20,7 +20,7 @@ namespace Voussoir
   }
 
 
-  /** Removes what an earlier run of the test left in these folders. */
+  /** Removes the files of an earlier run of the test in these folders. */
   inline void
   remove_folders(const std::vector<std::string> &folders,
                  const MPI_Comm                  communicator)

@@ -7,8 +7,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * The static stages of a case are found by multigrid, and
-     * the supports bring what the loads are.
+     * The static stages of a case are found by multigrid, and the reactions
+     * equal the loads.
      */
     class FoundByMultigrid : public Check
     {

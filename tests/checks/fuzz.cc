@@ -26,7 +26,7 @@ namespace Voussoir
   {
     constexpr double longest_time = 5.; // for one input [s]
 
-    /** What is read, from which samples, and how. */
+    /** A format: its samples, and the function that reads it. */
     struct FuzzedFormat
     {
       std::vector<std::string>                 folders, endings;
@@ -269,8 +269,9 @@ namespace Voussoir
 
     /**
      * Damaged files are read or refused by a sentence, within seconds: none
-     * ends the program, hangs or throws anything else. A child reads them one
-     * by one, and where it ends another one goes on; the input is then kept.
+     * ends the program, hangs or throws anything else. A child process reads
+     * them one by one; if it ends early another one continues, and the input is
+     * kept.
      */
     class Fuzz : public Check
     {
@@ -317,7 +318,7 @@ namespace Voussoir
       }
 
     private:
-      /** Shared with the child. */
+      /** Shared with the child process. */
       struct Progress
       {
         std::atomic<unsigned int> number, n_refused;
@@ -325,8 +326,7 @@ namespace Voussoir
         char                      error[200];
       };
 
-      // How the child came to an end before the last input; empty if it did
-      // not.
+      // Why the child process ended before the last input; empty if it did not.
       std::string
       read_in_child(const FuzzedFormat        &format,
                     const std::vector<Sample> &samples)
@@ -362,7 +362,7 @@ namespace Voussoir
       }
 
 
-      // In the child, which this ends.
+      // In the child process, which ends here.
       [[noreturn]] void
       read_all(const FuzzedFormat &format, const std::vector<Sample> &samples)
       {

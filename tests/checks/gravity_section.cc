@@ -12,7 +12,7 @@ namespace Voussoir
      * A slice of 2 m: heel at y = 6, the upstream face upright above z = 60,
      * neck of 20 m at z = 70, crest of 10 m at z = 100, base of 80 m; water up
      * to the bend, from the heel to y = 56. All faces are plane, so that the
-     * mesh measures what the drawing does.
+     * mesh has the dimensions of the drawing.
      */
     class GravitySection : public Check
     {

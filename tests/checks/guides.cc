@@ -1,5 +1,5 @@
 // The pages that make a class from an empty file: their cases are run as a
-// reader would run them, and what comes out is compared.
+// reader would run them, and the results are compared.
 
 #include <voussoir/driver/command_line.h>
 
@@ -57,7 +57,7 @@ namespace Voussoir
       virtual void
       compare(const nlohmann::json &summary, Verdicts &verdicts) const = 0;
 
-      /** Makes what the case of the page needs beside itself. */
+      /** Makes the files that the case of the page needs. */
       virtual void
       prepare(const std::string & /*page*/, Verdicts & /*verdicts*/) const
       {}

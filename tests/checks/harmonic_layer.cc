@@ -43,8 +43,8 @@ namespace Voussoir
       {
         for (const double f : frequencies)
           {
-            // the last of the periods is steady: what was at the beginning has
-            // gone up and down the layer many times
+            // the last of the periods is steady: the initial wave has travelled
+            // up and down the layer many times
             const double begin = 10. / f + 3., end = begin + 2. / f;
             const auto   parameters = make_case(
               file.with({"Ground motion/Sine/Frequency=" + std::to_string(f),

@@ -30,8 +30,8 @@ namespace Voussoir
   relative_difference(Histories histories, const Histories &reference);
 
   /**
-   * Runs a simulation to its end time; @p after_step may look at the state, or
-   * change it, after each step.
+   * Runs a simulation to its end time; @p after_step may read or change the
+   * state after each step.
    */
   Histories
   run_and_record(Simulation                         &simulation,

@@ -10,7 +10,7 @@ namespace Voussoir
   namespace
   {
     /**
-     * A material of a quarter of its inertia swings twice as fast and weighs
+     * A material of a quarter of its inertia vibrates twice as fast and weighs
      * the same: a bar of n cells that hangs from its base, of which the lowest
      * circular frequency is 2 c/h sin(pi/4n).
      */
@@ -21,8 +21,8 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Cells", n, "Along the bar.");
-        prm.add_parameter("Volume", volume, "Of the bar [m3].");
-        prm.add_parameter("Length", length, "Of the bar [m].");
+        prm.add_parameter("Volume", volume, "Volume of the bar [m3].");
+        prm.add_parameter("Length", length, "Length of the bar [m].");
       }
 
       void

@@ -69,7 +69,7 @@ namespace Voussoir
           result.second->run.march();
           return result;
         };
-        // the wall time of a state that was taken is that of the one found
+        // the wall time of a kept state is that of its computation
         const auto seconds = [](const auto &simulation) {
           return simulation.second->static_state.summary.at("seconds")
             .template get<double>();

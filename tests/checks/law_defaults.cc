@@ -12,8 +12,9 @@ namespace Voussoir
 
   namespace
   {
-    /** A law with memory that has of LawDefaults all that it may: above all, no
-     *  yield_ratio. The energy norm of its stress stays at a limit. */
+    /** A law with internal variables that takes all defaults of LawDefaults:
+     *  above all, it has no yield_ratio. The energy norm of its stress stays at
+     *  a limit. */
     struct Plain : IsotropicElasticity
     {
       static constexpr unsigned int n_history = 1; // largest norm so far [Pa]
@@ -44,8 +45,7 @@ namespace Voussoir
     };
 
 
-    /** What must hold for all materials, for a law that leaves to the defaults
-     *  what it may. */
+    /** The tests of all materials for a law that takes all defaults. */
     class LawDefaultsCheck : public Check
     {
     public:
@@ -69,6 +69,6 @@ namespace Voussoir
 
     // Reference: ourselves
     const Registry<Check>::Add<LawDefaultsCheck>
-      registered("law defaults", "A law with nothing that it need not have.");
+      registered("law defaults", "A law with none of the optional members.");
   } // namespace
 } // namespace Voussoir

@@ -20,13 +20,15 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Thicknesses",
-                          thicknesses,
-                          "Of the layers, in the order of the materials [m].");
-        prm.add_parameter("Frequencies",
-                          frequencies,
-                          "Where to look at the amplification of S; that of P "
-                          "at cp/cs times these [Hz].");
+        prm.add_parameter(
+          "Thicknesses",
+          thicknesses,
+          "Thicknesses of the layers, in the order of the materials [m].");
+        prm.add_parameter(
+          "Frequencies",
+          frequencies,
+          "Frequencies at which the amplification of S is compared; that of P "
+          "at cp/cs times these [Hz].");
       }
 
       void

@@ -58,8 +58,8 @@ namespace Voussoir
     /**
      * Compares a motion of the surface with that of the outcrop, both sampled
      * at these times, at frequencies [Hz]. Both are weighted by exp(-8 t/T),
-     * which is a shift of the complex frequency: so what rings on after the
-     * end T is in neither.
+     * which is a shift of the complex frequency: so oscillations after the end
+     * T are in neither.
      */
     void
     compare(const std::string         &name,

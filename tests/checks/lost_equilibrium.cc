@@ -12,8 +12,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * A stage that has no equilibrium is given up by a sentence that names what
-     * moves; the state before it is left.
+     * A stage that has no equilibrium is given up by a sentence that names the
+     * moving parts; the state before it is written.
      */
     class LostStage : public Check
     {
@@ -21,9 +21,10 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Named",
-                          named,
-                          "What the sentence must hold, separated by commas.");
+        prm.add_parameter(
+          "Named",
+          named,
+          "Parts that the sentence must contain, separated by commas.");
       }
 
       void

@@ -17,7 +17,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Does harm to the results in the middle of a run. */
+    /** Damages the results in the middle of a run. */
     class Harm : public TestObserver
     {
     public:
@@ -78,8 +78,8 @@ namespace Voussoir
 
     /**
      * Results that are taken away during a run are not made anew without their
-     * beginning: the run says what is missing and does not end well. And no
-     * run goes on without them.
+     * beginning: the run names the missing files and ends with an error. And no
+     * run continues without them.
      */
     class LostFiles : public Check
     {
@@ -117,8 +117,8 @@ namespace Voussoir
           1,
           0.);
 
-        // going on from a checkpoint, whose size of each table counts, and
-        // which is a file
+        // restart from a checkpoint: it stores the size of each table, and must
+        // be a file
         const auto go_on = [&](const std::string           &name,
                                const std::function<void()> &change,
                                const std::string           &sentence) {
@@ -137,7 +137,7 @@ namespace Voussoir
                           checkpoints = "restart/checkpoint/step-00000000";
         const std::string since =
           " since the checkpoint \"" + checkpoints +
-          "2000.h5\" was written; put it back, or start the case afresh.";
+          "2000.h5\" was written; restore the file, or start the case anew.";
         go_on(
           "table removed",
           [&] { fs::remove(table); },
@@ -196,7 +196,7 @@ namespace Voussoir
         const auto lost = [](const std::string &files,
                              const std::string &reason) {
           return "Done, but \"" + files + " could not be written because " +
-                 reason + "; see to it and run the case again.";
+                 reason + "; remove the cause and run the case again.";
         };
         const std::string removed = "it was removed while the run went on";
         if (kind == "nothing")

@@ -92,7 +92,7 @@ namespace Voussoir
   bool
   Verdicts::any_wrong() const
   {
-    // what the others were given may be no number
+    // results of the other ranks may be NaN
     return Utilities::MPI::logical_or(speaks && !all_good, communicator);
   }
 

@@ -25,7 +25,7 @@ namespace Voussoir
     }
 
 
-    /** How a point softens on a path of uniaxial strain. */
+    /** Softening of a point on a path of uniaxial strain. */
     struct Softening
     {
       double peak   = 0.; // [Pa]
@@ -34,10 +34,10 @@ namespace Voussoir
     };
 
     /**
-     * @param sign   1: pulled, -1: pressed
-     * @param start  strain up to which it surely is not past the peak
-     * @param strain that the path ends at
-     * @param rest   share of the peak that the stress falls to
+     * @param sign   1: tension, -1: compression
+     * @param start  strain that is certainly before the peak
+     * @param strain at the end of the path
+     * @param rest   share of the peak to which the stress falls
      */
     Softening
     soften(const Material &material,

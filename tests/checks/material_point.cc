@@ -41,7 +41,7 @@ namespace Voussoir
         prm.add_parameter("Fracture energy", fracture_energy, "[N/m]");
         prm.add_parameter("Crushing strength",
                           strength_in_compression,
-                          "[Pa]; 0: not looked at");
+                          "[Pa]; 0: not compared");
         prm.add_parameter(
           "Openings",
           openings,

@@ -9,7 +9,7 @@ namespace Voussoir
   namespace
   {
     /**
-     * Damage that lags behind: under a constant rate of strain the equivalent
+     * Damage with a delay: under a constant rate of strain the equivalent
      * strain of a point without lateral contraction is
      *   x = e - T de/dt (1 - exp(-(t - t0)/T)) ,
      * t0 when it cracks, and with linear softening to zero at the strain w/l
@@ -62,6 +62,6 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<MaterialRate>
-      registered("material rate", "Concrete whose damage lags behind.");
+      registered("material rate", "Concrete with delayed damage.");
   } // namespace
 } // namespace Voussoir

@@ -82,8 +82,8 @@ namespace Voussoir
 
 
     /**
-     * What must hold for every class of materials, those of other authors too:
-     * with the default entries, each registered class goes through it.
+     * Properties of every class of materials, those of other authors too: with
+     * the default entries, each registered class is tested.
      */
     class Materials : public Check
     {
@@ -340,7 +340,7 @@ namespace Voussoir
 
 
       /** The internal force from points by themselves; of cells with one point,
-       *  which sees their mean strain, what it differs by from the elastic one.
+       *  which has their mean strain, the difference from the elastic force.
        */
       void
       respond_plainly(
@@ -424,6 +424,6 @@ namespace Voussoir
 
     // Reference: ourselves
     const Registry<Check>::Add<Materials>
-      registered("materials", "What must hold for all materials.");
+      registered("materials", "Properties of all materials.");
   } // namespace
 } // namespace Voussoir

@@ -8,9 +8,9 @@ namespace Voussoir
   {
     /**
      * A material that cracks on an elastic one, both with the same moduli. With
-     * one point where elastic, nodes inside each bear the forces that they bear
-     * if all cells are of their kind, and a constant strain makes no force
-     * inside, not between the two either.
+     * one point where elastic, nodes inside each have the same forces as if all
+     * cells were of their kind, and a constant strain gives no force inside,
+     * nor between the two.
      */
     class MixedPoints : public Check
     {
@@ -113,7 +113,7 @@ namespace Voussoir
             visit(discretization.node_positions[node], 3 * node + d);
       }
 
-      /** Force [N] of the laws from new memory. */
+      /** Force [N] of the laws from initial internal variables. */
       static Vector
       response(
         const Simulation                                    &simulation,

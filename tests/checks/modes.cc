@@ -8,7 +8,7 @@ namespace Voussoir
   namespace
   {
     /** Largest entry of Phi^T M Phi - I and of Phi^T K Phi / omega^2 - I, M
-     * with the added mass. */
+     *  with the added mass. */
     std::pair<double, double>
     orthogonality(const Simulation &simulation)
     {
@@ -85,7 +85,7 @@ namespace Voussoir
         verdicts.below("largest residual",
                        residual,
                        parameters->modes.tolerance);
-        // where sound travels in the water, its pressures belong to the modes
+        // with compressible water the modes include its pressures
         if (parameters->modes.water == WaterInModes::compressible)
           return;
         const auto [mass, stiffness] = orthogonality(*simulation);
@@ -268,7 +268,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Mass", dam_mass, "Of the dam [kg].");
+        prm.add_parameter("Mass", dam_mass, "Mass of the dam [kg].");
       }
 
     private:
@@ -280,7 +280,7 @@ namespace Voussoir
       registered_foundation("modes and foundation", "Rigid, massless, massed.");
 
 
-    /** Rayleigh damping has its ratio at the modes it is told. */
+    /** Rayleigh damping has its ratio at the modes that are named. */
     class DampingFromModes : public Check
     {
     public:

@@ -91,8 +91,8 @@ namespace Voussoir
 
     /**
      * A rod between two walls, cut in two unequal parts: modes along it after a
-     * weight has opened the cut, or closed it, or with the cut tied whatever it
-     * is.
+     * weight has opened the cut, or closed it, or with the cut tied in either
+     * state.
      */
     class OpenedModes : public Check
     {
@@ -100,7 +100,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Lengths", lengths, "Of the two parts [m].");
+        prm.add_parameter("Lengths", lengths, "Lengths of the two parts [m].");
         prm.add_parameter("Tolerance", tolerance, "Relative.");
       }
 

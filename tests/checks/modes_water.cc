@@ -10,7 +10,7 @@ namespace Voussoir
 
   namespace
   {
-    /** What incompressible water in a long channel adds to a rigid wall. */
+    /** Added mass of incompressible water in a long channel on a rigid wall. */
     class ModalWaterMass : public Check
     {
     public:

@@ -36,7 +36,7 @@ namespace Voussoir
     }
 
 
-    /** The headers of AT2 files, tables, and what is no complete record. */
+    /** The headers of AT2 files, tables, and incomplete records. */
     void
     check_records(const TimeSeries &elcentro, Verdicts &verdicts)
     {
@@ -234,8 +234,8 @@ namespace Voussoir
 
     /**
      * A layer on rock: a wave arrives after 20 steps, doubled, and every 26
-     * steps again, turned over and 0.4 times as large. Deconvolution finds what
-     * went in from what came out.
+     * steps again, turned over and 0.4 times as large. Deconvolution computes
+     * the input from the response.
      */
     void
     check_deconvolution(const TimeSeries &elcentro, Verdicts &verdicts)
@@ -254,7 +254,7 @@ namespace Voussoir
         excitation.values[i] = wavelet.acceleration(i * dt);
       const TimeSeries response{dt, layer(excitation.values)};
 
-      // the record without what lies above the frequencies asked for
+      // the record without frequencies above the given one
       const Tabulated table(
         {elcentro.time_step,
          BaselineCorrection().apply(elcentro).acceleration});
@@ -344,7 +344,7 @@ namespace Voussoir
     }
 
 
-    /** What the section "Ground motion" makes of a record. */
+    /** Treatment of a record by section "Ground motion". */
     void
     check_section(const std::string &record, Verdicts &verdicts)
     {

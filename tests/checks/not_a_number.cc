@@ -15,7 +15,7 @@ namespace Voussoir
   {
     const double nan = std::numeric_limits<double>::quiet_NaN();
 
-    /** What an action prints. */
+    /** The output of an action. */
     std::string
     printed(const std::function<void()> &action)
     {
@@ -77,7 +77,7 @@ namespace Voussoir
     };
 
 
-    /** The verdicts themselves: what is no number must never pass. */
+    /** The verdicts themselves: NaN must never pass. */
     class NotANumberCheck : public Check
     {
     public:
@@ -125,7 +125,7 @@ namespace Voussoir
         verdicts.is_true("keep_smallest keeps it", std::isnan(smallest));
         verdicts.is_true("positive_part keeps it",
                          std::isnan(positive_part(nan)));
-        // and they do what they are for
+        // and valid numbers pass
         largest = smallest = 0.;
         for (const double value : {1., 3., -2., 2.})
           {
@@ -228,7 +228,7 @@ namespace Voussoir
     };
 
     // Reference: closed form
-    const Registry<Check>::Add<NotANumberCheck>
-      registered("not a number", "What the verdicts say of NaN.");
+    const Registry<Check>::Add<NotANumberCheck> registered("not a number",
+                                                           "Verdicts on NaN.");
   } // namespace
 } // namespace Voussoir

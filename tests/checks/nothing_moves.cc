@@ -6,9 +6,9 @@ namespace Voussoir
 
   namespace
   {
-    /** A model that nothing moves: modes alone are computed without steps, and
-     *  steps alone are said to show nothing. What a run returns is what
-     *  summary.json has, and what is read from that. */
+    /** A model without excitation: modes alone are computed without steps, and
+     *  steps alone give a warning. The result of a run equals summary.json,
+     *  also when that is read again. */
     class NothingMoves : public Check
     {
     public:

@@ -11,9 +11,9 @@ namespace Voussoir
   {
     /**
      * A plane wave that meets the surface at an angle, against the closed form
-     * at points inside and at the surface. The closed form is what enters at
-     * the boundary; that it satisfies the equations inside and at the free
-     * surface is what the run shows.
+     * at points inside and at the surface. The closed form enters at the
+     * boundary; the run shows that it satisfies the equations inside and at the
+     * free surface.
      */
     class Oblique : public Check
     {

@@ -9,7 +9,7 @@
 
 namespace Voussoir
 {
-  /** An observer with some entries, and what it makes of some states. */
+  /** An observer with some entries, and its results for some states. */
   inline nlohmann::json
   observed(const std::string                        &name,
            const std::map<std::string, std::string> &entries,

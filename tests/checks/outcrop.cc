@@ -8,11 +8,11 @@ namespace Voussoir
   namespace
   {
     /**
-     * Where a motion is given: one for the free surface comes out there, after
-     * twice the travel time of an S wave (see `incident_for_surface`), in
-     * layers with damping; one for an outcrop is twice the incident wave. Both
-     * use the same column: that it is right, the surface over the outcrop shows
-     * against plane waves in closed form.
+     * The place of a given motion: one for the free surface is reproduced
+     * there, after twice the travel time of an S wave (see
+     * `incident_for_surface`), in layers with damping; one for an outcrop is
+     * twice the incident wave. Both use the same column, which is verified by
+     * the surface over the outcrop against plane waves in closed form.
      */
     class Outcrop : public Check
     {
@@ -25,13 +25,14 @@ namespace Voussoir
           uniform,
           "One undamped material: the surface then moves as the "
           "outcrop, later by the travel time.");
-        prm.add_parameter("Thicknesses",
-                          thicknesses,
-                          "Of the layers, in the order of the materials [m].");
+        prm.add_parameter(
+          "Thicknesses",
+          thicknesses,
+          "Thicknesses of the layers, in the order of the materials [m].");
         prm.add_parameter(
           "Frequencies",
           frequencies,
-          "Where to compare the surface with the outcrop [Hz].");
+          "Frequencies at which the surface is compared with the outcrop [Hz].");
       }
 
       void

@@ -137,7 +137,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Frequencies", frequencies, "Of the motion [Hz].");
+        prm.add_parameter("Frequencies",
+                          frequencies,
+                          "Frequencies of the motion [Hz].");
       }
 
       void

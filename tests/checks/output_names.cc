@@ -170,8 +170,8 @@ namespace Voussoir
 
 
     /**
-     * An observer that has seen a run, or a part of one, makes of another run
-     * what a new observer makes of it.
+     * An observer that has been used in a run, or a part of one, gives the same
+     * results of another run as a new observer.
      */
     class ObserversAgain : public Check
     {

@@ -29,8 +29,8 @@ namespace Voussoir
     }
 
 
-    /** The stress envelopes are the extremes over all looks of the principal
-     *  stresses, found here by deal.II's own means. */
+    /** The stress envelopes are the extremes over all samples of the principal
+     *  stresses, computed here by deal.II's own functions. */
     class StressEnvelopes : public Check
     {
     public:

@@ -25,7 +25,7 @@ namespace Voussoir
         line({1e300, 0., -1e-300}, "1e+300,0,-1e-300");
         line({1. / 3., 123456789.4, 1234567894.},
              "0.333333333,123456789,1.23456789e+09");
-        verdicts.is_true("what is no number shows",
+        verdicts.is_true("NaN is written as such",
                          csv_line({std::nan("")}).find("nan") !=
                            std::string::npos);
       }

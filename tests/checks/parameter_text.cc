@@ -97,7 +97,7 @@ namespace Voussoir
           {
             answer = error.what();
           }
-        // which is what a terminal may show
+        // which a terminal may show so
         for (char &c : answer)
           if (static_cast<unsigned char>(c) > '~')
             c = '?';

@@ -10,7 +10,7 @@ namespace Voussoir
 
   namespace
   {
-    /** What the program prints for some arguments. */
+    /** The output of the program for some arguments. */
     std::string
     printed(std::vector<std::string> arguments)
     {
@@ -27,7 +27,7 @@ namespace Voussoir
     }
 
 
-    /** What the program prints of a case can be read again and is the same
+    /** The printed parameters of a case can be read again and are the same
      *  case; every kind of class can be listed. */
     class Parameters : public Check
     {
@@ -81,7 +81,7 @@ namespace Voussoir
           verdicts.is_true("--list " + kind,
                            printed({"--list", kind}).find(": ") !=
                              std::string::npos);
-        verdicts.is_true("--help tells of every option",
+        verdicts.is_true("--help names every option",
                          printed({"--help"}).find("--restart") !=
                            std::string::npos);
         verdicts.is_true("--version", !printed({"--version"}).empty());

@@ -9,10 +9,10 @@ namespace Voussoir
   namespace
   {
     /**
-     * A cube of 4 x 4 x 4 cells dealt to eight ranks: each has an eighth.
+     * A cube of 4 x 4 x 4 cells distributed to eight ranks: each has an eighth.
      * Between two of them lie 12 faces of 4 nodes, 6 edges of 2 nodes at four
-     * ranks, and the middle at all; the first rank has 12 + 3 * 6 + 7 of what
-     * is exchanged.
+     * ranks, and the middle at all; the first rank exchanges 12 + 3 * 6 + 7 of
+     * these nodes.
      */
     class CountedPartition : public Check
     {
@@ -43,6 +43,6 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<CountedPartition>
-      registered("counted partition", "What partitions would exchange.");
+      registered("counted partition", "Exchange of partitions.");
   } // namespace
 } // namespace Voussoir

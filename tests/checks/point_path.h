@@ -25,11 +25,11 @@ namespace Voussoir
     evaluate(const Material &material, Verdicts &verdicts) const = 0;
   };
 
-  /** What is given of xx, yy, zz. */
+  /** Given components of xx, yy, zz. */
   using NormalControls = std::array<PointTest::Control, 3>;
 
   /** On to strains or stresses in equal steps, without shear stress; @p
-   * callback is called after each. */
+   *  callback is called after each. */
   inline void
   advance(
     PointTest                   &test,
@@ -55,7 +55,7 @@ namespace Voussoir
   }
 
   /** Calls @p callback with a point in cells of several sizes [m], and a text
-   * that says so. */
+   *  with the size. */
   inline void
   for_each_cell_size(
     const Material                                        &material,

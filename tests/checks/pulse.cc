@@ -8,10 +8,10 @@ namespace Voussoir
   namespace
   {
     /**
-     * A push p f'(t) on the surface z = 0 of a column sends down the pulse
+     * A pressure p f'(t) on the surface z = 0 of a column sends down the pulse
      * u = p / (rho c) f(t - |z|/c), f = T/4 (s (1 - s))^4 with s = t/T.
      *
-     * An S wave needs sides without vertical motion, which the check sees to.
+     * An S wave needs sides without vertical motion, which the check provides.
      */
     class Pulse : public Check
     {

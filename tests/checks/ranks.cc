@@ -22,11 +22,12 @@ namespace Voussoir
         prm.add_parameter("Points", points, "Points to compare.");
         prm.add_parameter("Tolerance",
                           tolerance,
-                          "Of the motion, over the largest.");
-        prm.add_parameter("Stress tolerance",
-                          stress_tolerance,
-                          "Of the largest principal stress in the centre of "
-                          "any cell at the end [Pa]; 0: not compared.");
+                          "Tolerance of the motion, over the largest.");
+        prm.add_parameter(
+          "Stress tolerance",
+          stress_tolerance,
+          "Tolerance of the largest principal stress in the centre of "
+          "any cell at the end [Pa]; 0: not compared.");
       }
 
       void

@@ -8,13 +8,13 @@ namespace Voussoir
   namespace
   {
     /**
-     * A pulse runs down a column and is thrown back by the springs of the
+     * A pulse travels down a column and is reflected by the springs of the
      * absorbing boundary: |R| = 1 / sqrt(1 + (2 w rho c / k)^2) for a spring k
      * per area beside a dashpot rho c, and nothing without springs.
      *
      * The column hangs from its surface at z = 0 and has one cell in x and y.
-     * An S wave in it needs sides without vertical motion, which the check sees
-     * to.
+     * An S wave in it needs sides without vertical motion, which the check
+     * provides.
      */
     class Reflection : public Check
     {
@@ -26,7 +26,9 @@ namespace Voussoir
                           wave,
                           "S in x, or P.",
                           Patterns::Selection("S|P"));
-        prm.add_parameter("Frequencies", frequencies, "To look at [Hz].");
+        prm.add_parameter("Frequencies",
+                          frequencies,
+                          "Frequencies of the comparison [Hz].");
         prm.add_parameter("Tolerance", tolerance, "On |R| itself.");
       }
 

@@ -50,7 +50,7 @@ namespace Voussoir
         return shear ? rock.s_wave_speed() : rock.p_wave_speed();
       }
 
-      /** Of the energy that comes, the shares that go back as the same kind of
+      /** Shares of the incident energy that are reflected as the same kind of
        *  wave and, of P and SV, as the other. */
       std::array<double, 2>
       shares(const double w, const double k) const
@@ -98,12 +98,11 @@ namespace Voussoir
 
 
     /**
-     * A packet of waves runs down a strip of rock and meets its absorbing
-     * bottom at an angle: on sides that only slide, or where shear waves have
-     * none to hold them, two waves that cross make a mode cos(k x), and k
-     * = pi / width and the frequency say the angle. The share of the energy
-     * that comes back, against the closed form for plane waves, over the
-     * packet's components.
+     * A packet of waves travels down a strip of rock and meets its absorbing
+     * bottom at an angle: on sides that only slide, or are free for SH waves,
+     * two crossing waves form a mode cos(k x), and k = pi / width and the
+     * frequency determine the angle. The reflected share of the energy, against
+     * the closed form for plane waves, over the packet's components.
      */
     class ReflectionAngle : public Check
     {
@@ -112,8 +111,10 @@ namespace Voussoir
       declare_parameters(ParameterHandler &prm) override
       {
         prm.add_parameter("Wave", wave, "", Patterns::Selection("SH|P|SV"));
-        prm.add_parameter("Angles", angles, "From the vertical [degrees].");
-        prm.add_parameter("Sets", sets, "Of coefficients, or viscous.");
+        prm.add_parameter("Angles",
+                          angles,
+                          "Angle from the vertical [degrees].");
+        prm.add_parameter("Sets", sets, "Sets of coefficients, or viscous.");
         prm.add_parameter("Distances",
                           distances,
                           "r of the springs over the wavelength of S / 2 pi.");
@@ -214,7 +215,7 @@ namespace Voussoir
               {
                 const double qj = wavenumbers[j], wj = frequency(qj);
                 const double phase = qj * (x[2] - start);
-                // velocities stand half a step before
+                // velocities are half a step earlier
                 const double half = 0.5 * wj * simulation->run.time_step.length;
                 const double s    = weights[j] * std::sin(phase),
                              t    = weights[j] * std::cos(phase);
@@ -296,6 +297,6 @@ namespace Voussoir
     // Reference: closed form
     const Registry<Check>::Add<ReflectionAngle>
       registered("reflection at an angle",
-                 "Energy that the absorbing boundary throws back.");
+                 "Energy that the absorbing boundary reflects.");
   } // namespace
 } // namespace Voussoir

@@ -9,7 +9,7 @@ namespace Voussoir
 
   namespace
   {
-    /** An observer with some entries, which watches a run as it goes. */
+    /** An observer with some entries, called during a run. */
     class Watch
     {
     public:
@@ -56,9 +56,9 @@ namespace Voussoir
     /**
      * A short bar along z, rolling at its bottom, whose top is pulled and
      * pushed by T(t) = P (1 - exp(-(t/t_0)^2)) sin(2 pi f t) besides a pull at
-     * rest. It is too short for waves, so its stress is that traction, whatever
-     * damping makes of its strain: an amplitude P around the static pull,
-     * above a strength as long as the traction is.
+     * rest. It is too short for waves, so its stress is that traction,
+     * independent of its strain under damping: an amplitude P around the static
+     * pull, above a strength as long as the traction is.
      */
     class ReportedStress : public Check
     {

@@ -16,9 +16,9 @@ namespace Voussoir
 
 
     /**
-     * A rigid wall in slow accelerated motion feels an incompressible
-     * reservoir:
-     *   p(h) = 8/pi^2 rho a H sum_odd sin(n pi h / 2H) / n^2 at depth h.
+     * A rigid wall in slowly growing acceleration has the pressure of an
+     * incompressible reservoir: p(h) = 8/pi^2 rho a H sum_odd sin(n pi h / 2H)
+     * / n^2 at depth h.
      */
     class ReservoirPressure : public Check
     {
@@ -124,8 +124,8 @@ namespace Voussoir
 
 
     /**
-     * A plane pulse in a channel without free surface: what comes back from
-     * the radiating end, and from an absorbing wall.
+     * A plane pulse in a channel without free surface: the reflection of the
+     * radiating end, and from an absorbing wall.
      */
     class ReservoirReflection : public Check
     {
@@ -133,7 +133,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Duration", duration, "Of the pulse [s].");
+        prm.add_parameter("Duration", duration, "Duration of the pulse [s].");
       }
 
       void
@@ -195,8 +195,8 @@ namespace Voussoir
     };
 
 
-    /** Without losses the discrete energy of the water stays what it is, and
-     *  otherwise it is what work and losses leave. */
+    /** Without losses the discrete energy of the water is constant, and
+     *  otherwise it is the work less the losses. */
     class ReservoirEnergy : public Check
     {
     public:

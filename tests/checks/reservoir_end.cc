@@ -70,7 +70,7 @@ namespace Voussoir
 
 
     /** Complex amplitudes of values at a frequency, in phase with a cosine,
-     * over some whole periods before the end. */
+     *  over some whole periods before the end. */
     Complex
     amplitude(const std::vector<double> &times,
               const std::vector<double> &values,
@@ -96,9 +96,9 @@ namespace Voussoir
 
 
     /**
-     * What a floor in vertical motion does to the water does not know of the
-     * radiating end, and what a wall in horizontal motion does leaves through
-     * it as if the channel went on.
+     * The pressure of a floor in vertical motion does not depend on the
+     * radiating end, and waves of a wall in horizontal motion leave through it
+     * as in an endless channel.
      */
     class ReservoirEndMotion : public Check
     {
@@ -111,8 +111,8 @@ namespace Voussoir
           settings,
           "Depth [m], length [m], frequency [Hz] and reflection "
           "coefficient of the bottom.");
-        prm.add_parameter("Direction", direction, "Of the motion.");
-        prm.add_parameter("Rows", rows, "Of cells over the depth.");
+        prm.add_parameter("Direction", direction, "Direction of the motion.");
+        prm.add_parameter("Rows", rows, "Rows of cells over the depth.");
         prm.add_parameter("Ramp", duration, "Until the motion is steady [s].");
         prm.add_parameter("Tolerance", tolerance, "Relative.");
       }

@@ -24,7 +24,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Times", time, "When to interrupt [s].");
+        prm.add_parameter("Times", time, "Times of interruption [s].");
       }
 
       void
@@ -45,8 +45,8 @@ namespace Voussoir
 
 
     /**
-     * A run that is interrupted and goes on from its checkpoint is the run that
-     * was not: bit for bit on as many ranks, to round-off on others.
+     * A run that is interrupted and continues from its checkpoint equals the
+     * uninterrupted run: bit for bit on as many ranks, to round-off on others.
      */
     class Restart : public Check
     {
@@ -145,7 +145,7 @@ namespace Voussoir
                            text_of("straight/histories.csv").size() > 1000);
         compare_tables("straight", "together", verdicts);
 
-        // the newest checkpoint is damaged, so it goes on from the one before
+        // the newest checkpoint is damaged, so it continues from the one before
         damage("older", communicator);
         const auto older = make_case(folder(file, "older", false));
         Simulation older_run(*older, options(true), communicator);
@@ -181,7 +181,7 @@ namespace Voussoir
                            *shared_run.run.contact,
                            verdicts);
 
-        // and by cells dealt out otherwise
+        // and by cells distributed otherwise
         const auto dealt = make_case(
           folder(file, "metis", false).with({"Mesh/Partition=METIS"}));
         Simulation dealt_run(*dealt, options(true), communicator);
@@ -208,7 +208,7 @@ namespace Voussoir
              const bool           interrupted)
       {
         return file.with({"Output/Folder=" + name,
-                          "Static state/Keep in=", // each finds its own
+                          "Static state/Keep in=", // each rank finds its own
                           std::string("Output/interruption/Times=") +
                             (interrupted ? "0.2" : "1e9")});
       }
@@ -291,7 +291,7 @@ namespace Voussoir
           }
         catch (const UserError &error)
           {
-            // when it was interrupted is not the same twice
+            // the time of interruption differs from run to run
             sentence = std::regex_replace(error.what(),
                                           std::regex("step-[0-9]+"),
                                           "step-N");

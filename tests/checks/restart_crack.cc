@@ -11,8 +11,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * A run that goes on from the middle of a crack that closes is the run that
-     * was not interrupted, bit for bit, its energies included.
+     * A run that continues from the middle of a crack that closes is the run
+     * that was not interrupted, bit for bit, its energies included.
      */
     class RestartCrack : public Check
     {

@@ -14,7 +14,7 @@ namespace Voussoir
   namespace
   {
     /**
-     * A run that goes on to a later end time is the one that had it from the
+     * A run that continues to a later end time is the one that had it from the
      * beginning, bit for bit, also where the wave that enters is computed from
      * a record at the free surface; one whose record has changed is refused.
      */

@@ -43,7 +43,7 @@ namespace Voussoir
 
         remove_folders({"results", "results-2"}, communicator);
         {
-          // both look before one of them takes it
+          // both check the folder before one of them claims it
           ResultFolder one(*parameters, plain, log),
             other(*parameters, plain, log);
           verdicts.is_true("nothing is there before", !fs::exists("results"));
@@ -55,7 +55,7 @@ namespace Voussoir
           verdicts.same_text(
             "--overwrite meanwhile",
             refusal(overwrite),
-            "refused: The output folder \"results\" is that of a run which is "
+            "refused: The output folder \"results\" belongs to a run that is "
             "still going on; choose another \"Folder\" in section \"Output\".");
         }
 

@@ -9,10 +9,10 @@ namespace Voussoir
   namespace
   {
     /**
-     * The eigenvalues of the stiffness of a small body that nothing holds: six
-     * of its motions are rigid and have none. All others have, with one point
-     * as much as with full integration or less, but not much: in a cube, where
-     * the strain varies along two directions, E/(M + 2 G) of it.
+     * The eigenvalues of the stiffness of a small body without supports: six of
+     * its motions are rigid, with the eigenvalue zero. All others have, with
+     * one point as much as with full integration or less, but not much: in a
+     * cube, where the strain varies along two directions, E/(M + 2 G) of it.
      */
     class RigidModes : public Check
     {

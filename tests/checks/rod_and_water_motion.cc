@@ -8,8 +8,8 @@ namespace Voussoir
 
   namespace
   {
-    /** A rod and a column of water ring after a blow at the frequencies of
-     * their common modes. */
+    /** A rod and a column of water vibrate after an impact at the frequencies
+     *  of their common modes. */
     class RodAndWaterMotion : public Check
     {
     public:
@@ -44,7 +44,7 @@ namespace Voussoir
         const Histories histories =
           run_and_record(*simulation, {{"wet end", Point<3>(0., 0., length)}});
 
-        // through Hann's window modes do not see each other
+        // through Hann's window modes do not interfere
         std::vector<double> values = histories.component(0, 2);
         const double        end    = histories.times.back();
         for (unsigned int i = 0; i < values.size(); ++i)

@@ -16,7 +16,7 @@ namespace Voussoir
   bool
   same(const KeyedValues &a, const KeyedValues &b, const MPI_Comm communicator);
 
-  /** All that a file holds; empty if there is none. */
+  /** The contents of a file; empty if there is none. */
   std::string
   text_of(const std::string &file);
 } // namespace Voussoir

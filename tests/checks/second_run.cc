@@ -50,7 +50,7 @@ namespace Voussoir
         first.end();
         second.end();
 
-        // what chaotic cracks amount to differs between processors
+        // the energy of chaotic cracks differs between processors
         verdicts.is_true("cracks took more than a kilojoule",
                          first.energy.latest().material > 1e3);
         double opening = 0.;

@@ -105,7 +105,7 @@ namespace Voussoir
         else
           verdicts.is_true("these warnings and no more",
                            said.size() == expected.size());
-        // its mesh is coarsened, so that what it carries is not looked at
+        // its mesh is coarsened, so that its carried frequency is not compared
         std::string       verdict = summary.at("verdict");
         const std::string coarse  = "frequency that the mesh carries [Hz]";
         std::vector<std::string> lines;
@@ -149,6 +149,6 @@ namespace Voussoir
 
     // Reference: ourselves
     const Registry<Check>::Add<ShippedCase>
-      registered("shipped case", "A case of prm/ shows what it promises.");
+      registered("shipped case", "A case of prm/ gives its expected results.");
   } // namespace
 } // namespace Voussoir

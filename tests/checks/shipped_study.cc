@@ -87,6 +87,7 @@ namespace Voussoir
 
     // Reference: ourselves
     const Registry<Check>::Add<ShippedStudy>
-      registered("shipped study", "A study of prm/ shows what it promises.");
+      registered("shipped study",
+                 "A study of prm/ gives its expected results.");
   } // namespace
 } // namespace Voussoir

@@ -8,8 +8,9 @@ namespace Voussoir
 
   namespace
   {
-    /** A motion that is many times smaller is computed as well: its energy
-     *  balances, and without cracks and joints it is the larger one in small.
+    /** A motion that is many times smaller is computed as accurately: its
+     *  energy balances, and without cracks and joints it is proportional to the
+     *  larger one.
      */
     class SmallMotion : public Check
     {
@@ -17,11 +18,16 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Sizes", sizes, "Of the load; the first is 1.");
+        prm.add_parameter("Sizes",
+                          sizes,
+                          "Factors on the load; the first is 1.");
         prm.add_parameter("Time function",
                           time_function,
-                          "Of the load \"push\" of size 1.");
-        prm.add_parameter("Linear", linear, "Whether nothing cracks or slips.");
+                          "Time function of the load \"push\" of size 1.");
+        prm.add_parameter(
+          "Linear",
+          linear,
+          "Whether the model is linear, without cracks and slip.");
       }
 
       void

@@ -121,7 +121,7 @@ namespace Voussoir
                        0.2);
         verdict->below("  of the matched motion, by Newmark", sum, 0.05);
         verdict->below("  largest misfit, by Newmark", largest, 0.15);
-        verdict->below("  what the program says of it, difference",
+        verdict->below("  misfit by the program, difference",
                        fits[0].mean_misfit() - sum,
                        0.01);
         const Motion motion = integrate(fits[0].acceleration);

@@ -78,6 +78,6 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<StageResults>
-      registered("stage results", "What static stages tell of a column.");
+      registered("stage results", "Results of static stages of a column.");
   } // namespace
 } // namespace Voussoir

@@ -106,7 +106,7 @@ namespace Voussoir
         const Vector &displacement =
           simulation.static_state.initial.displacement;
         const unsigned int n = discretization.n_owned_nodes();
-        // nothing holds the plate across: its mean is what the exact one has
+        // the plate is not supported across: its mean is set to the exact one
         std::vector<double> sums(2);
         for (unsigned int node = 0; node < n; ++node)
           {

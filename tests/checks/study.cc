@@ -129,7 +129,7 @@ namespace Voussoir
       }
     };
 
-    /** Runs of which one slides away in its static state, and then all. */
+    /** Runs of which one has no static equilibrium, and then none has. */
     class FailingRun : public Check
     {
     public:
@@ -190,7 +190,7 @@ namespace Voussoir
           {
             refused = true;
           }
-        verdicts.is_true("a study of which nothing stands ends with an error",
+        verdicts.is_true("a study without a complete run ends with an error",
                          refused &&
                            std::filesystem::exists("failing/study.json"));
       }
@@ -364,7 +364,7 @@ namespace Voussoir
 
     /**
      * A strength reduction by F: cohesion c / F, of an angle of friction
-     * atan(tan(phi) / F); what it leaves is said.
+     * atan(tan(phi) / F); strengths that it leaves unchanged are named.
      */
     class StudyOfStrengths : public Check
     {
@@ -416,7 +416,8 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<StudyOfStrengths>
-      strengths("study of strengths", "What a reduction divides and leaves.");
+      strengths("study of strengths",
+                "Strengths that a reduction divides and leaves.");
     // Reference: ourselves
     const Registry<Check>::Add<FailingRun> failing("study with a failing run",
                                                    "One run that slides away.");

@@ -23,10 +23,12 @@ namespace Voussoir
         prm.add_parameter("Frequencies", frequencies, "[Hz]");
         prm.add_parameter("Amplitudes",
                           amplitudes,
-                          "Of displacement in x per unit of the incident wave, "
+                          "Displacements in x per unit of the incident wave, "
                           "at the points; those of the frequencies separated "
                           "by \";\".");
-        prm.add_parameter("Tolerance", tolerance, "Of each amplitude.");
+        prm.add_parameter("Tolerance",
+                          tolerance,
+                          "Tolerance of each amplitude.");
       }
 
       void

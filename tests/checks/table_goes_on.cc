@@ -11,9 +11,9 @@ namespace Voussoir
   namespace
   {
     /**
-     * A table whose run goes on from a checkpoint at the time of one of its
-     * lines: killed before it has written that line anew, it has lost nothing
-     * of what the checkpoint counts; then it has each line once.
+     * A table whose run continues from a checkpoint at the time of one of its
+     * lines: killed before it has written that line anew, it has lost no line
+     * that the checkpoint counts; then it has each line once.
      */
     class TableGoesOn : public Check
     {
@@ -40,7 +40,7 @@ namespace Voussoir
         const auto at_checkpoint = std::filesystem::file_size(name);
         {
           TimeTable table = open(2., true);
-          verdicts.is_true("what the checkpoint counts is there",
+          verdicts.is_true("all lines before the checkpoint are there",
                            std::filesystem::file_size(name) == at_checkpoint);
           table.write(2., {20.});
           table.flush();

@@ -8,7 +8,7 @@
 
 namespace Voussoir
 {
-  /** The water of a case, shaken by a solid whose motion is prescribed. */
+  /** The water of a case, excited by a solid whose motion is prescribed. */
   class Tank
   {
   public:

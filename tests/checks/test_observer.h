@@ -5,7 +5,7 @@
 
 namespace Voussoir
 {
-  /** An observer that does something to a run instead of looking at it. */
+  /** An observer that acts on a run, for tests. */
   class TestObserver : public Observer
   {
   public:

@@ -8,8 +8,8 @@ namespace Voussoir
   {
     /**
      * A block that is let go in its first natural mode: its damped vibration
-     * has the frequency of the table of modes, whatever damping ratio, band and
-     * natural frequency are.
+     * has the frequency of the table of modes, for any damping ratio, band and
+     * natural frequency.
      */
     class TransientFrequency : public Check
     {

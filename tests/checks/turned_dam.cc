@@ -60,7 +60,7 @@ namespace Voussoir
 
 
     /** Water on a dam that is turned in plan turns with it: its pressure, its
-     *  weight, and the mass of it that moves along. */
+     *  weight, and its added mass. */
     class WaterOnTurnedDam : public Check
     {
     public:

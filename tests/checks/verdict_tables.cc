@@ -9,9 +9,9 @@ namespace Voussoir
   namespace
   {
     /**
-     * Acceptance table, engineering results and verdict of summaries that are
-     * made up, so that what must stand there is plain; and the frequency of the
-     * intensity of two sines.
+     * Acceptance table, engineering results and verdict of invented summaries
+     * whose verdicts are known; and the frequency of the intensity of two
+     * sines.
      */
     class VerdictTables : public Check
     {
@@ -169,6 +169,6 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<VerdictTables>
-      registered("verdict tables", "What must stand under which verdict.");
+      registered("verdict tables", "Lines under each verdict.");
   } // namespace
 } // namespace Voussoir

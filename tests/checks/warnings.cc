@@ -6,8 +6,8 @@ namespace Voussoir
 
   namespace
   {
-    /** A case with one entry changed after the other: each mistake is said by
-     *  the log itself, in one warning or more. */
+    /** A case with one entry changed after the other: each mistake gives a
+     *  warning of the log, or several. */
     class Warnings : public Check
     {
     public:
@@ -55,6 +55,6 @@ namespace Voussoir
 
     // Reference: ourselves
     const Registry<Check>::Add<Warnings>
-      registered("warnings", "Values that are hardly meant so are said.");
+      registered("warnings", "Values outside their usual range are warned of.");
   } // namespace
 } // namespace Voussoir

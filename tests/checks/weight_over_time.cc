@@ -10,7 +10,7 @@ namespace Voussoir
     /**
      * A rod that stands on its end gets its weight at once: its top falls
      * freely, g t^2/2, until the wave from the base is there at L/c, and goes
-     * down to g L^2/c^2 at 2 L/c, twice what the weight does slowly. And weight
+     * down to g L^2/c^2 at 2 L/c, twice the static displacement. And weight
      * over time is inertia on a base that moves the other way.
      */
     class WeightOverTime : public Check
@@ -19,7 +19,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Tolerance", tolerance, "Of the closed form.");
+        prm.add_parameter("Tolerance",
+                          tolerance,
+                          "Tolerance of the closed form.");
       }
 
       void
@@ -44,7 +46,7 @@ namespace Voussoir
           return (1. - share) * history.displacement[0][i - 1][2] +
                  share * history.displacement[0][i][2];
         };
-        // what comes on at once acts from half a step before
+        // a sudden load acts from half a step before
         const auto fallen = [&](const double t) {
           return t * (t + simulation->run.time_step.length);
         };

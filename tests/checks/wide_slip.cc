@@ -10,7 +10,7 @@ namespace Voussoir
      * A block on a level plane with the weight w, pushed by p, both per area
      * and come on smoothly during T: after them its slip is a (T^2/4 - T^2/pi^2
      * + T (t - T)/2 + (t - T)^2/2) ,  a = (p - f w) g/w . From half a cell on
-     * the run warns; with more friction it stays.
+     * the run warns; with more friction the block does not slide.
      */
     class WideSlip : public Check
     {
@@ -34,7 +34,7 @@ namespace Voussoir
         const double v = 0.5 * a * T;
         const double t =
           T + (std::sqrt(v * v + 2. * a * (half_cell - slip_of_T)) - v) / a;
-        // looked at every tenth of a second
+        // checked every tenth of a second
         verdicts.near("  at the time [s]",
                       time_in(text),
                       std::ceil(10. * t) / 10.,
@@ -63,6 +63,6 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<WideSlip>
-      registered("wide slip", "The warning of what has slid out of place.");
+      registered("wide slip", "The warning of a slip beyond half a cell.");
   } // namespace
 } // namespace Voussoir

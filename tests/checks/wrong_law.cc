@@ -14,7 +14,7 @@ namespace Voussoir
   {
     /**
      * Isotropic damage by the energy norm of the effective stress, whose stress
-     * falls exponentially, and which tells a share of what it dissipates.
+     * falls exponentially, and which reports a share of its dissipation.
      */
     struct TellingDamage : IsotropicElasticity
     {
@@ -85,13 +85,14 @@ namespace Voussoir
     };
 
     const Registry<Material>::Add<MaterialOf<TellingDamage>>
-      material("telling damage", "Damage that tells a share of its losses.");
+      material("telling damage", "Damage that reports a share of its losses.");
 
 
     /**
-     * A bar with a weak layer of a law that tells less or more than it
-     * dissipates is pulled apart: the rest is unaccounted for. What the law
-     * really dissipates is the work of the traction on the opening.
+     * A bar with a weak layer of a law that reports less or more than it
+     * dissipates is pulled apart: the difference is the energy-balance error.
+     * The true dissipation of the law is the work of the traction on the
+     * opening.
      */
     class WrongLaw : public Check
     {

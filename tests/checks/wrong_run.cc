@@ -11,8 +11,9 @@ namespace Voussoir
   namespace
   {
     /**
-     * A run whose energy is wrong says so: a blow in the middle brings energy
-     * that no account explains, or the time step is above the stable one.
+     * A run whose energy balance is violated reports it: a jump of velocity in
+     * the middle adds energy that no term contains, or the time step is above
+     * the stable one.
      */
     class WrongRun : public Check
     {
@@ -110,6 +111,6 @@ namespace Voussoir
     // Reference: ourselves
     const Registry<Check>::Add<WrongRun>
       registered("wrong run",
-                 "An energy-balance error is said, or stops the run.");
+                 "An energy-balance error is warned of, or stops the run.");
   } // namespace
 } // namespace Voussoir

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Signals to the launcher and to its processes on two ranks: which exit code comes through mpirun, how
-soon, and that the run goes on from where it was stopped to the files of one that nobody disturbed.
+soon, and that the run continues from where it was stopped to the files of an uninterrupted one.
 
 usage: check_signals.py LAUNCHER CASE.prm
 """

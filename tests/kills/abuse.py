@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Abuses the program in ways drawn at random: damaged checkpoints, full disks, and
-nonsense in entries. Each ends in time, with what a run that nobody disturbed leaves,
-or with one sentence and exit code 1; never by a signal, without an end, or with other
+nonsense in entries. Each ends in time, with the files of an undisturbed run, or with one sentence and exit code 1; never by a signal, without an end, or with other
 results and exit code 0.
 
 usage: abuse.py {checkpoints,disks,nonsense} PROGRAM [--case CASE.prm] [--ranks N]

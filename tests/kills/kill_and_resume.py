@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Kills runs at random moments, lets them go on with --restart, and compares
-what they leave with the files of a run that nobody disturbed, bit for bit.
+"""Kills runs at random moments, restarts them with --restart, and compares their files with those of an uninterrupted run, bit for bit.
 
 usage: kill_and_resume.py PROGRAM [--case CASE.prm] [--ranks N] [--kills N]
                           [--seed N] [--folder SCRATCH]
 
 Signals are SIGKILL (mostly), SIGTERM, SIGHUP and SIGUSR2, at any moment from the
 start of the program: in set-up, static state, time loop and while checkpoints
-are written. Exit code 1 if a run does not go on or its files differ.
+are written. Exit code 1 if a run does not continue or its files differ.
 """
 
 import argparse

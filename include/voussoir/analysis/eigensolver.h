@@ -22,8 +22,8 @@ namespace Voussoir
     std::size_t size;         // entries of this rank
     MPI_Comm    communicator;
 
-    /** Told after each iteration on all ranks: iterations so far, eigenpairs of
-     *  those wanted that are good enough, largest residual of the others. */
+    /** Called after each iteration on all ranks: iterations so far, wanted
+     * eigenpairs that have converged, largest residual of the others. */
     std::function<void(unsigned int, unsigned int, double)> watch;
   };
 
@@ -40,8 +40,8 @@ namespace Voussoir
    * The lowest eigenpairs by locally optimal block preconditioned conjugate
    * gradients (LOBPCG, Knyazev 2001). It works on M x = theta K x, theta =
    * 1/lambda, with K as the inner product, so that entries without mass do no
-   * harm. Vectors that are good enough get no more corrections, and directions
-   * that depend on others are dropped.
+   * harm. Converged vectors get no more corrections, and linearly dependent
+   * directions are dropped.
    *
    * @param start     the block to begin with, some vectors more than wanted
    * @param number    eigenpairs wanted

@@ -32,14 +32,14 @@ namespace Voussoir
   class ElasticSolver
   {
   public:
-    /** What the stiffness may have beside that of the cells. */
+    /** Contributions to the stiffness beside that of the cells. */
     struct Additions
     {
       /** Springs of an absorbing boundary that is not fixed. */
       const NodalTerms *springs = nullptr;
 
-      /** Contact between parts of the model, which hold together where they
-       *  touch at this displacement until `tangent_contact` changes that. */
+      /** Contact between parts of the model, which are tied where they touch at
+       *  this displacement until `tangent_contact` changes that. */
       Contact      *contact      = nullptr;
       const Vector *displacement = nullptr;
 
@@ -90,7 +90,7 @@ namespace Voussoir
     assemble(const std::vector<const Material *> &materials,
              const Contact                       *contact);
 
-    /** Lets the parts hold together where they touch. */
+    /** Ties the parts where they touch. */
     void
     tie(Contact &contact, const Vector &displacement);
 
@@ -101,7 +101,7 @@ namespace Voussoir
     void
     multiply(Vector &force, const Vector &displacement) const;
 
-    /** Of the matrix, at owned entries. */
+    /** Diagonal of the matrix, at owned entries. */
     Vector
     diagonal() const;
 

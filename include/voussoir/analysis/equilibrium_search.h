@@ -17,8 +17,8 @@ namespace Voussoir
    * updated in turn (Alart and Curnier 1991). The shear limit of points that
    * slide follows their pressure, but not in the tangent, which so stays
    * symmetric. Materials: secant steps from the elastic stiffness; every
-   * evaluation of them starts from their memory before the search, so that
-   * damage found on the way is not kept.
+   * evaluation of them starts from their internal variables before the search,
+   * so that damage found on the way is not kept.
    */
   class EquilibriumSearch
   {
@@ -36,11 +36,10 @@ namespace Voussoir
 
     /**
      * @param solver    with the interfaces, if there are any
-     * @param springs   of the absorbing boundary, or null if it is held
+     * @param springs   of the absorbing boundary, or null if it is fixed
      * @param tolerance of the equilibrium over the loads, and a tenth of that
      *   of the forces of contact over all of them
-     * @param patience  number of steps in which what is missing to the
-     *   equilibrium has to halve
+     * @param patience  number of steps in which the residual has to halve
      * @param secants   of the searches before on the same path, kept for the
      *   next: with such, interfaces are near their equilibrium from the start
      */
@@ -55,8 +54,9 @@ namespace Voussoir
 
     /**
      * @param displacement where to start from; the equilibrium if it was found,
-     *   else as it was, and so are contact and memory
-     * @param memory       of the materials; null: they are elastic
+     *   else unchanged, as are contact and internal variables
+     * @param memory       internal variables of the materials; null: they are
+     * elastic
      */
     Effort
     find(Vector &displacement, MaterialMemory *memory);
@@ -75,12 +75,12 @@ namespace Voussoir
     void
     step();
 
-    /** Of the displacement: the force less what bodies, springs and contact
-     *  bear, on what is free. */
+    /** Residual at a displacement: external less internal forces, springs and
+     *  contact included, on free entries. */
     void
     find_residual();
 
-    /** What is missing to the equilibrium, over the loads. */
+    /** Norm of the residual over that of the loads. */
     double
     imbalance() const;
 
@@ -100,7 +100,7 @@ namespace Voussoir
     const unsigned int   patience;
     SecantSteps         &secants;
     Log                 &log;
-    double               size; // of the force on what is free
+    double               size; // of the force on free entries
 
     Vector         *displacement = nullptr;
     MaterialMemory *memory       = nullptr;

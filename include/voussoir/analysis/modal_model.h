@@ -54,7 +54,7 @@ namespace Voussoir
     void
     declare(dealii::ParameterHandler &prm);
 
-    /** Whether they want the cells of water, in this model of section
+    /** Whether the modes need the cells of water, under this `Model` of section
      *  "Reservoir". */
     bool
     want_cells_of_water(const ReservoirParameters &reservoir) const;
@@ -65,7 +65,7 @@ namespace Voussoir
           const BoundaryParameters       &boundaries) const;
   };
 
-  /** What the modes are computed from. */
+  /** Input of the modes. */
   struct ModalModel
   {
     const Solid              &solid;
@@ -76,7 +76,7 @@ namespace Voussoir
     /** The interfaces in the static state, or null. */
     const Contact *contact = nullptr;
 
-    /** Cells of water that move along, or null. */
+    /** Cells of water that take part in the modes, or null. */
     const Reservoir *reservoir = nullptr;
   };
 } // namespace Voussoir

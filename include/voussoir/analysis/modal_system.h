@@ -10,7 +10,7 @@ namespace Voussoir
   /**
    * Stiffness and mass of the natural modes, K phi = omega^2 (M + M_a) phi. A
    * motion is a list of numbers: the displacements of the owned nodes and, with
-   * compressible water, what stands for its pressures (see ModalWater). Entries
+   * compressible water, the unknowns of its pressure (see ModalWater). Entries
    * that are fixed or follow others are zero.
    */
   class ModalSystem
@@ -21,8 +21,8 @@ namespace Voussoir
     /** Called on all ranks, like all that follows. */
     ModalSystem(const ModalModel &model, const ModeParameters &parameters);
 
-    /** Makes the preconditioner and what the products with the matrices need
-     *  beyond the masses. */
+    /** Makes the preconditioner and all data of the products with the matrices
+     * except the masses. */
     void
     set_up();
 

@@ -7,10 +7,10 @@
 namespace Voussoir
 {
   /**
-   * Cells of water that swing with the solid. With the pressure Laplacian H,
-   * the storage Q of a pressure, volume/(rho c^2), and the flux S^T u that the
-   * wall's displacement u makes, the pressure of a motion at omega is
-   *   (1/rho H - omega^2 Q) p = omega^2 S^T u .
+   * Cells of water that take part in the natural modes. With the pressure
+   * Laplacian H, the storage Q of a pressure, volume/(rho c^2), and the flux
+   * S^T u that the wall's displacement u makes, the pressure of a motion at
+   * omega is (1/rho H - omega^2 Q) p = omega^2 S^T u .
    *
    * Incompressible, Q = 0, it is an added mass, M_a = rho S H^-1 S^T. With
    * H^-1, the equations of solid and compressible water are symmetric, too:
@@ -51,8 +51,8 @@ namespace Voussoir
                  const Vector &motion,
                  const double *water_motion) const;
 
-    /** That of a floor which meets no solid and moves by one in this
-     *  direction, as a rigid base moves it. */
+    /** Flux of a floor which meets no solid and moves by one in this direction,
+     * as a rigid base moves it. */
     void
     add_momentum_of_floor(Vector            &momentum,
                           double            *water_momentum,

@@ -29,8 +29,8 @@ namespace Voussoir
   {
     std::vector<Mode> list; // from the lowest frequency upwards
 
-    /** Mass that can move in each direction, with the water that pushes it:
-     * what the effective masses of all modes add up to [kg]. */
+    /** Mass that can move in each direction, with the water that pushes it: the
+     *  sum of the effective masses of all modes [kg]. */
     dealii::Tensor<1, 3> moving_mass;
 
     /** [Hz] */

@@ -22,7 +22,7 @@ namespace Voussoir
    * Chebyshev smoothing by its diagonal (Adams et al. 2003); the coarser ones
    * are Trilinos' smoothed aggregation of a matrix that is spectrally
    * equivalent. Products with that matrix would take most of the time, so that
-   * it is let go once the coarser levels are made.
+   * it is freed once the coarser levels are made.
    */
   class Multigrid
   {
@@ -66,7 +66,7 @@ namespace Voussoir
         apply(dst, src);
       }
 
-      // the smoother wants these, too
+      // the smoother needs these, too
       dealii::types::global_dof_index
       m() const
       {
@@ -90,7 +90,7 @@ namespace Voussoir
                                     Vector,
                                     dealii::DiagonalMatrix<Vector>>;
 
-    /** dst += what the coarser levels make of the residual. */
+    /** dst += correction by the coarser levels for the residual. */
     void
     correct(Vector &dst, const Vector &residual) const;
 

@@ -13,7 +13,7 @@ namespace Voussoir
    * the critical damping of the frequency that Rayleigh's quotient of the
    * velocity gives: high as long as many modes move, then that of the slowest
    * (adaptive, Underwood 1983). No stiffness is assembled, so joints may open
-   * and slip as they like.
+   * and slip without limit.
    */
   class Relaxation
   {
@@ -41,13 +41,13 @@ namespace Voussoir
     };
 
     /**
-     * Moves the displacement to the equilibrium with a force, or until it is
-     * given up: after 50 000 steps, or where displacements are no small ones
-     * any more, that is a hundredth of the model or, of points of contact, a
-     * side of a cell.
+     * Moves the displacement to the equilibrium with a force, or until the
+     * search is given up: after 50 000 steps, or where displacements are no
+     * longer small: above a hundredth of the size of the model or, at contact
+     * points, above a side of a cell.
      *
-     * @param memory    of the materials, which goes on with the motion; empty:
-     *   they are elastic
+     * @param memory    internal variables of the materials, which follow the
+     * motion; empty: they are elastic
      * @param tolerance largest motion in a period over the largest displacement
      */
     Result
@@ -62,7 +62,8 @@ namespace Voussoir
     std::unique_ptr<CentralDifference>
     make_scheme(const double mass_coefficient);
 
-    /** Whether displacements are too large for what they are computed by. */
+    /** Whether displacements are too large for the theory of small
+     *  displacements. */
     bool
     too_far(const Vector &displacement) const;
 

@@ -10,8 +10,9 @@ namespace Voussoir
 {
   /**
    * Steps of the quasi-Newton method of Broyden, Fletcher, Goldfarb and Shanno
-   * with limited memory (Matthies and Strang 1979; Nocedal 1980): what the last
-   * steps did to the residual corrects an approximate inverse of the tangent.
+   * with limited memory (Matthies and Strang 1979; Nocedal 1980): the changes
+   * of the residual in the last steps correct an approximate inverse of the
+   * tangent.
    */
   class SecantSteps
   {
@@ -20,15 +21,15 @@ namespace Voussoir
      *  positive definite. */
     using Inverse = std::function<void(Vector &, const Vector &)>;
 
-    /** The step that the residual, external less internal forces, asks for. */
+    /** The quasi-Newton step for a residual, external less internal forces. */
     void
     find(Vector &step, const Vector &residual, const Inverse &inverse) const;
 
-    /** Keeps by how much a step has changed the residual. */
+    /** Stores a step and the change of the residual that it made. */
     void
     add(const Vector &step, const Vector &taken);
 
-    /** Whether no step is kept. */
+    /** Whether no step is stored. */
     bool
     empty() const;
 

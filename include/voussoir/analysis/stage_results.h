@@ -8,7 +8,7 @@
 
 namespace Voussoir
 {
-  /** What a static stage has done to named points, to the body and to its
+  /** Results of a static stage at named points, of the body and of its
    *  interfaces. */
   class StageResults
   {

@@ -59,7 +59,7 @@ namespace Voussoir
           const InterfacesParameters &interfaces) const;
   };
 
-  /** What the static stage is computed from. */
+  /** Input of the static stages. */
   struct StaticModel
   {
     const Solid              &solid;
@@ -69,7 +69,7 @@ namespace Voussoir
   };
 
   /**
-   * The state under the loads that are there before the earthquake: stages one
+   * The state under the loads that act before the earthquake: stages one
    * after the other, each with the loads it names. The run takes it by
    * hand_over.
    *
@@ -78,10 +78,10 @@ namespace Voussoir
    * loads, these and the temperature grow in increments, as cracks and plastic
    * flow depend on the path, and equilibrium is searched with the materials
    * (see EquilibriumSearch). Where that fails, it is found by dynamic
-   * relaxation, which at the end of a stage also looks whether a state with
-   * interfaces is at rest. An increment is halved while the return mapping of
-   * the materials differs between one step and two. An interface is grouted at
-   * the end of the stage that names its load.
+   * relaxation, which at the end of a stage also checks whether a state with
+   * interfaces is in equilibrium. An increment is halved while the return
+   * mapping of the materials differs between one step and two. An interface is
+   * grouted at the end of the stage that names its load.
    *
    * Throws LostEquilibrium if no equilibrium is found.
    *
@@ -95,15 +95,15 @@ namespace Voussoir
                     nlohmann::json         &summary);
 
   /**
-   * Gives a static state the force that holds it in the dynamic model, and the
-   * materials' memory the moduli of that: reactions of supports that are held
-   * in the static stages only are part of the force, so that without an
-   * earthquake nothing moves. Forces of contact are not, as the run finds them
-   * by itself. Without static stages nothing is done.
+   * Gives a static state the force that balances it in the dynamic model, and
+   * the internal variables of the materials the moduli of that model: reactions
+   * of supports that are fixed in the static stages only are part of the force,
+   * so that without an earthquake nothing moves. Forces of contact are not, as
+   * the run finds them by itself. Without static stages nothing is done.
    *
    * @param internal_force that of the run
-   * @return what its laws dissipate in the static state on this rank [J]: none,
-   *   if they take over the internal variables as they are
+   * @return dissipation of its laws in the static state on this rank [J]: zero,
+   * if they take over the internal variables unchanged
    */
   double
   hand_over(InitialState        &state,

@@ -25,12 +25,12 @@ namespace Voussoir
     dealii::AffineConstraints<double>
     added_to(const dealii::AffineConstraints<double> &constraints) const;
 
-    /** T: followers take what their leaders have. */
+    /** T: followers take the values of their leaders. */
     void
     distribute(Vector &displacement) const;
 
-    /** T^T: leaders get on top what their followers have, which is then
-     *  zero. */
+    /** T^T: the values of followers are added to those of their leaders, and
+     * set to zero. */
     void
     collect(Vector &force) const;
 

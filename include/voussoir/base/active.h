@@ -6,7 +6,7 @@
 namespace Voussoir
 {
   /** Declares the entry "Active" of the section at @p path, in which @p prm
-   *  stands, and returns what the file gives for it. */
+   *  stands, and returns its value in the file. */
   bool
   declared_active(dealii::ParameterHandler &prm,
                   const ParameterFile      &file,

@@ -7,7 +7,7 @@
 namespace Voussoir
 {
   /**
-   * A mistake in what the user gave us (parameters, mesh, record). The text is
+   * A mistake in the user's input (parameters, mesh, record). The text is
    * one plain sentence that names the place and the remedy; the program prints
    * it on the first rank and ends with exit code 1.
    */
@@ -18,8 +18,9 @@ namespace Voussoir
   };
 
   /**
-   * A run or a static stage that comes to no equilibrium, or whose energy grows
-   * from nothing: what became of the case, which a study may ask for.
+   * A run or a static stage that comes to no equilibrium, or whose energy
+   * balance is violated: an outcome of the case, which a criterion of a study
+   * may name.
    */
   class RunStopped : public UserError
   {

@@ -18,10 +18,11 @@ namespace Voussoir
   reason_of(const int error);
 
   /**
-   * Writes a file aside and renames it, so that there is all of it or what was
-   * there before. A device or a pipe is written to as it is.
+   * Writes a file under a temporary name and renames it, so that either the
+   * whole file or the one before is there. A device or a pipe is written to as
+   * it is.
    *
-   * @return why that failed, see reason_of(); empty: written
+   * @return why the writing failed, see reason_of(); empty: written
    */
   std::string
   write_file(const std::string &name, const std::string &text);
@@ -36,7 +37,8 @@ namespace Voussoir
                       const MPI_Comm     communicator);
 
   /** A lock between programs, which the system takes away when the program
-   *  ends, however that comes about. File systems without locks let all in. */
+   *  ends, however that comes about. On file systems without locks all get it.
+   */
   class FileLock
   {
   public:
@@ -59,14 +61,14 @@ namespace Voussoir
     int file = -1;
   };
 
-  /** A text file that grows. What cannot be written waits in memory and is
-   *  written with what comes next; no part of a text is left in the file. A
-   * file that was removed, replaced or cut off meanwhile is not made anew, as
-   * its beginning would be lost. */
+  /** A text file that grows. Text that cannot be written waits in memory and is
+   * written with the next one; no part of a text is left in the file. A file
+   * that was removed, replaced or cut off meanwhile is not made anew, as its
+   * beginning would be lost. */
   class GrowingFile
   {
   public:
-    /** Goes on in this file after the bytes to keep; none: a new file. */
+    /** Continues this file after the bytes to keep; none: a new file. */
     void
     open(const std::string &name, const std::uintmax_t keep = 0);
 
@@ -81,7 +83,7 @@ namespace Voussoir
     void
     append(const std::string &text);
 
-    /** Writes what waits; returns why that failed, see reason_of(). */
+    /** Writes the text that waits; returns why that failed, see reason_of(). */
     std::string
     flush();
 
@@ -89,7 +91,7 @@ namespace Voussoir
     has_waiting() const;
 
   private:
-    /** Why the written part is lost; empty: it is not. */
+    /** Why the written part is lost; empty: it is there. */
     std::string
     loss() const;
 

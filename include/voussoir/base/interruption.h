@@ -8,8 +8,8 @@
 
 namespace Voussoir
 {
-  /** Of a run that was stopped on request and can go on: that of temporary
-   *  failures in sysexits.h, for scripts that then start it again. */
+  /** Exit code of a run that was stopped on request and can continue: that of
+   *  temporary failures in sysexits.h, for scripts that then start it again. */
   constexpr int exit_code_stopped = 75;
 
   /** The program ends because it was asked to, which is no error. */
@@ -20,7 +20,7 @@ namespace Voussoir
   };
 
   /**
-   * From now on signals ask instead of killing: SIGUSR1 for a checkpoint;
+   * From now on signals are requests and do not kill: SIGUSR1 for a checkpoint;
    * SIGINT, SIGTERM, SIGHUP, SIGXCPU and SIGUSR2 for a checkpoint and the end.
    * A second SIGINT kills. A SIGHUP that was ignored, as by nohup, still is.
    */
@@ -39,8 +39,8 @@ namespace Voussoir
   [[noreturn]] void
   stop(const std::string &sentence);
 
-  /** Stops if any rank has been asked to, in set-up or static state, which
-   *  leave nothing to go on from. Called on all ranks. */
+  /** Stops if any rank has been asked to, during set-up or static stages, from
+   *  which no run can continue. Called on all ranks. */
   void
   stop_if_requested(const MPI_Comm communicator);
 } // namespace Voussoir

@@ -13,8 +13,8 @@
 namespace Voussoir
 {
   // Structs whose members have names in JSON, listed once for both directions:
-  // for_each_entry(part, entry) calls entry(name, member) for all of them. What
-  // is not known, an empty optional, map or JSON, is left out.
+  // for_each_entry(part, entry) calls entry(name, member) for all of them.
+  // Unknown values, that is an empty optional, map or JSON, are left out.
 
   template <typename T>
   void
@@ -90,7 +90,7 @@ namespace Voussoir
     });
   }
 
-  /** Members that are not there stay as they are. */
+  /** Members that the JSON lacks stay unchanged. */
   template <typename T>
   void
   read_entries(const nlohmann::json &json, T &part)

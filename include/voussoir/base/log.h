@@ -24,12 +24,12 @@ namespace Voussoir
 
     ~Log();
 
-    /** Writes to this file from now on, first the messages before; no file is
-     *  missing yet. Goes on in a file that is there, or begins a new one. */
+    /** Writes to this file from now on, earlier messages first; clears the list
+     *  of missing files. Continues an existing file, or begins a new one. */
     void
     open(const std::string &filename, const bool append);
 
-    /** Says something; the text brings its own line ends. */
+    /** Writes a message; the text includes its line ends. */
     void
     operator()(const std::string &text);
 
@@ -42,20 +42,19 @@ namespace Voussoir
       (*this)(text.str());
     }
 
-    /** Whether it is time to report how far a long task is; only on the first
-     * rank.
+    /** Whether a report of progress is due; only on the first rank.
      */
     bool
     progress_is_due() const;
 
-    /** Reports how far a long task is, with its subject: a bar in the last
-     * line of a terminal, which the next message overwrites; elsewhere and
-     * in log.txt a line, not more often than every five seconds. */
+    /** Reports the progress of a long task by its name: a bar in the last
+     *  line of a terminal, which the next message overwrites; elsewhere and
+     *  in log.txt a line, not more often than every five seconds. */
     void
     progress(const double share_done, const std::string &text);
 
-    /** Says what the results must not be read without, and again at the end and
-     * in the summary of a run. Warnings are not repeated.
+    /** Writes a warning, and again at the end and in the summary of a run.
+     *  Warnings are not repeated.
      */
     template <typename... Parts>
     void
@@ -70,11 +69,11 @@ namespace Voussoir
     warnings() const;
 
     /**
-     * Takes note of an attempt to write a file of the results, on the first
-     * rank: a failure does not stop a run, but is a warning.
+     * Records an attempt to write a file of the results, on the first rank: a
+     * failure does not stop a run, but is a warning.
      *
      * @param reason of the failure, see reason_of(); empty: all is written
-     * @param remark what becomes of what was not written
+     * @param remark on the part that was not written
      */
     void
     attempted(const std::string &file,
@@ -88,23 +87,23 @@ namespace Voussoir
 
     /**
      * A file of the results that grows, on the first rank, from these bytes on.
-     * What was appended to it is on the disk before each checkpoint, see
+     * Appended text is on the disk before each checkpoint, see
      * write_growing_files().
      */
     std::shared_ptr<GrowingFile>
     grow(const std::string &filename, const std::uintmax_t keep);
 
-    /** Writes what waits in memory for one of them. */
+    /** Writes the text that waits in memory for one of them. */
     void
     write(GrowingFile &grown);
 
-    /** Writes what waits in memory for all of them; returns whether all
-     *  of it is written. All ranks must call this together. */
+    /** Writes the text that waits in memory for all of them; returns whether
+     *  all of it is written. All ranks must call this together. */
     bool
     write_growing_files();
 
-    /** Their sizes, with which a run can go on from here [bytes], by name; all
-     *  ranks must call this together. */
+    /** Sizes of the growing files, from which a run can continue [bytes], by
+     *  name; all ranks must call this together. */
     std::map<std::string, std::uint64_t>
     sizes_of_growing_files() const;
 

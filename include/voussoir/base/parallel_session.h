@@ -9,7 +9,7 @@
 namespace Voussoir
 {
   /**
-   * What every program of the project does first and last: MPI with one thread
+   * Initialization and end of every program of the project: MPI with one thread
    * per rank, which the fused vector updates of the step need, and numbers
    * below 1e-308 flushed to zero, since such tails of decaying waves cost a
    * hundred times as much as others.
@@ -21,7 +21,7 @@ namespace Voussoir
     ~ParallelSession();
 
   private:
-    /** Of a run without mpirun: its own, for what Open MPI keeps meanwhile. */
+    /** Folder for the session files of Open MPI, of a run without mpirun. */
     std::filesystem::path                                     session_folder;
     std::unique_ptr<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
   };

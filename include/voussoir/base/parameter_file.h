@@ -14,9 +14,9 @@ namespace Voussoir
    *
    * deal.II's ParameterHandler wants every entry declared before it parses, but
    * which sections a case has depends on the names the user lists in it
-   * (materials, loads). So the file is read once here, `given()` returns what
-   * must be known to declare, and `parse()` then hands all of it to the
-   * ParameterHandler, strictly.
+   * (materials, loads). So the file is read once here, `given()` returns the
+   * values that are needed to declare, and `parse()` then hands all of it to
+   * the ParameterHandler, strictly.
    */
   class ParameterFile
   {
@@ -47,7 +47,8 @@ namespace Voussoir
     void
     parse(dealii::ParameterHandler &prm) const;
 
-    /** The same for what @p prm declares; other values are left. */
+    /** The same for the entries that @p prm declares; other values are ignored.
+     */
     void
     parse_declared(dealii::ParameterHandler &prm) const;
 

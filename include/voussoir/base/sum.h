@@ -88,7 +88,7 @@ namespace Voussoir
       return exact;
     }
 
-    /** As a new one. */
+    /** Resets the sum to zero. */
     void
     clear()
     {
@@ -102,7 +102,7 @@ namespace Voussoir
       return exact ? 5 : 1;
     }
 
-    /** All that it is, in numbers that double holds. */
+    /** Its state, in numbers that a double represents exactly. */
     std::vector<double>
     save() const
     {
@@ -115,7 +115,7 @@ namespace Voussoir
               static_cast<double>(beyond)};
     }
 
-    /** Adds what `save` gave. */
+    /** Adds a state that `save` returned. */
     void
     add_saved(const std::vector<double> &saved)
     {
@@ -144,7 +144,7 @@ namespace Voussoir
     double       plain  = 0.;
     std::int64_t whole  = 0; // multiples of 2^-10
     std::int64_t rest   = 0; // of 2^-62, less than one of 2^-10
-    std::int64_t beyond = 0; // terms that are not in it
+    std::int64_t beyond = 0; // terms that could not be added
   };
 
 

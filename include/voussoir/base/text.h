@@ -26,7 +26,7 @@ namespace Voussoir
           const std::string &plural);
 
   /**
-   * The candidate that differs from @p word by the fewest slips of the pen (a
+   * The candidate that differs from @p word by the fewest typing errors (a
    * letter too many, missing, wrong, or two exchanged; upper and lower case
    * count as equal), or an empty string if none is near enough to be meant.
    */

@@ -50,14 +50,14 @@ namespace Voussoir
     accumulated_time
   };
 
-  /** The last sentence in the description of an entry: what the quantity
-   *  usually is. unusual_values() goes by it. */
+  /** The last sentence in the description of an entry: the usual range of the
+   * quantity. unusual_values() compares values with it. */
   std::string
   usually(const Usual quantity);
 
-  /** A sentence for each entry whose value is not what it usually is, most
-   *  often because it is in another unit. Throws UserError if nothing can be
-   *  computed with it. */
+  /** A sentence for each entry whose value is outside its usual range, most
+   * often because it is in another unit. Throws UserError if no case can be
+   * computed with the value. */
   std::vector<std::string>
   unusual_values(const dealii::ParameterHandler &prm);
 } // namespace Voussoir

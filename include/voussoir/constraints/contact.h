@@ -15,8 +15,8 @@ namespace Voussoir
   /**
    * Contact between the two sides of all interfaces of a case: after each step
    * no point of them has penetrated the other side, and they have opened and
-   * slipped only where their law lets them. A copy goes on by itself from the
-   * state of the original.
+   * slipped only where their law lets them. A copy has a state of its own,
+   * which begins as that of the original.
    */
   class Contact : public Projection
   {
@@ -56,8 +56,8 @@ namespace Voussoir
     void
     add_forces(const double factor, Vector &force) const;
 
-    /** What a checkpoint must hold of each point; `load` takes what has been
-     *  read into these numbers. */
+    /** State of each point for a checkpoint; `load` restores the state from
+     * these numbers once they have been read. */
     KeyedValues
     checkpoint_values();
 
@@ -65,7 +65,7 @@ namespace Voussoir
     std::vector<double *>
     energies();
 
-    /** What else a checkpoint must hold. Called on all ranks. */
+    /** Other state for a checkpoint. Called on all ranks. */
     nlohmann::json
     save() const;
 
@@ -74,8 +74,8 @@ namespace Voussoir
     load(const nlohmann::json &saved);
 
     /** Called after `start`, which finds gaps and velocities from those of the
-     *  nodes, where a run goes on from a checkpoint: takes them as its last
-     * step left them, which differ by round-off. */
+     *  nodes, where a run continues from a checkpoint: restores those of its
+     * last step, which differ by round-off. */
     void
     resume();
 
@@ -84,9 +84,9 @@ namespace Voussoir
     void
     begin_approach();
 
-    /** Removes these oscillations, which opened joints that end closed, from
-     * the history: it is that before the relaxation and of the monotonic change
-     * to the present gap and slip. */
+    /** Removes these oscillations, which open joints that end closed, from the
+     * history: afterwards it is the history before the relaxation followed by a
+     * monotonic change to the present gap and slip. */
     void
     forget_approach();
 
@@ -101,8 +101,8 @@ namespace Voussoir
     bool
     grout(const std::vector<std::string> &loads, const Vector &displacement);
 
-    /** What the steps took; the largest values and sums over all ranks since
-     *  the start. Called on all ranks. */
+    /** Statistics of the solver: largest values and sums over all ranks since
+     * the start. Called on all ranks. */
     ContactSolver::Effort
     effort() const;
 
@@ -122,7 +122,7 @@ namespace Voussoir
     const std::vector<ContactPoint> &
     points() const;
 
-    /** Takes the points back to an earlier state. */
+    /** Restores an earlier state of the points. */
     void
     set_points(const std::vector<ContactPoint> &points);
 
@@ -133,7 +133,7 @@ namespace Voussoir
     bool
     touches(const ContactPoint &point) const;
 
-    /** Numbers of the points that are the same on all partitions. */
+    /** Identifiers of the points, the same on all partitions. */
     const std::vector<std::uint64_t> &
     keys() const;
 
@@ -145,8 +145,7 @@ namespace Voussoir
     double
     cell_size() const;
 
-    /** Global nodes of the clusters of this rank, which are those that its
-     *  points name. */
+    /** Global nodes of the clusters of this rank. */
     const std::vector<dealii::types::global_dof_index> &
     cluster_nodes() const;
 

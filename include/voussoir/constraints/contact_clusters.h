@@ -24,9 +24,9 @@ namespace Voussoir
   /** All coincident nodes of one point, and the interfaces between them. */
   struct ContactCluster
   {
-    std::uint64_t                                key; // same on all partitions
-    dealii::Point<3>                             position; // [m]
-    std::vector<dealii::types::global_dof_index> nodes;    // global nodes
+    std::uint64_t    key;      // the same on all partitions
+    dealii::Point<3> position; // [m]
+    std::vector<dealii::types::global_dof_index> nodes; // global nodes
     std::vector<ContactPair>                     pairs;
 
     template <typename Archive>

@@ -55,11 +55,11 @@ namespace Voussoir
     {
       unsigned int cluster_node, place;
     };
-    std::vector<Place>        here;   // place in the owned nodes
+    std::vector<Place>        here;   // index among the owned nodes
     std::vector<Place>        remote; // entry of its x in the vector
     std::vector<unsigned int> lent;   // owned nodes that are elsewhere
 
-    Vector shared; // only the nodes that are lent are used, and its ghosts
+    Vector shared; // only the shared nodes and the ghosts are used
   };
 } // namespace Voussoir
 

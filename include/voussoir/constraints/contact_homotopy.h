@@ -12,9 +12,9 @@ namespace Voussoir
   {
     std::vector<ContactForce> points;
 
-    /** By how much the gaps of these forces miss those that the laws have with
-     *  them, over the largest overlap or slip without forces; one if none were
-     * found. */
+    /** Largest difference between the gaps that these forces make and those
+     * that the laws admit with them, over the largest penetration or slip
+     * without forces; one if no solution was found. */
     double residual;
   };
 
@@ -25,12 +25,12 @@ namespace Voussoir
    * Solves the contact of points that share nodes: the gaps after the step are
    *   g = b + W F .
    *
-   * The law of a point is the one of `solve_contact`. Where it opens, the line
-   * of normal force over opening has a corner; there the cohesion goes from all
-   * to none, so that a point that would open with it and close without stays
-   * closed with a part of it. Opening, normal force and limit of the shear are
-   * then continuous functions of one number, and slip and shear of their trial:
-   * 3 n equations H(x) = 0 in as many unknowns.
+   * The law of a point is the one of `solve_contact`. Where a point opens, the
+   * line of normal force over opening has a corner; there the cohesion falls
+   * from its full value to zero, so that a point that would open with cohesion
+   * and close without stays closed with a part of it. Opening, normal force and
+   * limit of the shear are then continuous functions of one number, and slip
+   * and shear of their trial: 3 n equations H(x) = 0 in as many unknowns.
    *
    * They have a solution. Let the gaps be wider by (1 - t) K, and the shear
    * that bonds resist across an opening t times as large. For large K all
@@ -47,11 +47,11 @@ namespace Voussoir
    * does where all is linear; it may turn back in t, since Coulomb friction may
    * have several solutions.
    *
-   * W is singular where nodes are fixed or there are more points than the nodes
-   * can tell apart; forces are then bounded no more, but the motion still is.
-   * The points are softened a little, and the solution then moved until nothing
-   * is left of that (proximal point method). Round-off may lose the path; it is
-   * then sought from other starts.
+   * W is singular where nodes are fixed or the contact constraints are linearly
+   * dependent; forces are then not bounded, but the motion still is. The points
+   * get a small compliance, whose effect on the solution is then removed by
+   * iteration (proximal point method). Round-off may lose the path; it is then
+   * sought from other starts.
    *
    * @param delassus    W, the Delassus operator, row by row [m/N]
    * @param gaps        b; their tangential parts are the slip since the last

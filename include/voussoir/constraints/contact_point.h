@@ -25,12 +25,12 @@ namespace Voussoir
     bool   locked   = false; // no slip (shear keys)
 
     // friction follows the pressure with a delay (see ContactPoint): the shear
-    // that it resists under the pressure of before [N], and the share of the
-    // present pressure that counts at once
+    // that it resists under earlier pressure [N], and the share of the present
+    // pressure that counts at once
     double lasting = 0., at_once = 1.;
 
-    /** Normal force at which it opens [N]; an opened bond has its tension open
-     *  only. */
+    /** Normal force at which it opens [N]; an opened bond resists tension only
+     * across its opening. */
     double
     opening_force() const
     {
@@ -75,16 +75,17 @@ namespace Voussoir
      * sliding of elastic bodies is ill-posed: waves along the interface grow
      * the faster the shorter they are (Renardy 1992; Ranjith and Rice 2001),
      * and the shortest ones of the mesh shake the sliding body on. Zero where
-     * as many points as nodes meet: there a pressure may be exchanged for
-     * shear, and what hangs on this choice must not be remembered.
+     * as many points as nodes meet: there pressure and shear are not unique,
+     * and the history must not depend on the choice.
      */
     double delay = 0.; // T [s]
 
-    // gap and slip where its nodes have not moved, in the frame [m]
+    // gap and slip at zero displacement of its nodes, in the frame [m]
     dealii::Tensor<1, 3> initial_gap;
 
-    // what a checkpoint must hold, all in the frame
-    dealii::Tensor<1, 3> force; // on the second node, without the given one [N]
+    // state for a checkpoint, all in the frame
+    dealii::Tensor<1, 3>
+      force; // on the second node, without uplift and bars [N]
     dealii::Tensor<1, 2> stick_point; // slip at the last stick [m]
     InterfaceHistory     history;
     double               bar_extension = 0.; // plastic [m]
@@ -94,15 +95,15 @@ namespace Voussoir
     // part of a change of the pressure that q follows in a step
     double at_once = 1.;
 
-    // these follow from the motion
+    // the following are computed from the motion
     dealii::Tensor<1, 3> gap;      // opening and slip now [m]
     dealii::Tensor<1, 3> velocity; // of the last half step [m/s]
     ContactStatus        status = ContactStatus::sticking;
     ContactLimits        limits;
     double given_force = 0.; // uplift and bars, apart is positive [N]
 
-    /** What the shear may be by the pressure of before [N], with this
-     *  coefficient of friction. */
+    /** Largest shear under the earlier pressure [N], with this coefficient of
+     * friction. */
     double
     lasting_friction(const double coefficient) const
     {

@@ -7,14 +7,14 @@
 
 namespace Voussoir
 {
-  /** Where the energy of a surface went since the start [J]; what the contact
-   *  did on the bodies is minus the sum. */
+  /** Energy that a surface has taken since the start [J]; the work of contact
+   * on the bodies is minus the sum. */
   struct ContactEnergy
   {
     double impact = 0., friction = 0., bond = 0., bars = 0., uplift = 0.;
   };
 
-  /** What the points of a surface (one joint, one plane) have in common. */
+  /** Data common to the points of a surface (one joint, one plane). */
   struct ContactSurface
   {
     const InterfaceLaw *law = nullptr;
@@ -35,7 +35,7 @@ namespace Voussoir
    * contact forces are found by ContactSolver in a step of time and by
    * StaticContact in the static state.
    *
-   * Knows neither mesh nor ranks: its nodes are those of the clusters of one
+   * Independent of mesh and ranks: its nodes are those of the clusters of one
    * rank.
    */
   class ContactPoints
@@ -56,13 +56,13 @@ namespace Voussoir
     unsigned int
     n_single() const;
 
-    /** Nodes and points that are solved together. */
+    /** A cluster: nodes and points that are solved together. */
     struct Cluster
     {
       unsigned int first_node, n_nodes, first_point, n_points;
     };
 
-    /** Those of several points. */
+    /** The clusters of several points. */
     const std::vector<Cluster> &
     clusters() const;
 
@@ -80,15 +80,16 @@ namespace Voussoir
     void
     update_limits(ContactPoint &point) const;
 
-    /** Sets q to the pressure of now. */
+    /** Sets q to the present pressure. */
     void
     catch_up_with_pressure(ContactPoint &point) const;
 
-    /** Lets the bars at a point flow that its gap has stretched too far. */
+    /** Lets the bars at a point flow that its gap has stretched beyond their
+     * yield strain. */
     void
     yield_bars(ContactPoint &point) const;
 
-    /** All that acts on the second node of a point, in global coordinates [N].
+    /** All forces on the second node of a point, in global coordinates [N].
      */
     static dealii::Tensor<1, 3>
     total_force(const ContactPoint &point);

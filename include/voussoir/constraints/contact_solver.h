@@ -9,10 +9,10 @@ namespace Voussoir
 {
   /**
    * Contact of clusters of coincident nodes at the end of a step: finds the
-   * forces that keep the predicted motion from penetration and from slip and
-   * opening that the interfaces resist. Exact, without penalty: a cluster of
-   * two nodes in closed form, others by their dense system if nothing slips or
-   * opens, else by projected Gauss-Seidel over their points and, where that
+   * forces that keep the predicted motion from penetration and from any slip
+   * and opening that the laws do not admit. Exact, without penalty: a cluster
+   * of two nodes in closed form, others by their dense system if nothing slips
+   * or opens, else by projected Gauss-Seidel over their points and, where that
    * goes slowly, Newton's iteration. Where these do not converge, by homotopy
    * (see contact_homotopy.h).
    *
@@ -31,15 +31,16 @@ namespace Voussoir
                  const std::vector<dealii::Tensor<2, 3>> &inverse_mass,
                  const double                             time_step);
 
-    /** What a solve took. */
+    /** Statistics of a solve. */
     struct Effort
     {
       double       penetration = 0.; // largest after the step [m]
       double       residual    = 0.; // change of force in the last sweep, rel.
       unsigned int sweeps      = 0;  // largest
       unsigned long long all_sweeps = 0, clusters = 0; // with sweeps
-      unsigned long long paths    = 0; // clusters that needed one
-      unsigned long long unsolved = 0; // clusters whose forces break their laws
+      unsigned long long paths = 0; // clusters that needed an iteration
+      unsigned long long unsolved =
+        0; // clusters whose forces violate their laws
     };
 
     /**
@@ -63,21 +64,22 @@ namespace Voussoir
     struct Cluster : ContactPoints::Cluster
     {
       // Delassus operator of all points, and its pseudo-inverse: the forces
-      // that hold all points are minus the stiffness times the gaps
+      // that close all points without slip are minus the stiffness times the
+      // gaps
       std::vector<double> delassus, stiffness;
 
       // forces over the root of the area, orthonormal, that move no node
       std::vector<std::vector<double>> self_equilibrated;
     };
 
-    /** The gap less the slip at the last stick, which is what the contact force
-     *  has to undo. */
+    /** The gap less the slip at the last stick, which the contact force has to
+     * remove. */
     static dealii::Tensor<1, 3>
     gap_to_hold(const ContactPoint         &point,
                 const dealii::Tensor<1, 3> &relative);
 
-    /** Size of the tangential part; std::hypot minds overflow, at ten times the
-     *  cost. */
+    /** Size of the tangential part; std::hypot guards against overflow, at ten
+     * times the cost. */
     static double
     tangential_norm(const dealii::Tensor<1, 3> &v)
     {
@@ -105,18 +107,19 @@ namespace Voussoir
               const Cluster                           &cluster,
               const std::vector<dealii::Tensor<1, 3>> &displacement);
 
-    /** Tries the forces that hold all points of a cluster; returns whether
-     *  these are within the limits. */
+    /** Tries the forces that keep all points of a cluster closed and sticking;
+     * returns whether these are within the limits. */
     bool
     hold_all(Points &points, const Cluster &cluster);
 
-    /** Adds to the motion of a cluster's nodes what a force on a point does. */
+    /** Adds the effect of a force on a point to the motion of a cluster's
+     * nodes. */
     void
     add_to_moves(const Cluster              &cluster,
                  const ContactPoint         &point,
                  const dealii::Tensor<1, 3> &force);
 
-    /** What the motion of a cluster's nodes does to the gap of a point. */
+    /** Change of a point's gap by the motion of the cluster's nodes. */
     dealii::Tensor<1, 3>
     relative_move(const Cluster &cluster, const ContactPoint &point) const;
 
@@ -124,7 +127,7 @@ namespace Voussoir
     void
     find_moves(const Points &points, const Cluster &cluster);
 
-    /** What a sweep over the points of a cluster changed. */
+    /** Changes by a sweep over the points of a cluster. */
     struct Sweep
     {
       double change  = 1.; // largest of a force [N]
@@ -182,8 +185,8 @@ namespace Voussoir
                              const Cluster &cluster,
                              const double   smallest_slip);
 
-    /** Takes the motion after the step into the history, that of a joined
-     *  point; returns the penetration. */
+    /** Updates the history of a point, whose interface is grouted, by the
+     * motion after the step; returns the penetration. */
     double
     update(ContactPoints                           &contact,
            ContactPoint                            &point,
@@ -199,8 +202,8 @@ namespace Voussoir
     std::vector<DelassusOperator>     point_operator;
     std::vector<unsigned int>         operator_of_point;
 
-    // of the cluster at hand: gaps without contact forces, forces that hold its
-    // points, motion of its nodes
+    // of the present cluster: gaps without contact forces, forces that keep its
+    // points sticking, motion of its nodes
     std::vector<dealii::Tensor<1, 3>> gaps, holding, moves;
   };
 } // namespace Voussoir

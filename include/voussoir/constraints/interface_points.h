@@ -11,8 +11,8 @@ namespace Voussoir
 {
   /**
    * The contact points of all interfaces of a case on this rank: where in the
-   * mesh they are, the exchange with the ranks of their nodes, and what the
-   * static stages do to them. Contact finds their forces in a step of time,
+   * mesh they are, the exchange with the ranks of their nodes, and their
+   * changes in the static stages. Contact finds their forces in a step of time,
    * StaticContact in the static state.
    */
   class InterfacePoints : public ContactPoints
@@ -70,7 +70,7 @@ namespace Voussoir
     std::vector<std::uint64_t>                   keys;
     std::vector<dealii::types::global_dof_index> first_nodes;
 
-    /** Whether the water of each interface is there. */
+    /** Whether the uplift of each interface acts. */
     std::vector<bool> has_water;
 
     /** Smallest side of a cell at the interfaces [m]. */
@@ -83,12 +83,12 @@ namespace Voussoir
     void
     find_uplift(const Discretization &discretization);
 
-    /** Gives the points of an interface its uplift if its water is there. */
+    /** Sets the uplift at the points of an interface if it acts. */
     void
     set_uplift(const unsigned int interface);
 
-    /** Lets the sides of an interface meet from now on; gap and slip begin at
-     *  this displacement of the nodes of the clusters. */
+    /** Grouts an interface: its sides are in contact from now on; gap and slip
+     * begin at this displacement of the nodes of the clusters. */
     void
     join(const unsigned int                       interface,
          const std::vector<dealii::Tensor<1, 3>> &displacement);

@@ -10,8 +10,8 @@ namespace Voussoir
 {
   /**
    * A constraint that corrects the predicted motion at the end of each step
-   * (contact, prescribed motion): it gets displacement and velocity as they
-   * would be without it and returns its momentum and energy.
+   * (contact, prescribed motion): it gets the displacement and velocity
+   * predicted without it and returns its impulse and work.
    */
   class Projection
   {
@@ -43,8 +43,8 @@ namespace Voussoir
     {}
 
     /** Inverse of the mass that the update divides by, of an owned node: a
-     *  momentum p changes its velocity by H p; zero where fixed, and for others
-     *  than those that prescribe it where the motion is prescribed. */
+     *  momentum p changes its velocity by H p; zero where fixed, and where the
+     * motion is prescribed, except for the projections that prescribe it. */
     using InverseMass =
       std::function<dealii::Tensor<2, 3>(const unsigned int node)>;
 

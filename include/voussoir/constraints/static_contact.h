@@ -7,11 +7,10 @@ namespace Voussoir
 {
   /**
    * The interfaces in static equilibrium, by the augmented Lagrangian of Alart
-   * and Curnier (1991): the force of a point is what its law makes of
-   *   F - r g ,
-   * with the gap g, a spring r and the multiplier F. Once F equals that force,
-   * the law holds exactly, whatever r is. Slip counts from the last stick, as
-   * in a step of the run.
+   * and Curnier (1991): the force of a point is the projection of F - r g to
+   * the admissible forces of its law , with the gap g, a spring r and the
+   * multiplier F. Once F equals that force, the law holds exactly, whatever r
+   * is. Slip counts from the last stick, as in a step of the run.
    */
   class StaticContact
   {
@@ -22,24 +21,24 @@ namespace Voussoir
      */
     StaticContact(InterfacePoints &interfaces, const Vector &stiffness);
 
-    /** A stage starts from the forces and slips of now. */
+    /** A stage starts from the present forces and slips. */
     void
     start_stage();
 
-    /** Adds the forces at a displacement [N]; `add_tangent` is then that
-     *  there. */
+    /** Adds the forces at a displacement [N]; `add_tangent` is then the tangent
+     * at this displacement. */
     void
     respond(Vector &force, const Vector &displacement);
 
     /**
-     * Moves the tangent towards that of points which all stick, of the bodies
-     * as one, by a share of the difference; 1 is all of it. Under such a
-     * tangent no block is detached, and no step goes too far.
+     * Moves the tangent by a share towards the one where all points stick; 1:
+     * all the way. Under such a tangent no block is detached, and no step goes
+     * too far.
      */
     void
     stiffen(const double share);
 
-    /** Leaves the tangent to closed points, which stick. */
+    /** From now on closed points, taken as sticking, make the tangent. */
     void
     tie(const Vector &displacement);
 
@@ -60,7 +59,7 @@ namespace Voussoir
     std::vector<Pair>
     pairs() const;
 
-    /** What an update of the multipliers changed, on all ranks. */
+    /** Changes by an update of the multipliers, on all ranks. */
     struct Change
     {
       double       force  = 0.; // norm of the change over that of the forces
@@ -68,17 +67,17 @@ namespace Voussoir
       unsigned int open = 0, slide = 0, all = 0; // points
     };
 
-    /** The forces of the last response become the multipliers, and points
-     *  remember how far they opened and slipped. */
+    /** The forces last evaluated become the multipliers, and the history of the
+     * points takes in their opening and slip. */
     Change
     update();
 
-    /** The points keep how far they opened and slipped in this stage, and the
-     *  slip of the next one counts from here. */
+    /** The history of the points takes in opening and slip of this stage, and
+     * the slip of the next one counts from here. */
     void
     finish_stage();
 
-    /** Takes back all that was found in this stage. */
+    /** Restores the state at the beginning of this stage. */
     void
     restore();
 
@@ -86,7 +85,7 @@ namespace Voussoir
     void
     find_gaps(const Vector &displacement);
 
-    /** That of point @p k if this stage ended now. */
+    /** History of point @p k if this stage ended now. */
     InterfaceHistory
     history_at(const unsigned int k) const;
 

@@ -31,7 +31,7 @@ namespace Voussoir
   }
 
 
-  /** What a number of the summary must not exceed or fall below. */
+  /** A limit of a number of the summary. */
   struct AcceptanceCriterion
   {
     std::string name, clause, source, quantity, at_most, at_least;
@@ -50,7 +50,7 @@ namespace Voussoir
     void
     check() const;
 
-    /** Those of the load cases that the run is. */
+    /** Criteria of the load cases of the run. */
     std::vector<AcceptanceCriterion>
     of_the_run() const;
 
@@ -64,8 +64,9 @@ namespace Voussoir
     table(const nlohmann::json &summary) const;
 
   private:
-    std::string                    names, load_cases;
-    std::list<AcceptanceCriterion> criteria; // whose places prm knows
+    std::string names, load_cases;
+    std::list<AcceptanceCriterion>
+      criteria; // of which prm stores the addresses
   };
 
   /** A number beside its limit, as a line of a table: "value", "at most" or "at
@@ -80,8 +81,7 @@ namespace Voussoir
   nlohmann::json
   without_limit(const double value);
 
-  /** Names of the lines of a table that are not met, or of which nobody
-   *  knows. */
+  /** Names of the lines of a table that are not met, or are not assessed. */
   std::vector<std::string>
   not_met(const nlohmann::json &table);
 

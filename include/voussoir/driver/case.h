@@ -28,7 +28,7 @@ namespace Voussoir
    * The objects of one kind that a case names, each a section of its own: `set
    * Names = concrete, rock` and, in the section of that name, the class it is
    * of and the entries of that class. They have the values of the file and do
-   * not change; what changes with a model or a run is made anew.
+   * not change; objects that change with a model or a run are made anew.
    */
   template <typename Base>
   class NamedObjects
@@ -39,8 +39,8 @@ namespace Voussoir
     /**
      * Declares those that the entry "Names" of a section lists.
      *
-     * @param section       where the list stands
-     * @param what          what one of them is, for the description
+     * @param section       where the list is
+     * @param what          noun for an object, for the description
      * @param default_class of one that names none
      * @param can_rest      whether one can be inactive
      */
@@ -181,8 +181,8 @@ namespace Voussoir
      *  the mesh is left out. */
     std::vector<std::string> added_observers;
 
-    /** Values that are hardly meant so, and sections that are not used, for the
-     *  log. */
+    /** Values outside their usual range, and sections that are not used, for
+     *  the log. */
     std::vector<std::string> warnings, notes;
 
     /** The mesh that the case asks for, checked; a report goes to @p log. */
@@ -220,12 +220,12 @@ namespace Voussoir
     void
     declare_unused_observers(const std::vector<std::string> &used);
 
-    /** Lets the uplift of interfaces come with the first load of water, where
-     *  the file does not name one. */
+    /** Makes the uplift of interfaces act from the first load of water on,
+     *  where the file does not name a load. */
     void
     find_water_of_uplift();
 
-    /** Refuses what reproducible sums do not cover. */
+    /** Refuses cases whose sums cannot be reproducible. */
     void
     check_reproducible() const;
 

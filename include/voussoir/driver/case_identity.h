@@ -11,26 +11,26 @@
 namespace Voussoir
 {
   /**
-   * What must not change between a checkpoint and the run that goes on from it:
-   * each entry but those for the duration and for what is written when,
+   * Data that must not change between a checkpoint and the run that continues
+   * from it: each entry but those for the duration and for the times of output,
    * as "Section/Entry = value", and the checksums of the files that entries
    * name.
    */
   nlohmann::json
   identity_of(const Case &parameters);
 
-  /** What must be the same for a static state to be that of a case: the program
-   *  and those entries and files that it depends on. */
+  /** Data that must be the same for a static state to be valid for a case: the
+   *  program and those entries and files that it depends on. */
   nlohmann::json
   static_identity_of(const Case &parameters);
 
-  /** What the results of a run depend on: as identity_of(), and how long the
-   * run goes on and what it writes when. */
+  /** Data that the results of a run depend on: identity_of() with the duration
+   *  and the times of output. */
   nlohmann::json
   result_identity_of(const Case &parameters);
 
   /** The first entry in which two identities differ, as each has it ("nothing"
-   *  if it does not). Files are compared by what they hold: they may have been
+   *  if it does not). Files are compared by their contents: they may have been
    *  moved. */
   std::optional<std::pair<std::string, std::string>>
   first_difference(const nlohmann::json &one, const nlohmann::json &other);

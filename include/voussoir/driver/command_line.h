@@ -7,7 +7,7 @@
 
 namespace Voussoir
 {
-  /** What `voussoir` does for its arguments; returns the exit code. */
+  /** Runs `voussoir` with its arguments; returns the exit code. */
   int
   run_command_line(const int argc, char **argv, const MPI_Comm communicator);
 

@@ -11,8 +11,8 @@ namespace Voussoir
   /** The motion of the ground that a case gives or has made. */
   struct EarthquakeMotion
   {
-    /** Reads or makes the motion and reports it. Throws UserError for one that
-     *  cannot enter the model as the case wants. */
+    /** Reads or makes the motion and reports it. Throws UserError for a motion
+     *  that cannot enter the model in the given way. */
     EarthquakeMotion(const Model &model, Log &log);
 
     /** None where the ground does not move; the earthquake takes them. */
@@ -23,11 +23,12 @@ namespace Voussoir
     std::array<std::vector<double>, 3> accelerations;
     static constexpr double            sample_interval = 1e-3;
 
-    /** How recorded components fit the spectrum that they are matched to. */
+    /** Misfit of recorded components to the spectrum that they are matched to.
+     */
     std::vector<SpectrumFit> fits;
 
-    /** The time to which a motion that never ends was followed down from the
-     *  free surface, on which it depends a little [s]; 0 otherwise. */
+    /** Time up to which a motion without end was deconvolved from the free
+     *  surface, on which the result depends a little [s]; 0 otherwise. */
     double followed_to = 0.;
   };
 
@@ -43,7 +44,7 @@ namespace Voussoir
     /** The ground under the model, at rest unless it is a rigid base. */
     RigidBase base;
 
-    /** What enters through the absorbing boundary, or null. */
+    /** The wave that enters through the absorbing boundary, or null. */
     std::unique_ptr<IncomingWave> wave;
   };
 } // namespace Voussoir

@@ -7,7 +7,7 @@
 namespace Voussoir
 {
   /**
-   * The folder, shared by the runs beside each other, in which static states
+   * The folder, shared by several runs, in which static states
    * are kept for later runs: of the same program, mesh, materials, interfaces,
    * boundaries, loads and stages, with any earthquake and on any number of
    * ranks.
@@ -18,11 +18,11 @@ namespace Voussoir
     /** @param folder of this run, claimed */
     KeptStates(const Model &model, const ResultFolder &folder, Log &log);
 
-    /** The state of such a run; none if there is none, or it is damaged. */
+    /** The kept state for this run; none if there is none, or it is damaged. */
     std::optional<StaticState>
     find() const;
 
-    /** Keeps the state, unless another run is about to do that; if that fails,
+    /** Keeps the state, unless another run is writing it; if that fails,
      *  the log has a warning. */
     void
     keep(const StaticState &static_state) const;

@@ -7,9 +7,9 @@
 namespace Voussoir
 {
   /**
-   * Warns of what can be computed, but hardly is meant: a mesh in another unit
-   * or turned, an outer side that is forgotten, rock that weighs, water that
-   * stands on one face and swings with another.
+   * Warns of probable mistakes that can be computed all the same: a mesh in
+   * another unit or turned, an outer side without boundary condition, rock with
+   * weight, water whose pressure and whose added mass act on different faces.
    *
    * @param materials of the cells of @p mesh
    */

@@ -11,9 +11,9 @@
 namespace Voussoir
 {
   /**
-   * What stands before anything moves: grid, materials, mass, internal force,
-   * boundary, loads, reservoir, interfaces. Several runs may stand side by side
-   * on one model; none of them changes it.
+   * All parts of a case that do not change with time: grid, materials, mass,
+   * internal force, boundary, loads, reservoir, interfaces. Several runs may
+   * use one model; none of them changes it.
    */
   class Model
   {
@@ -60,7 +60,7 @@ namespace Voussoir
     const Solid             solid;
     const AbsorbingBoundary boundary;
 
-    /** Those of the case by name, in their order. */
+    /** Materials of the case by name, in their order. */
     const std::vector<std::pair<std::string, std::unique_ptr<const Load>>>
       loads;
 
@@ -70,11 +70,12 @@ namespace Voussoir
     /** Compressible water, or null. */
     const std::shared_ptr<const Reservoir> reservoir;
 
-    /** Cells of water that the natural modes want, or null; that of the run if
+    /** Cells of water that the natural modes need, or null; that of the run if
      *  it has some. */
     const std::shared_ptr<const Reservoir> reservoir_of_modes;
 
-    /** What boundary, loads and water put on nodes. */
+    /** Springs, dashpots, masses and forces of boundary, loads and water on
+     *  nodes. */
     const NodalTerms terms;
 
     /** The interfaces before any load acts, or null. */
@@ -97,7 +98,8 @@ namespace Voussoir
     void
     report_materials(Log &log) const;
 
-    /** Springs go by the distance from it, wherever it is. */
+    /** The stiffness of springs follows from the distance to this point, which
+     *  may lie anywhere. */
     void
     check_source_point(Log &log) const;
 

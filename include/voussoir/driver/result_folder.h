@@ -9,13 +9,13 @@
 
 namespace Voussoir
 {
-  /** Removes what a run that was killed was writing in a folder: files without
+  /** Removes what a killed run left in a folder: files without
    *  their end, and the locks of Open MPI beside them.
    *  @param start of their names */
   void
   remove_unfinished(const std::string &folder, const std::string &start = "");
 
-  /** How the command line wants a case to be run. */
+  /** Options of a run from the command line. */
   struct RunOptions
   {
     bool restart   = false;
@@ -30,17 +30,17 @@ namespace Voussoir
     bool validate = false;
   };
 
-  /** Where the results of a run go, and the checkpoint there that it goes on
+  /** Where the results of a run go, and the checkpoint there that it continues
    *  from. */
   class ResultFolder
   {
   public:
     /**
      * Looks for the folder, but writes nothing: the one that the case names,
-     * with the next free number added if it exists; a restart goes on in the
+     * with the next free number added if it exists; a restart continues in the
      * one with the newest checkpoint. Throws UserError if it cannot be written
      * to or must not be overwritten, if another run is writing there, or if
-     * there is no checkpoint, or one of other physics.
+     * there is no checkpoint, or one of a different case.
      */
     ResultFolder(const Case &parameters, const RunOptions &options, Log &log);
 
@@ -69,7 +69,7 @@ namespace Voussoir
     std::string
     checkpoints() const;
 
-    /** The checkpoint that a restart goes on from. */
+    /** The checkpoint that a restart continues from. */
     const std::string &
     checkpoint_file() const;
 
@@ -87,7 +87,8 @@ namespace Voussoir
     void
     find_checkpoint(Log &log);
 
-    /** Refuses to go on with files shorter than the checkpoint knows them. */
+    /** Refuses to continue files that are shorter than when the checkpoint was
+     *  written. */
     void
     check_sizes() const;
 

@@ -12,9 +12,9 @@
 namespace Voussoir
 {
   /**
-   * One earthquake on a model: what is marched, what watches it, and the time
-   * loop. All that changes with time is its own, so that another run can be
-   * made on the same model and starts clean.
+   * One earthquake on a model: its state, its observers, and the time loop. All
+   * that changes with time is its own, so that another run can be made on the
+   * same model and starts clean.
    */
   class Run
   {
@@ -38,16 +38,16 @@ namespace Voussoir
     RunSummary
     march();
 
-    /** What comes before the first step. */
+    /** Evaluation and output before the first step. */
     void
     begin();
 
-    /** One step, with what watches it. */
+    /** One step, with its observers. */
     void
     step();
 
     /** Writes the remaining results. Throws UserError if results could not be
-     * written.
+     *  written.
      */
     RunSummary
     end();

@@ -7,7 +7,7 @@
 
 namespace Voussoir
 {
-  /** The checkpoints of a run, and the way back from them. */
+  /** Writes and reads the checkpoints of a run. */
   class RunCheckpoints
   {
   public:
@@ -18,7 +18,7 @@ namespace Voussoir
                    Contact            *contact,
                    Log                &log);
 
-    /** Whether the case wants one after a step, by its simulated time. */
+    /** Whether a checkpoint is due after a step, by its simulated time. */
     bool
     are_due(const unsigned long long step) const;
 
@@ -26,7 +26,7 @@ namespace Voussoir
     bool
     write(State &state, const EnergyBalance &energy) const;
 
-    /** Takes the one that the folder names. */
+    /** Restores the state from the checkpoint that the folder names. */
     void
     read(State &state, EnergyBalance &energy) const;
 
@@ -35,7 +35,7 @@ namespace Voussoir
     std::vector<Sum *>
     sums_of_rank(State &state) const;
 
-    /** The same of what no reproducible sum holds. */
+    /** The energies that are not summed reproducibly. */
     std::vector<double *>
     plain_sums_of_rank() const;
 
@@ -43,7 +43,7 @@ namespace Voussoir
     StateContent
     content_of(State &state) const;
 
-    /** Of the files that grow, by name in the output folder [bytes]. */
+    /** Sizes of the growing files, by name in the output folder [bytes]. */
     nlohmann::json
     sizes_of_files() const;
 

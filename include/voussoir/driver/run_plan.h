@@ -7,19 +7,19 @@
 namespace Voussoir
 {
   /**
-   * What a run is to have that does not depend on its damping, which may go by
-   * the natural modes and so by the static state. What can be refused of it is
-   * refused here, before these are computed.
+   * The parts of a run that do not depend on its damping, which may be fitted
+   * to the natural modes and so depend on the static state. Mistakes in them
+   * are refused here, before these are computed.
    */
   class RunPlan
   {
   public:
-    /** Throws UserError for what cannot be computed or recorded.
+    /** Throws UserError for a run that cannot be computed or recorded.
      *
-     * @param model must live as long as this */
+     *  @param model must live as long as this */
     RunPlan(const Model &model, Log &log);
 
-    /** What observers see of the model. */
+    /** Access of observers to the model. */
     ObservedModel
     observed(Log &log) const;
 

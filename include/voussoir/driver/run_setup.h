@@ -8,8 +8,8 @@
 namespace Voussoir
 {
   /**
-   * What a run is made of besides the static state: its plan, damping and what
-   * goes with that, as the moduli and the time step.
+   * The parts of a run besides the static state: its plan, its damping, and the
+   * moduli and the time step, which depend on damping.
    */
   class RunSetup
   {
@@ -17,9 +17,10 @@ namespace Voussoir
     /**
      * Throws UserError if there is no such time step.
      *
-     * @param modes  to which damping is adapted, if the case wants that; before
-     *   they are known there is none, which allows for the longest step
-     * @param folder whose checkpoint, if the run goes on from one, has the step
+     * @param modes  to which damping is fitted, if the case asks for that;
+     * before they are known there is no damping, which allows the longest step
+     * @param folder whose checkpoint, if the run continues from one, has the
+     * step
      */
     RunSetup(RunPlan           &&plan,
              const Modes        &modes,
@@ -48,7 +49,8 @@ namespace Voussoir
 
     const Damping damping;
 
-    /** Of the run: the moduli hold at the reference frequency of damping. */
+    /** Internal force of the run: the moduli hold at the reference frequency of
+     *  damping. */
     const InternalForce internal_force;
 
     const TimeStep                     time_step;
@@ -56,8 +58,8 @@ namespace Voussoir
     const std::unique_ptr<WaterMotion> water; // compressible, or null
   };
 
-  /** Refuses time steps of a case that no damping would allow, and says which
-   *  are the longest. */
+  /** Refuses time steps of a case that are unstable under any damping, with the
+   *  longest stable ones. */
   void
   check_without_damping(const RunPlan      &plan,
                         const ResultFolder &folder,

@@ -9,13 +9,13 @@
 
 namespace Voussoir
 {
-  /** Of the worst cells of a material. */
+  /** Shape of the worst cells of a material. */
   struct CellQuality
   {
     double scaled_jacobian, aspect_ratio, smallest_angle; // [degrees]
   };
 
-  /** What a run is computed on. */
+  /** Size of a run: program, ranks, mesh. */
   struct ModelSummary
   {
     std::string                        version, title;
@@ -65,7 +65,7 @@ namespace Voussoir
     double             stored, lost; // energy [J]
   };
 
-  /** What the time steps came to. */
+  /** Results of the time steps. */
   struct MarchSummary
   {
     unsigned long long                n_steps;
@@ -98,7 +98,7 @@ namespace Voussoir
     std::optional<StepSummary>  step;  // none before its damping was known
     std::optional<MarchSummary> march; // none before its first step
 
-    /** What observers found, under the names they gave it. */
+    /** Results of observers, under the names that they gave them. */
     nlohmann::json observers = nlohmann::json::object();
 
     /** Tables of lines with "met", see verdict_tables.h and
@@ -120,7 +120,7 @@ namespace Voussoir
   };
 
   /** The contents of summary.json, which are written and read here alone. A
-   *  study reads what earlier runs have left. */
+   *  study reads the summaries of earlier runs. */
   void
   to_json(nlohmann::json &json, const RunSummary &summary);
 
@@ -158,7 +158,7 @@ namespace Voussoir
 
   class Run;
 
-  /** Of a run so far, but for its observers; called on all ranks. */
+  /** Results of a run so far, without its observers; called on all ranks. */
   RunSummary
   summary_of(const Run &run);
 

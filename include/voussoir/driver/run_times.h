@@ -8,7 +8,7 @@
 
 namespace Voussoir
 {
-  /** What a run takes of the clock. */
+  /** Wall times of a run. */
   class RunTimes
   {
   public:

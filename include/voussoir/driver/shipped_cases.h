@@ -15,7 +15,7 @@ namespace Voussoir
   std::string
   find_case(const std::string &name);
 
-  /** A line for each shipped case: its name, and what its head calls it. */
+  /** A line for each shipped case: its name, and the title in its head. */
   void
   list_shipped_cases(std::ostream &out);
 } // namespace Voussoir

@@ -12,8 +12,8 @@ namespace Voussoir
   class Simulation
   {
   public:
-    /** Throws UserError for whatever cannot be computed, before the static
-     * state is found and before the output folder is made. */
+    /** Throws UserError for a case that cannot be computed, before the static
+     *  state is found and before the output folder is made. */
     Simulation(const Case       &parameters,
                const RunOptions &options,
                const MPI_Comm    communicator);

@@ -14,7 +14,7 @@ namespace Voussoir
 
     InitialState initial;
 
-    /** The interfaces as the static stages leave them; none without. */
+    /** The interfaces after the static stages; none without. */
     std::optional<Contact> contact;
 
     /** Resultants, reactions and iterations by stage; null without. */
@@ -33,7 +33,7 @@ namespace Voussoir
               const InternalForce &internal_force,
               Log                 &log);
 
-  /** Refuses natural modes that the model cannot have. */
+  /** Refuses more natural modes than the model has. */
   void
   check_modes(const Model &model);
 

@@ -9,8 +9,8 @@ namespace Voussoir
    * Writes the static state into a file, so that it need not be found again;
    * throws UserError if that fails.
    *
-   * @param identity by which other runs know the state, see
-   * static_identity_of(); none where the run itself reads it
+   * @param identity by which other runs find the state, see
+   * static_identity_of(); none where only the run itself reads it
    */
   void
   store_static_state(const Model          &model,
@@ -19,7 +19,7 @@ namespace Voussoir
                      const nlohmann::json &identity = {});
 
   /** Reads the static state; throws UserError if the file is not whole or does
-   * not fit. */
+   *  not fit. */
   StaticState
   read_static_state(const Model &model, const std::string &file);
 

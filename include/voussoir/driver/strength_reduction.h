@@ -11,8 +11,9 @@ namespace Voussoir
   strengths_left(const Case                     &parameters,
                  const std::vector<std::string> &reduced);
 
-  /** A strength divided by what reduces it; of an angle of friction the tangent
-   *  is. Throws UserError if the entry is no strength, or the divisor none. */
+  /** A strength divided by a reduction factor; an angle of friction is reduced
+   *  by its tangent. Throws UserError if the entry is no strength, or the
+   *  factor is not positive. */
   std::string
   reduced_strength(const std::string &entry,
                    const std::string &strength,

@@ -36,9 +36,9 @@ namespace Voussoir
     ~Study();
 
     /** All runs, then study.csv and study.json. A run that fails is reported,
-     *  and the others go on; in the end that is IncompleteStudy, or UserError
-     *  if no run stands. Throws UserError, too, if another study is going on in
-     *  the folder. */
+     *  and the others continue; in the end that is IncompleteStudy, or
+     *  UserError if no run stands. Throws UserError, too, if another study is
+     *  in progress in the folder. */
     void
     run();
 
@@ -61,7 +61,7 @@ namespace Voussoir
       nlohmann::json numbers; // of the summary, by their paths
     };
 
-    /** What the search found: the criterion is met at `meets`, not at
+    /** Result of a search: the criterion is met at `meets`, not at
      *  `fails`. */
     struct Limit
     {
@@ -84,7 +84,7 @@ namespace Voussoir
     void
     conclude() const;
 
-    /** Does a run, or takes its results if they exist. */
+    /** Makes a run, or reads its results if they exist. */
     const Outcome &
     outcome_of(const StudyValues &values);
 

@@ -50,7 +50,7 @@ namespace Voussoir
     std::vector<StudyValues>
     combinations() const;
 
-    /** Those over which statistics are wanted, with their partners. */
+    /** Entries over which statistics are computed, with their partners. */
     std::vector<std::string>
     spread_entries() const;
 

@@ -5,7 +5,7 @@
 
 namespace Voussoir
 {
-  /** What runs gave for one quantity; nothing where one ended early. */
+  /** Values of one quantity in several runs; none where a run ended early. */
   using Sample = std::vector<std::optional<double>>;
 
   /** Mean and spread of a sample, and the values that 16, 50 and 84 % of the

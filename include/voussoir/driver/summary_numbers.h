@@ -13,10 +13,9 @@ namespace Voussoir
 
   /**
    * A number of summary.json by its path, as "histories/crest/largest
-   * displacement [m]"; a star in a name stands for any letters, and
-   * things in a list go by their number, from 0. Of several that
-   * fit it is the largest, or the smallest if the last name begins with that
-   * word.
+   * displacement [m]"; a star in a name stands for any letters, and elements of
+   * a list are named by their index, from 0. Of several numbers that fit the
+   * largest counts, or the smallest if the last name begins with that word.
    */
   class SummaryNumber
   {
@@ -73,13 +72,14 @@ namespace Voussoir
     /** Throws UserError, which names the place, if it is none of these. */
     Criterion(const std::string &text, const std::string &place);
 
-    /** The number that it is about, or null. */
+    /** The number in the criterion, or null. */
     const SummaryNumber *
     about() const;
 
-    /** The number, if it is about one, and whether it meets the criterion. A
-     *  run that was stopped meets what happened before. Throws UserError if a
-     *  run that went to its end does not have the number. */
+    /** The number, if the criterion has one, and whether it meets the
+     *  criterion. A run that was stopped meets criteria that were met before.
+     *  Throws UserError if a run that went to its end does not have the number.
+     */
     std::pair<std::optional<double>, bool>
     evaluate(const RunSummary &summary) const;
 

@@ -5,8 +5,8 @@
 
 namespace Voussoir
 {
-  /** Watches whether a run goes well: warns of what its results must not be
-   *  read without, each once, and reports why it must stop. */
+  /** Supervises a run: warns once of each limitation of its results, and
+   *  reports why it must stop. */
   class Supervision
   {
   public:
@@ -23,7 +23,7 @@ namespace Voussoir
     std::string
     check_energy(const State &state);
 
-    /** Keeps what a picture of the last good state needs. */
+    /** Stores the data for a picture of the last good state. */
     void
     keep(const State &state);
 
@@ -45,7 +45,8 @@ namespace Voussoir
     void
     check_cracks(const double time);
 
-    /** Warns of slips so far that nodes no longer face those they act on. */
+    /** Warns of slips so large that nodes no longer lie opposite their
+     *  partners. */
     void
     check_slips(const double time);
 
@@ -53,9 +54,9 @@ namespace Voussoir
     const EnergyBalance &energy;
     const double         energy_limit;
     const bool           has_memory;
-    const Schedule       checks;    // of cracks and slips
-    State                last_good; // without the memory of materials
-    bool                 warned_of_energy = false, warned_of_cracks = false,
+    const Schedule       checks; // of cracks and slips
+    State last_good;             // without the internal variables of materials
+    bool  warned_of_energy = false, warned_of_cracks = false,
          warned_of_slips = false;
   };
 } // namespace Voussoir

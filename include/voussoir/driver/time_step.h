@@ -11,19 +11,19 @@ namespace Voussoir
   double
   undamped_step(const Model &model, const InternalForce &internal_force);
 
-  /** The time step of a run, and what limits it. */
+  /** The time step of a run, and its limits. */
   struct TimeStep
   {
     /**
      * Finds the limits and chooses the step by the section "Time" of the case.
      * Throws UserError if the step that the case gives is above the limit.
      *
-     * @param internal_force that of the run, which the damping goes with
+     * @param internal_force that of the run, on which damping depends
      * @param undamped_limit undamped_step(), or 0 where damping does not change
      *   it
      * @param kept step of a checkpoint, which is taken instead [s]
-     * @param interval of a record, of which the step becomes a whole part if it
-     *   grows shorter by a tenth at most [s]; 0: none
+     * @param interval of a record, of which the step becomes an integer
+     * fraction if that shortens it by a tenth at most [s]; 0: none
      */
     TimeStep(const Model                 &model,
              const InternalForce         &internal_force,

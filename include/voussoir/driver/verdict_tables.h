@@ -17,8 +17,8 @@ namespace Voussoir
 
   class Run;
 
-  /** These and what the run has shown: end, energy balance, contact, slips and
-   *  cracks too wide for the model, missing files. Called on all ranks. */
+  /** The same, and checks after the run: end, energy balance, contact, slips
+   *  and cracks too wide for the model, missing files. Called on all ranks. */
   nlohmann::json
   numerical_checks(const Run &run);
 

@@ -20,10 +20,10 @@ namespace Voussoir
     Rounding *rounding = nullptr; // of forces; null: they stay as they are
   };
 
-  /** A step of time as points with memory see it. */
+  /** A time step, as passed to laws with internal variables. */
   struct PointStep
   {
-    // [s]; unless given, laws with viscosity follow at once
+    // [s]; unless given, laws have no viscosity
     double length            = std::numeric_limits<double>::max();
     double closing_viscosity = 0.; // c of DampedResponse [s]
     double branches          = 0.; // sum of the D_i of Maxwell damping [1]
@@ -31,12 +31,12 @@ namespace Voussoir
   };
 
 
-  /** What bounds the forces of cells in a step that is stable: with the force
+  /** Bounds of the forces of cells in a stable step: with the force
    *  K_e u_e of a cell, K_e <= K <= 4 M / dt^2 . */
   struct MotionBound
   {
     /** Vectors with factors [m]: no entry of the displacement or, with s = 1,
-     * of x + s w of SweepInput is above the sum of their largest ones. */
+     *  of x + s w of SweepInput is above the sum of their largest ones. */
     std::vector<std::pair<const Vector *, double>> parts;
 
     const Vector &mass;      // M [kg]
@@ -45,11 +45,11 @@ namespace Voussoir
 
 
   /**
-   * What a sweep over the cells reads. With the damping memory w, which filters
-   * follow the displacement u, the strain of elastic points is
-   *   B (x + s w) ,
-   * where x stands for u and what damping adds to it alike in all materials. A
-   * law with memory goes by B u as well: damping does not reach into cracks.
+   * Input of a sweep over the cells. With the damping memory w, which are
+   * filters of the displacement u, the strain of elastic points is B (x + s w)
+   * , where x is u plus the part of damping that is the same in all materials.
+   * A law with internal variables needs B u as well: damping does not act in
+   * cracks.
    */
   struct SweepInput
   {
@@ -65,7 +65,7 @@ namespace Voussoir
     const Vector      &filtered;     // x [m]
     Damping            damping;
     const Vector      *damping_memory = nullptr; // w [m], if `by_material`
-    PointStep          step           = {};      // of points with memory
+    PointStep          step           = {}; // of laws with internal variables
     const MotionBound *bound          = nullptr; // null: none is known
 
     /** Strain of the displacement alone, which laws follow at once. */
@@ -78,7 +78,7 @@ namespace Voussoir
 
 
   /**
-   * What the energy of a damped motion depends on, after the step from the
+   * Input of the energy of a damped motion, after the step from the
    * velocity v- to v+ : the displacement u since the static state, and the
    * damping memory w that the step had.
    */
@@ -93,7 +93,7 @@ namespace Voussoir
   };
 
 
-  /** What the energy of the points depends on that have left the elastic range.
+  /** Input of the energy of points that have left the elastic range.
    */
   struct InelasticMotion
   {
@@ -152,7 +152,7 @@ namespace Voussoir
     {}
 
     Sum stored;  // half a step before the displacement
-    Sum damping; // of what damping has taken, not lost
+    Sum damping; // of the work on damping, the stored part
 
     InelasticEnergy &
     operator+=(const InelasticEnergy &other)
@@ -164,8 +164,9 @@ namespace Voussoir
   };
 
   /**
-   * What a material does with a run of cell batches: the only virtual call of
-   * the cell loop. All vectors that are read must have their ghost values.
+   * The operations of a material on a run of cell batches: the only virtual
+   * calls of the cell loop. All vectors that are read must have their ghost
+   * values.
    */
   class CellKernel
   {
@@ -182,13 +183,14 @@ namespace Voussoir
               const SweepInput &input,
               Vector           &force) const = 0;
 
-    /** Numbers that each integration point remembers; 0 for a linear law. */
+    /** Internal variables of each integration point; 0 for a linear law. */
     virtual unsigned int
     n_history() const = 0;
 
     /**
-     * Like add_force, but by the law with its memory, which goes one step on;
-     * see DampedResponse. While the law is elastic, this is add_force.
+     * Like add_force, but by the law with its internal variables, which advance
+     * by one step; see DampedResponse. While the law is elastic, this is
+     * add_force.
      */
     virtual void
     add_response(const CellRange  &cells,
@@ -196,8 +198,8 @@ namespace Voussoir
                  Vector           &force,
                  PointHistory     &history) const = 0;
 
-    /** Lets the history know the temperature T [K] of each node in the static
-     *  state: the strain offset e_0 = - alpha T I. */
+    /** Sets the strain offset of the history in the static state, e_0 = - alpha
+     *  T I, for the temperature T [K] of each node. */
     virtual void
     set_thermal_strain(const CellRange &cells,
                        PointHistory    &history,
@@ -209,11 +211,11 @@ namespace Voussoir
     hand_over(const CellRange &cells, PointHistory &history) const = 0;
 
     /**
-     * Lets the history know the static displacement u_s [m] and the temperature
-     * T [K] of each node: the strain offset e_0, with which an elastic point
-     * has the strain a (B u_s - alpha T I) for the static factor a of the
-     * material and another one that of `hand_over`, and the elastic strain e_s;
-     * see DampedResponse.
+     * Sets the strain offset e_0 and the elastic strain e_s of the history for
+     * the static displacement u_s [m] and the temperature T [K] of each node.
+     * With e_0 an elastic point has the strain a (B u_s - alpha T I) for the
+     * static factor a of the material, any other point the strain of
+     * `hand_over`; see DampedResponse.
      */
     virtual void
     set_static_state(const CellRange &cells,
@@ -221,8 +223,8 @@ namespace Voussoir
                      const Vector    &displacement,
                      const Vector    &temperature) const = 0;
 
-    /** Energy of the points that are elastic; by @p history, which comes to
-     *  know their imbalance, null: all. */
+    /** Energy of the points that are elastic; by @p history, which stores their
+     *  imbalance; null: all. */
     virtual ElasticEnergy
     elastic_energy(const CellRange    &cells,
                    const DampedMotion &motion,
@@ -230,7 +232,7 @@ namespace Voussoir
 
     /**
      * Energy since the static state of the points that have left the elastic
-     * range, less what the forces of that state do.
+     * range, less the work of the forces of that state.
      */
     virtual InelasticEnergy
     inelastic_energy(const CellRange       &cells,
@@ -251,7 +253,8 @@ namespace Voussoir
      * Integral of k D epsilon(u) : epsilon(v) over the points that are elastic
      * [J].
      *
-     * @param history memory of the material; null: all of it is elastic
+     * @param history internal variables of the material; null: all of it is
+     * elastic
      */
     virtual double
     work(const CellRange    &cells,

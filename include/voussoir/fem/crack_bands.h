@@ -7,7 +7,7 @@
 namespace Voussoir
 {
   /**
-   * The shape of the cells of a batch as cracks see it: the width of the band
+   * The shape of the cells of a batch for cracks: the width of the band
    * that a crack with the normal n takes (Oliver 1989),
    *   l(n) = 2 / sum_a |n . grad N_a|
    * over the corner functions at the centre. As these

@@ -51,7 +51,7 @@ namespace Voussoir
     bool
     follows_first_mode() const;
 
-    /** Whether the damping of a case with modes is known only with them. */
+    /** Whether the damping depends on the natural modes. */
     bool
     depends_on_modes() const;
   };
@@ -70,12 +70,13 @@ namespace Voussoir
     /**
      * @param natural_frequencies at those of the two modes that the parameters
      *   name Rayleigh damping has its ratio, and the first is the reference of
-     *   Maxwell damping, if the parameters want that [Hz]
+     *   Maxwell damping, if the parameters ask for it [Hz]
      */
     explicit Damping(const DampingParameters   &parameters,
                      const std::vector<double> &natural_frequencies = {});
 
-    /** Gives a mesh of this stable step without damping its viscosity [s]. */
+    /** Sets the viscosity for a mesh with this stable step without damping [s].
+     */
     void
     add_mesh_viscosity(const double undamped_limit);
 
@@ -83,8 +84,8 @@ namespace Voussoir
     double
     reference_frequency() const;
 
-    /** What the moduli are in free vibration at a frequency [Hz], over the
-     * given ones, for a material of factor s. */
+    /** Moduli in free vibration at a frequency [Hz] over the given ones, for a
+     *  material of factor s. */
     double
     modulus(const double frequency, const double factor = 1.) const;
 
@@ -94,9 +95,10 @@ namespace Voussoir
     /** Stiffness-proportional coefficient beta [s]. */
     double stiffness_coefficient = 0.;
 
-    /** Viscosity of what the mesh does not carry [s]: it acts on the velocity
-     * as the stiffness-proportional coefficient, whatever the material's
-     * factor, and under every model. See DampingParameters::mesh_viscosity. */
+    /** Viscosity for frequencies above those that the mesh carries [s]: it acts
+     *  on the velocity as the stiffness-proportional coefficient, whatever the
+     *  material's factor, and under every model. See
+     *  DampingParameters::mesh_viscosity. */
     double mesh_viscosity = 0.;
 
     /** Maxwell branches: D_i and tau_i [s]. */
@@ -126,8 +128,8 @@ namespace Voussoir
     modulus_ratio(const double frequency, const double factor = 1.) const;
 
     /** Factor on the stiffness that makes the given moduli hold at the
-     * reference frequency: as storage modulus or, if this is that of a mode, so
-     * that the free vibration in the mode has it. */
+     *  reference frequency: as storage modulus or, if this is that of a mode,
+     *  so that the free vibration in the mode has it. */
     double
     stiffness_scale(const double factor) const;
 
@@ -136,7 +138,7 @@ namespace Voussoir
     print(std::ostream &out) const;
 
   private:
-    /** What the Maxwell branches bring to the damping ratio. */
+    /** Contribution of the Maxwell branches to the damping ratio. */
     double
     ratio_of_branches(const double frequency, const double factor) const;
 

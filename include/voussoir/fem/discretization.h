@@ -41,7 +41,7 @@ namespace Voussoir
   }
 
 
-  /** How what cells and faces contribute to a node is summed. */
+  /** How contributions of cells and faces to a node are summed. */
   enum class Sums
   {
     as_dealt,
@@ -65,8 +65,8 @@ namespace Voussoir
     void
     declare(dealii::ParameterHandler &prm);
 
-    /** Whether cells have one integration point, of a material with memory or
-     *  of one without. */
+    /** Whether cells have one integration point, of a material with internal
+     *  variables or of one without. */
     bool
     one_point(const bool has_memory) const;
 
@@ -77,8 +77,8 @@ namespace Voussoir
   };
 
   /** A face set on which displacement components are fixed at zero: all, the
-   * one at right angles to the face (roller, plane of symmetry), or the two in
-   * it (plane of antisymmetry). */
+   *  one at right angles to the face (roller, plane of symmetry), or the two in
+   *  it (plane of antisymmetry). */
   struct Support
   {
     enum class Fixed
@@ -114,8 +114,8 @@ namespace Voussoir
     };
 
     /**
-     * @param has_memory whether the law of each material has a memory; those
-     *   beyond the list have none
+     * @param has_memory whether the law of each material has internal
+     * variables; those beyond the list have none
      */
     Discretization(const Grid                     &grid,
                    const DiscretizationParameters &parameters,
@@ -193,7 +193,8 @@ namespace Voussoir
     unsigned int
     largest_interface() const;
 
-    /** A node that a hanging or free node stands on, with its weight. */
+    /** A node whose value a hanging node interpolates, or a free node itself,
+     *  with its weight. */
     struct Share
     {
       dealii::types::global_dof_index node;
@@ -214,10 +215,10 @@ namespace Voussoir
     dof_cell(const dealii::Triangulation<3>::active_cell_iterator &cell) const;
 
     /**
-     * Sends records to the ranks that own their nodes; what arrives names the
-     * local node, in an order that does not depend on timing, nor, if sums are
-     * reproducible, those of each node on the partition. @p Record must be
-     * trivially copyable.
+     * Sends records to the ranks that own their nodes; records that arrive have
+     * the local node. Their order does not depend on timing, nor, if sums are
+     * reproducible, that of the records of each node on the partition. @p
+     * Record must be trivially copyable.
      */
     template <typename Record>
     std::vector<std::pair<unsigned int, Record>>
@@ -233,13 +234,14 @@ namespace Voussoir
     void
     number_by_nodes();
 
-    /** Gives each cell the geometry of its own corners. The library gives cells
-     *  that are alike but for round-off that of the first one a rank has. */
+    /** Computes the geometry of each cell from its own corners. The library
+     *  takes that of the first cell of a rank for all cells that differ by
+     *  round-off. */
     void
     use_own_geometry();
 
-    /** Keeps the corners of the cells with one point, and frees what the
-     *  library has computed of their geometry. */
+    /** Keeps the corners of the cells with one point, and frees the geometry
+     *  that the library has computed for them. */
     void
     keep_corners_only();
 
@@ -276,7 +278,7 @@ namespace Voussoir
         const auto bytes  = reinterpret_cast<const char *>(&item);
         buffer.insert(buffer.end(), bytes, bytes + sizeof(Item));
       }
-    // a map ordered by rank; what stays here is not copied
+    // a map ordered by rank; records for this rank are not copied
     auto own = outgoing.extract(rank);
     auto incoming =
       dealii::Utilities::MPI::some_to_some(grid.communicator(), outgoing);

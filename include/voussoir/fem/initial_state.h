@@ -6,7 +6,7 @@
 namespace Voussoir
 {
   /**
-   * What the loads before the earthquake have done. Displacements in a run are
+   * State after the loads before the earthquake. Displacements in a run are
    * totals, which begin with these; stresses begin with
    *   k D : (epsilon(u) - alpha T I)
    * for the static factor k of the material (see Material::elastic_strain).
@@ -24,20 +24,20 @@ namespace Voussoir
      *  three components [K]. */
     Vector temperature;
 
-    /** What the supports of the static stages bring in them [N]; next to
-     *  nothing where nodes are free. */
+    /** Reactions of the supports of the static stages [N]; nearly zero where
+     *  nodes are free. */
     Vector reaction;
 
-    /** Loads and reactions of the static stage, which stay as they are, as the
-     *  moduli of the run have them [N]; see hand_over. */
+    /** Loads and reactions of the static stage, which stay as they are, by the
+     *  moduli of the run [N]; see hand_over. */
     Vector force;
 
-    /** Forces of contact in the static state, which are no part of `force` as
-     *  the run finds them by itself [N]; empty without interfaces. */
+    /** Forces of contact in the static state, which are no part of `force`,
+     *  since the run computes them [N]; empty without interfaces. */
     Vector contact_force;
 
-    /** What the points of the materials remember of it, with which every run
-     *  begins; empty: they are elastic. */
+    /** Internal variables of the materials in the static state, with which
+     *  every run begins; empty: they are elastic. */
     MaterialMemory material_memory;
   };
 } // namespace Voussoir

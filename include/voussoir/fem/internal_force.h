@@ -13,8 +13,8 @@ namespace Voussoir
    * matrix-free sweep, with vector updates fused into it: the hot loop. A
    * factor k on the stress of each material makes these moduli: under damping
    * the given ones hold with it at the reference frequency, in the static state
-   * it is the static factor. It
-   * keeps nothing: what points remember is passed to what reads or advances it.
+   * it is the static factor. It has no state: internal variables are arguments
+   * of the functions that read or advance them.
    */
   class InternalForce
   {
@@ -27,7 +27,7 @@ namespace Voussoir
                   const std::vector<const CellKernel *> &kernels,
                   const std::vector<double>             &factors);
 
-    /** That of the same materials in another stage. */
+    /** The internal force of the same materials in another stage. */
     InternalForce
     with(const std::vector<double> &other_factors) const;
 
@@ -44,11 +44,11 @@ namespace Voussoir
     double
     damping_factor() const;
 
-    /** Whether any law has a memory. */
+    /** Whether any law has internal variables. */
     bool
     has_memory() const;
 
-    /** Memory of all materials in which nothing has happened yet. */
+    /** Internal variables of all materials at the beginning. */
     MaterialMemory
     new_memory() const;
 
@@ -58,14 +58,15 @@ namespace Voussoir
 
     /**
      * force = f(x + s w), with the symbols of SweepInput, by the materials'
-     * laws, whose @p memory goes one step on (if it is empty, with the elastic
-     * moduli), with @p before and @p after called once for every owned entry:
-     * before it is first read, after its last contribution has arrived (on one
-     * rank; across ranks the library orders the exchange accordingly).
+     * laws, whose internal variables @p memory advance by one step (if it is
+     * empty, with the elastic moduli), with @p before and @p after called once
+     * for every owned entry: before it is first read, after its last
+     * contribution has arrived (on one rank; across ranks the library orders
+     * the exchange accordingly).
      * @p before may still change the vectors of the input.
      *
-     * @return whether sums are as exact as they must be to be reproducible: not
-     *   if a cell of this rank is strained out of all measure
+     * @return whether sums are exact and so reproducible: not if a strain of a
+     * cell of this rank exceeds all bounds
      */
     bool
     sweep(Vector           &force,
@@ -82,23 +83,24 @@ namespace Voussoir
     void
     apply(Vector &force, const Vector &displacement) const;
 
-    /** force = f(displacement) by the laws; their memory takes it in. */
+    /** force = f(displacement) by the laws, whose internal variables are
+     *  updated. */
     void
     respond(Vector         &force,
             const Vector   &displacement,
             MaterialMemory &memory) const;
 
-    /** Lets the memory know the temperature of a load increment of the static
-     *  state; see CellKernel::set_thermal_strain. */
+    /** Sets the thermal strains of a load increment of the static state; see
+     *  CellKernel::set_thermal_strain. */
     void
     set_thermal_strain(const Vector &temperature, MaterialMemory &memory) const;
 
-    /** Takes the memory over from the materials of the static state; see
-     *  CellKernel::hand_over. */
+    /** Converts the internal variables from the materials of the static state;
+     *  see CellKernel::hand_over. */
     void
     hand_over(MaterialMemory &memory) const;
 
-    /** Lets the memory know the static state; see CellKernel::set_static_state.
+    /** Sets the strains of the static state; see CellKernel::set_static_state.
      *  Without a static stage the vectors are empty. */
     void
     set_static_state(const Vector   &displacement,
@@ -106,7 +108,7 @@ namespace Voussoir
                      MaterialMemory &memory) const;
 
     /** Energy of the elastic points in the part of this rank [J], whose
-     *  imbalance the memory comes to know. */
+     *  imbalance the internal variables store. */
     ElasticEnergy
     elastic_energy(const DampedMotion &motion, MaterialMemory &memory) const;
 
@@ -118,8 +120,8 @@ namespace Voussoir
                      const InitialState   &initial,
                      const Damping        &damping) const;
 
-    /** force += what holds back the free expansion at this temperature (in all
-     *  three components of each node) [N]. */
+    /** force += the force that suppresses the free expansion at this
+     *  temperature (in all three components of each node) [N]. */
     void
     add_thermal_force(Vector &force, const Vector &temperature) const;
 
@@ -142,8 +144,8 @@ namespace Voussoir
                         const dealii::AlignedVector<Lanes> &masses) const;
 
   private:
-    /** Force that no cell brings to a node at a relative displacement within
-     *  it of this share of its longest edge [N]. */
+    /** Upper bound of the force of a cell on a node at a relative displacement
+     *  within the cell of this share of its longest edge [N]. */
     double
     limit_of_forces(const double strain) const;
 
@@ -153,7 +155,7 @@ namespace Voussoir
     limit_of_sweep(const SweepInput &input) const;
 
     /** Calls work(kernel, cells, history) for the cells of all materials with
-     *  a memory. */
+     *  internal variables. */
     template <typename Work>
     void
     for_each_history(MaterialMemory &memory, const Work &work) const;
@@ -161,7 +163,7 @@ namespace Voussoir
     void
     make_static_strains(MaterialMemory &memory) const;
 
-    /** Sum of what @p evaluate gives for the runs of batches of one material,
+    /** Sum of @p evaluate over the runs of batches of one material,
      *  in the part of this rank. */
     template <typename Sum>
     Sum

@@ -10,14 +10,14 @@ namespace Voussoir
   /**
    * Largest eigenvalue of M^-1 A for a symmetric A, from Lanczos iterations on
    * M^-1/2 A M^-1/2, which approach it from below and fast, as it lies at the
-   * end of the spectrum. They go on until it grows no more; throws UserError if
-   * that does not happen, as where numbers overflow.
+   * end of the spectrum. They continue until it grows no more; throws UserError
+   * if that does not happen, as where numbers overflow.
    *
    * @param start        with a part in every mode
    * @param inverse_mass diagonal of M^-1, zero where fixed
    * @param apply        first argument = A times the second
    * @param reproducible whether the result must be the same on any number of
-   *   ranks, bit for bit, as far as it is up to sums here
+   *   ranks, bit for bit, as far as sums in this function decide
    */
   double
   largest_eigenvalue(const Vector &start,

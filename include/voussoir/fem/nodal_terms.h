@@ -11,7 +11,7 @@
 
 namespace Voussoir
 {
-  /** What a boundary, water or a load puts on an owned node. */
+  /** Contribution of a boundary, water or a load to an owned node. */
   struct NodalTerm
   {
     using Matrix = dealii::SymmetricTensor<2, 3>;
@@ -22,9 +22,10 @@ namespace Voussoir
   };
 
   /**
-   * What stands at a few nodes only, besides the cells: springs and dashpots of
-   * the absorbing boundary, water that moves with the dam, the points where
-   * loads act. All of owned nodes; `slot` numbers those that have any.
+   * Terms of the equation of motion at a few nodes only, besides the cells:
+   * springs and dashpots of the absorbing boundary, water that moves with the
+   * dam, the points where loads act. All of owned nodes; `slot` numbers those
+   * that have any.
    */
   class NodalTerms
   {
@@ -33,7 +34,7 @@ namespace Voussoir
 
     explicit NodalTerms(const unsigned int n_owned_nodes);
 
-    /** Adds to what the nodes have. */
+    /** Adds to the terms of the nodes. */
     void
     add(const std::vector<NodalTerm> &terms);
 
@@ -61,8 +62,8 @@ namespace Voussoir
                   const Vector &previous,
                   const bool    exact = false) const;
 
-    /** Adds the springs' forces and @p dashpot_factor times what the dashpots
-     *  make of the displacement [N]. */
+    /** Adds the forces of the springs and @p dashpot_factor times the product
+     *  of the dashpot matrix with the displacement [N]. */
     void
     add_to(Vector       &force,
            const Vector &displacement,

@@ -15,12 +15,12 @@ namespace Voussoir
    *
    *   u = u_0 + sum_k u_k xi_k + sum_k v_k xi_l xi_m + v_3 xi_0 xi_1 xi_2 ,
    *
-   * where l and m are the directions beside k. The point sees the mean gradient
-   * G over the cell, exact in cells of any shape, so that the patch test is
-   * passed (Flanagan and Belytschko 1981). Of the rest, what G leaves of the
-   * hourglass motion, q_k = v_k - G x_k with the like parts x_k of the cell's
-   * shape, the strain that cells of one layer need to bend is kept
-   * (Belytschko and Bindeman 1993, Puso 2000):
+   * where l and m are the directions beside k. The strain at the point is that
+   * of the mean gradient G over the cell, exact in cells of any shape, so that
+   * the patch test is passed (Flanagan and Belytschko 1981). Of the rest, the
+   * hourglass motion without its part in G, q_k = v_k - G x_k with the like
+   * parts x_k of the cell's shape, the strain that cells of one layer need to
+   * bend is kept (Belytschko and Bindeman 1993, Puso 2000):
    *
    * - In the plane of the edges l and m, the strain that varies along xi_k,
    *   with the stress of a plate, which is zero across the plane. That is the
@@ -66,7 +66,7 @@ namespace Voussoir
       return nodes.begin_dof_values();
     }
 
-    /** Evaluates what the flags name, gradients or values. */
+    /** Evaluates gradients or values, according to the flags. */
     void
     evaluate(const dealii::EvaluationFlags::EvaluationFlags flags);
 
@@ -155,7 +155,7 @@ namespace Voussoir
 
     /** Finds the nodes of the batch in vectors if they can be read and written
      *  whole, which takes a third of the time that `nodes` needs entry by
-     * entry.
+     *  entry.
      */
     void
     find_nodes(const unsigned int batch);

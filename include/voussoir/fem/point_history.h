@@ -11,9 +11,9 @@
 namespace Voussoir
 {
   /**
-   * What an integration point that has left the elastic range remembers beside
-   * the numbers of its law: its crack, and its last step, to which the energy
-   * of the next one refers. See DampedResponse.
+   * State of an integration point that has left the elastic range, beside the
+   * internal variables of its law: its crack, and its last step, to which the
+   * energy of the next one refers. See DampedResponse.
    */
   struct ActivePoint
   {
@@ -37,15 +37,15 @@ namespace Voussoir
              impact * dealii::symmetrize(dealii::outer_product(normal, normal));
     }
 
-    /** Makes the lanes of elastic points as they are to begin with. */
+    /** Resets the lanes of elastic points to their initial state. */
     void
     forget_elastic();
   };
 
 
   /** Energy that has been lost at the points since the start, of this rank [J]:
-   *  by the law in cracks and plastic flow, by cracks that close, and what
-   *  damping has taken, and stores in part, at points beyond the elastic range.
+   *  by the law in cracks and plastic flow, by cracks that close, and the work
+   *  on damping, which is stored in part, at points beyond the elastic range.
    */
   struct PointLosses
   {
@@ -71,28 +71,28 @@ namespace Voussoir
 
 
   /**
-   * What the integration points of the cells of one material remember: the
-   * numbers of its law, which begin at zero, in SIMD lanes. Copies share what
-   * no step changes: the places of the points and their static strains.
+   * The internal variables of the integration points of the cells of one
+   * material, which begin at zero, in SIMD lanes. Copies share the data that no
+   * step changes: the places of the points and their static strains.
    */
   class PointHistory
   {
   public:
     using Place = Discretization::Place;
 
-    /** @param width numbers of a point; 0 for a material without memory */
+    /** @param width internal variables of a point; 0 for a linear law */
     PointHistory(const Discretization &discretization,
                  const unsigned int    material,
                  const unsigned int    width);
 
-    /** Whether there is nothing to remember. */
+    /** Whether there are no internal variables. */
     bool
     empty() const
     {
       return n_numbers == 0;
     }
 
-    /** Whether what a cell does must not depend on which others share its
+    /** Whether the result of a cell must not depend on the other cells of its
      *  batch, down to round-off. */
     bool
     lanes_are_alone() const
@@ -128,7 +128,7 @@ namespace Voussoir
       return active[index(batch, q)] != 0;
     }
 
-    /** What such a point remembers. */
+    /** State of such a point. */
     ActivePoint &
     active_point(const unsigned int batch, const unsigned int q)
     {
@@ -153,8 +153,8 @@ namespace Voussoir
       return points->bands[points->slot_of_batch[batch]];
     }
 
-    /** Strain offset e_0, which the law sees beside the strain of the
-     *  displacement; see DampedResponse. */
+    /** Strain offset e_0, which is added to the strain of the displacement in
+     *  the law; see DampedResponse. */
     const SymmetricTensor3<Lanes> &
     strain_offset(const unsigned int batch, const unsigned int q) const
     {
@@ -167,8 +167,8 @@ namespace Voussoir
       return static_strains->offsets[index(batch, q)];
     }
 
-    /** Elastic strain e_s of the static state, before which damping does not
-     *  reach back. */
+    /** Elastic strain e_s of the static state, on which damping does not act.
+     */
     const SymmetricTensor3<Lanes> &
     static_strain(const unsigned int batch, const unsigned int q) const
     {
@@ -197,8 +197,8 @@ namespace Voussoir
     cells() const;
 
     /** Energy of the Maxwell branches above the least for their sum [J/m3],
-     *  which the energy balance leaves at elastic points for the time when they
-     *  leave the elastic range. */
+     *  which the energy balance stores at elastic points until they leave the
+     *  elastic range. */
     Lanes &
     imbalance(const unsigned int batch, const unsigned int q)
     {
@@ -216,7 +216,7 @@ namespace Voussoir
     stress(const Place &place, const unsigned int q) const;
 
     /** Strain e passed to the law of such a point [1], less the elastic one
-     * of its stress, C^-1 : sigma. */
+     *  of its stress, C^-1 : sigma. */
     dealii::SymmetricTensor<2, 3>
     inelastic_strain(const Place       &place,
                      const unsigned int q,
@@ -227,7 +227,7 @@ namespace Voussoir
     std::vector<double>
     read(const Place &place, const unsigned int q) const;
 
-    /** What a checkpoint must hold, a row for each cell. */
+    /** State for a checkpoint, a row for each cell. */
     KeyedValues
     checkpoint_values();
 
@@ -245,7 +245,7 @@ namespace Voussoir
       dealii::AlignedVector<CrackBands>                   bands; // by slot
     };
 
-    /** What the static state leaves at the points. */
+    /** Strains of the static state at the points. */
     struct StaticStrains
     {
       dealii::AlignedVector<SymmetricTensor3<Lanes>> offsets, elastic;
@@ -276,8 +276,8 @@ namespace Voussoir
 
 
   /**
-   * The memory of all materials of a case. A default one holds nothing, and the
-   * materials are then taken as elastic.
+   * The internal variables of all materials of a case. If it is empty the
+   * materials are elastic.
    */
   class MaterialMemory
   {
@@ -289,14 +289,14 @@ namespace Voussoir
     MaterialMemory(const Discretization            &discretization,
                    const std::vector<unsigned int> &widths);
 
-    /** Memory of a material; null if it has none. */
+    /** Internal variables of a material; null if it has none. */
     PointHistory *
     of(const unsigned int material);
 
     const PointHistory *
     of(const unsigned int material) const;
 
-    /** Whether no material has a memory. */
+    /** Whether no material has internal variables. */
     bool
     empty() const;
 
@@ -304,7 +304,7 @@ namespace Voussoir
     PointLosses
     losses() const;
 
-    /** Counts on from here. */
+    /** Sets the energy lost so far. */
     void
     set_losses(const PointLosses &losses);
 

@@ -9,10 +9,9 @@ namespace Voussoir
 {
   /**
    * Makes sums over cells independent of their order, bit for bit: each part is
-   * rounded to a multiple of one quantum beforehand, so that no sum of less
-   * than 2^53 quanta rounds anything (the pre-rounding of Demmel and Nguyen
-   * 2013). Parts take up to 47 bits, which leaves six for as many as meet in a
-   * node.
+   * rounded to a multiple of one quantum beforehand, so that sums of less than
+   * 2^53 quanta are exact (the pre-rounding of Demmel and Nguyen 2013). Parts
+   * take up to 47 bits, which leaves six for as many as meet in a node.
    */
   class Rounding
   {

@@ -28,7 +28,7 @@ namespace Voussoir
   }
 
   /** SIMD lanes of a number type, and access to one of them: where a law must
-   *  go point by point. */
+   *  be evaluated point by point. */
   template <typename Number>
   constexpr unsigned int
   n_lanes()

@@ -9,11 +9,11 @@
 namespace Voussoir
 {
   /**
-   * What limits the time step beside the mass and the stiffness of the cells:
-   * the scheme is stable up to the dt at which the largest eigenvalue of
-   *   M^-1 [ sum_m (1 + s_m gamma(dt) + 2 beta/dt) K_m + diagonal terms ]
-   * reaches 4/dt^2, with the damping factor s_m of each material and the mesh
-   * viscosity beta.
+   * Contributions to the limit of the time step beside the mass and the
+   * stiffness of the cells: the scheme is stable up to the dt at which the
+   * largest eigenvalue of M^-1 [ sum_m (1 + s_m gamma(dt) + 2 beta/dt) K_m +
+   * diagonal terms ] reaches 4/dt^2, with the damping factor s_m of each
+   * material and the mesh viscosity beta.
    */
   struct StepLimits
   {

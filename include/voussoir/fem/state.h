@@ -8,8 +8,8 @@ namespace Voussoir
 {
   /**
    * Energy that nodal vectors have supplied and dissipated since the start, of
-   * this rank [J]. Energy that the cells take is in the memory of their points
-   * and in the energy balance.
+   * this rank [J]. Energy that the cells take is in the internal variables of
+   * their points and in the energy balance.
    */
   struct EnergyAccounts
   {
@@ -42,7 +42,7 @@ namespace Voussoir
     /** Damping memory w_i, one vector per Maxwell branch [m]. */
     std::vector<Vector> memory;
 
-    /** What the points of the materials remember; empty: they are elastic. */
+    /** Internal variables of the materials; empty: they are elastic. */
     MaterialMemory material_memory;
 
     EnergyAccounts accounts;

@@ -5,7 +5,7 @@
 
 namespace Voussoir
 {
-  /** The entries of the section "Boundaries" that hold faces. */
+  /** The entries of the section "Boundaries" that fix faces. */
   struct SupportParameters
   {
     std::string fixed, roller, antisymmetric;

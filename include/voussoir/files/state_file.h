@@ -18,7 +18,8 @@ namespace Voussoir
     /** Of nodes, cells and points, spread over the ranks, by name. */
     std::map<std::string, KeyedValues> values;
 
-    /** What all ranks need, by name; the first rank's are written. */
+    /** Documents that all ranks need, by name; those of the first rank are
+     *  written. */
     std::map<std::string, nlohmann::json> documents;
   };
 

@@ -6,14 +6,14 @@
 namespace Voussoir
 {
   /** Bytes of the first lines of a file whose first number is less than this
-   *  [s], and of a heading. What is cut or comes later is of a run that was
-   *  interrupted. */
+   *  [s], and of a heading. Lines that are cut off or later belong to an
+   *  interrupted run. */
   std::uintmax_t
   size_before(const std::string &filename, const double time);
 
   /** The heading of a file of comma-separated values, or another line of texts.
-   *  Those with a comma, a quotation mark or a line break are quoted as RFC
-   * 4180 has it, so that each stays one column. */
+   *  Texts with a comma, a quotation mark or a line break are quoted as RFC
+   *  4180 has it, so that each stays one column. */
   std::string
   csv_heading(const std::vector<std::string> &titles);
 
@@ -34,14 +34,14 @@ namespace Voussoir
   {
   public:
     /**
-     * Leaves the file it wrote to before, if there was one.
+     * Closes the previous file, if there was one.
      *
      * @param log        takes note of what cannot be written; must live as long
      *   as this
      * @param columns    titles with units, without that of the time
      * @param time_step  [s]
-     * @param start_time of a run that goes on [s]: lines from here on come
-     *   again; others are kept
+     * @param start_time of a run that continues [s]: lines from here on are
+     * written again; earlier ones are kept
      */
     void
     open(Log                            &log,

@@ -20,8 +20,8 @@ namespace Voussoir
    * its spreadsheet and readers such as VTK's give by name. The names behind
    * the numbers of a field "NAME" are in "NAME_names".
    *
-   * Called on all ranks of the log, which takes note if that fails; there is no
-   * such file then.
+   * Called on all ranks of the log, which records a failure; there is no such
+   * file then.
    *
    * @param output deal.II's patches and fields; gets its flags here
    * @param file   name with folder and ending

@@ -1,10 +1,9 @@
 #ifndef voussoir_grid_grid_h
 #define voussoir_grid_grid_h
 
-#include <voussoir/base/option.h>
+#include <voussoir/grid/grid_parameters.h>
 #include <voussoir/mesh/coarse_mesh.h>
 
-#include <deal.II/base/parameter_handler.h>
 #include <deal.II/distributed/tria_base.h>
 #include <deal.II/grid/tria.h>
 
@@ -13,49 +12,11 @@
 
 namespace Voussoir
 {
-  enum class Partition
-  {
-    p4est,
-    metis
-  };
-
-  inline OptionNames<Partition>
-  option_names(const Partition)
-  {
-    return {{Partition::p4est, "p4est"}, {Partition::metis, "METIS"}};
-  }
-
-
-  /** The entries of the section "Mesh" that do not depend on where it comes
-   *  from. */
-  struct GridParameters
-  {
-    unsigned int global_refinement = 0;
-    std::string  local_refinement;
-    Partition    partition = Partition::p4est;
-
-    /** Nodes per length of the S waves of this frequency [Hz], down to which
-     *  cells are refined; none are if it is zero. */
-    double nodes_per_wavelength = 0., highest_frequency = 10.;
-
-    /** Numbers of ranks for which a partition is counted, see
-     *  PartitionCounts. */
-    std::vector<unsigned int> counted_ranks;
-
-    void
-    declare(dealii::ParameterHandler &prm);
-
-    /** Longest edge that cells of this degree may have where S waves have this
-     *  speed [m/s] [m]. */
-    double
-    longest_edge(const double s_wave_speed, const unsigned int degree) const;
-  };
-
   /** The longest edge of a cell [m]. */
   double
   longest_edge(const dealii::Triangulation<3>::cell_iterator &cell);
 
-  /** What a cell is made of and where it belongs. */
+  /** Material and cell sets of a cell. */
   struct CellTag
   {
     unsigned int              material; // number
@@ -87,7 +48,8 @@ namespace Voussoir
     {
       std::vector<unsigned int> of_cell; // number, of each coarse cell
       std::vector<double>       costs;   // of a cell of each, to balance ranks
-      std::vector<double> longest_edges; // that cells of each may have [m]
+      std::vector<double>
+        longest_edges; // of the edges that cells of each may have [m]
     };
 
     Grid(const CoarseMesh     &mesh,

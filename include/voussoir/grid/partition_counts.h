@@ -5,8 +5,8 @@
 
 namespace Voussoir
 {
-  /** What an exchange between ranks would be if a mesh were dealt to so many of
-   *  them. */
+  /** Size of the exchange between ranks if a mesh were distributed to a given
+   *  number of them. */
   struct PartitionCounts
   {
     unsigned int ranks;
@@ -14,8 +14,8 @@ namespace Voussoir
     /** The largest cost of the cells of a rank over the mean one. */
     double balance;
 
-    /** Ranks with which one has nodes in common, mean and most; nodes that it
-     *  receives or sends, mean and most. */
+    /** Neighbours of a rank, mean and largest number; nodes that it receives or
+     *  sends, mean and largest number. */
     double       neighbours, nodes;
     unsigned int most_neighbours, most_nodes;
 
@@ -25,10 +25,10 @@ namespace Voussoir
   };
 
   /**
-   * Deals the cells as p4est does, in the order of its trees and by their cost,
-   * and counts what ranks have in common, without running them. Nodes are those
-   * of degree 1; each belongs to the first rank at it, and the others exchange
-   * it with that one. All ranks must call this together.
+   * Distributes the cells as p4est does, in the order of its trees and by their
+   * cost, and counts the nodes that ranks share, without running them. Nodes
+   * are those of degree 1; each belongs to the first rank at it, and the others
+   * exchange it with that one. All ranks must call this together.
    *
    * @param cost of a cell, as for the balance of ranks
    */

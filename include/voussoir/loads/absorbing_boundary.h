@@ -67,7 +67,7 @@ namespace Voussoir
                       const AbsorbingParameters &parameters,
                       const QuadratureRule       quadrature);
 
-    /** Its springs and dashpots. */
+    /** Springs and dashpots of the boundary. */
     const std::vector<NodalTerm> &
     terms() const;
 

@@ -39,9 +39,9 @@ namespace Voussoir
 
   struct AddedMass
   {
-    double                 mass = 0.; // against motion along the river [kg]
-    dealii::Tensor<1, 3>   river;     // its direction
-    std::vector<NodalTerm> terms;     // of this rank
+    double               mass = 0.; // that resists motion along the river [kg]
+    dealii::Tensor<1, 3> river;     // its direction
+    std::vector<NodalTerm> terms;   // of this rank
   };
 
   /**
@@ -50,8 +50,9 @@ namespace Voussoir
    * facet with normal n and area A carries
    *   M_a = 7/8 rho sqrt(H h) A n n^T .
    * By nodal quadrature, so that all parts are positive. It stands for
-   * incompressible water, which is good below c/4H. The river runs the way that
-   * the water pushes: horizontally, along the sum of -n A.
+   * incompressible water, which is good below c/4H. The direction of the river
+   * is that of the resultant of the water pressure: horizontal, along the sum
+   * of -n A.
    *
    * @param density of the water [kg/m3]
    */

@@ -24,7 +24,7 @@ namespace Voussoir
     bool
     empty() const;
 
-    /** The supports, and the absorbing faces as if they were supports too. */
+    /** The supports, and the absorbing faces as supports, too. */
     std::vector<Support>
     supports_with_absorbing(const bool roller) const;
   };

@@ -8,7 +8,7 @@
 namespace Voussoir
 {
   /** Modes across a channel: above the cut-off frequency of one its wave
-   * travels along the channel. */
+   *  travels along the channel. */
   struct ChannelModes
   {
     /** omega [rad/s], ascending. */
@@ -29,7 +29,7 @@ namespace Voussoir
    * @param in_surface nodes of the free surface, with s = 0
    * @param speed     c [m/s]
    * @param number    of modes, at most
-   * @return without decay; the same numbers whoever computes them
+   * @return without decay; the same on every rank
    */
   ChannelModes
   find_channel_modes(const dealii::SparseMatrix<double> &stiffness,

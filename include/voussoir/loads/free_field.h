@@ -8,7 +8,7 @@
 
 namespace Voussoir
 {
-  /** What a free field must know of an absorbing boundary. */
+  /** Data of an absorbing boundary for a free field. */
   struct BoundaryGeometry
   {
     /** Positions of the nodes [m]. */
@@ -45,7 +45,7 @@ namespace Voussoir
   };
 
   /**
-   * The motion that the ground would make without canyon and dam, at the nodes
+   * The motion of the ground without canyon and dam, at the nodes
    * of the absorbing boundary.
    */
   class FreeField
@@ -57,7 +57,7 @@ namespace Voussoir
     virtual void
     advance(const double time) = 0;
 
-    /** Numbers from which the next step goes on, the same on all ranks. */
+    /** Numbers from which the next step continues, the same on all ranks. */
     virtual std::vector<double>
     save() const
     {

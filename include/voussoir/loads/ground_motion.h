@@ -42,7 +42,8 @@ namespace Voussoir
   }
 
 
-  /** Where the motion was or would be recorded. */
+  /** Where the motion is given: at an outcrop, at the surface or in the rock.
+   */
   enum class MotionPlace
   {
     outcrop,
@@ -67,7 +68,7 @@ namespace Voussoir
   {
     GroundMotionType type = GroundMotionType::none;
 
-    /** Nothing here depends on it; see its entry. */
+    /** Not used by the program; see its entry. */
     MotionPlace given_at = MotionPlace::outcrop;
 
     /** The entries "Peak acceleration x", y and z. */
@@ -75,7 +76,7 @@ namespace Voussoir
       {as_recorded, as_recorded, as_recorded}};
 
     /** Largest acceleration of a component before the overload factor [g]; none
-     *  for a record as its file has it, which is no motion with other types. */
+     *  for an unscaled record, with which other types have no motion. */
     std::optional<double>
     peak_acceleration(const unsigned int component) const;
 
@@ -85,7 +86,7 @@ namespace Voussoir
 
     double overload_factor = 1.;
 
-    /** What stands for a record whose peak is left alone. */
+    /** The value that leaves the peak of a record unscaled. */
     static constexpr const char *as_recorded = "as recorded";
 
     struct Record
@@ -154,8 +155,8 @@ namespace Voussoir
      * for the type none. Paths of records are relative to @p folder, the one
      * of the parameter file. Throws UserError on unreadable records.
      *
-     * @param fits if not null, how records fit the spectrum that they are
-     *   matched to
+     * @param fits if not null, gets the misfit of records to the spectrum that
+     * they are matched to
      */
     GroundMotionSignals
     build(const std::string        &folder,
@@ -163,8 +164,8 @@ namespace Voussoir
 
     /**
      * Lines for the log: peaks of each component up to @p end_time [s], and for
-     * motions from a design spectrum how well they follow it and how far they
-     * are correlated.
+     * motions from a design spectrum their deviation from it and their
+     * correlation.
      */
     std::string
     summary(const GroundMotionSignals &signals, const double end_time) const;

@@ -45,8 +45,8 @@ namespace Voussoir
     add_forces(const double, NodalForces &) const
     {}
 
-    /** Whether it only makes sense in a static stage, because it would be a
-     *  blow if it came on at once. */
+    /** Whether it only makes sense in a static stage, because it would be an
+     *  impact if it were applied at once. */
     virtual bool
     steady() const
     {
@@ -72,7 +72,7 @@ namespace Voussoir
     {}
   };
 
-  /** A load as the step sees it. */
+  /** A load in the time step. */
   class ActingLoad : public NodalLoad
   {
   public:

@@ -12,13 +12,12 @@ namespace Voussoir
 {
   /**
    * Compressible water that meets the solid on a wet wall: its space, its
-   * coefficients and where it pushes. Its equation, with the pressure impulse
-   * I = integral of p dt,
-   *   1/(rho c^2) M dp/dt + C p = -1/rho K I - sum A.v ,  dI/dt = p,
-   * with the wall's velocity v and the nodal area vectors A out of the water;
-   * C holds the radiating end, 1/(rho c) per area, and the absorbing bottom;
-   * the end acts on what is not its free field (EndMotion).
-   * The solid feels the forces A p. WaterMotion marches it.
+   * coefficients and its coupling to the solid. Its equation, with the pressure
+   * impulse I = integral of p dt, 1/(rho c^2) M dp/dt + C p = -1/rho K I - sum
+   * A.v ,  dI/dt = p, with the wall's velocity v and the nodal area vectors A
+   * out of the water; C holds the radiating end, 1/(rho c) per area, and the
+   * absorbing bottom; the end acts on the pressure less its free field
+   * (EndMotion). The forces on the solid are A p. WaterMotion marches it.
    */
   class Reservoir
   {
@@ -26,7 +25,7 @@ namespace Voussoir
     /**
      * @param water  as split_off_reservoir() makes it
      *
-     * Throws UserError if face sets are not there or nodes do not meet.
+     * Throws UserError if face sets are missing or nodes do not coincide.
      */
     Reservoir(const CoarseMesh          &water,
               const GridParameters      &grid,
@@ -44,8 +43,8 @@ namespace Voussoir
     /** C of each unknown [m3/(Pa s)]. */
     Vector dashpots;
 
-    /** A wet node of the solid and the unknown of the water that it meets, as
-     *  vectors of create_wall_vector() number it. */
+    /** A wet node of the solid and the unknown of the water at the same
+     *  position, as vectors of create_wall_vector() number it. */
     struct Pair
     {
       unsigned int         node, water;

@@ -9,7 +9,7 @@ namespace Voussoir
 {
   /**
    * The section of the reservoir at its radiating end, behind which the far
-   * reservoir goes on as a channel of this section. All ranks hold the whole
+   * reservoir continues as a channel of this section. All ranks hold the whole
    * section: its free field and its modes are marched by EndMotion.
    */
   class ReservoirEnd
@@ -35,8 +35,8 @@ namespace Voussoir
     const double   density, speed;
 
     /** By node of the section: its area M [m2], the volume of water that its
-     *  unknown stands for [m3], what dashpots of the bottom this has
-     *  [m3/(Pa s)], and whether it lies in the free surface. */
+     *  unknown stands for [m3], its dashpots of the bottom [m3/(Pa s)], and
+     *  whether it lies in the free surface. */
     std::vector<double> areas, volumes, dashpots;
     std::vector<bool>   in_surface;
 
@@ -47,7 +47,7 @@ namespace Voussoir
     };
     std::vector<Node> nodes;
 
-    /** With what the bottom takes; none where plane waves leave. */
+    /** With the losses at the bottom; none where plane waves leave. */
     ChannelModes modes;
 
     /** (K I)_i of the pressure impulse in the section, with the integral K of

@@ -31,7 +31,7 @@ namespace Voussoir
             const std::string        &entry,
             const std::string        &description);
 
-    /** Refuses what is no formula; @p place names section and entry. */
+    /** Refuses text that is no formula; @p place names section and entry. */
     void
     prepare(const std::string &place);
 

@@ -18,9 +18,9 @@ namespace Voussoir
    *   I+ = I- + dt p_n
    *   1/(rho c^2) M (p_(n+1) - p_n)/dt + C (p_(n+1) + p_n)/2
    *     = -1/rho K I+ - sum A.v+ ,
-   * with the symbols of Reservoir, and at the radiating end with what EndMotion
-   * adds to the flux. The pressure is what the motion adds to the
-   * hydrostatic one.
+   * with the symbols of Reservoir, and at the radiating end with the flux of
+   * EndMotion. The pressure is the hydrodynamic one, without the hydrostatic
+   * part.
    */
   class WaterMotion : public NodalLoad
   {
@@ -36,12 +36,12 @@ namespace Voussoir
      *  the motion at the end and the loss. */
     Vector pressure, impulse;
 
-    /** What leaves through the radiating end, if there is one. */
+    /** The flux through the radiating end, if there is one. */
     std::optional<EndMotion> end;
 
     /** This rank's sums since the start: loss by radiation, of which the free
      *  field may bring some back, and at the bottom, work on the solid's own
-     * motion and on that of a rigid base [J]. */
+     *  motion and on that of a rigid base [J]. */
     double loss = 0., work_on_solid = 0., work_on_base = 0.;
 
     /** Adds the forces of p_n. */
@@ -60,13 +60,13 @@ namespace Voussoir
     void
     advance(const Vector &velocity, const dealii::Tensor<1, 3> &base_velocity);
 
-    /** Energy in the water at a step, of all ranks [J]. From rest it is less by
-     *  the losses and the work than nothing. */
+    /** Energy in the water at a step, of all ranks [J]. In a motion that starts
+     *  from rest it is minus the sum of losses and work. */
     double
     stored_energy() const;
 
-    /** What the work on the solid is ahead of the work of the forces on it,
-     *  dt/2 p_(n+1).A v+, of all ranks [J]. */
+    /** Difference between the work on the solid and the work of the forces on
+     *  it, by their times, dt/2 p_(n+1).A v+, of all ranks [J]. */
     double
     work_ahead(const Vector &velocity) const;
 

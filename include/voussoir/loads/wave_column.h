@@ -41,7 +41,7 @@ namespace Voussoir
     void
     advance(const dealii::Tensor<1, 3> &incident_velocity);
 
-    /** The motion, from which the next step goes on. */
+    /** The motion, from which the next step continues. */
     std::vector<double>
     save() const;
 
@@ -126,7 +126,7 @@ namespace Voussoir
     double stiffness_coefficient, mesh_viscosity;
 
     // motion of the step (u_n and the velocity in the middle of its two half
-    // steps) and what the next one starts from
+    // steps) and initial values of the next one
     std::vector<dealii::Tensor<1, 3>> u, middle_velocity, next_u, v, effective;
     std::vector<std::vector<dealii::Tensor<1, 3>>> memory;
     dealii::Tensor<1, 3>                           base;

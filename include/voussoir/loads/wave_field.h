@@ -52,7 +52,7 @@ namespace Voussoir
     declare(dealii::ParameterHandler &prm);
   };
 
-  /** Refuses motions and models that a wave of this type does not fit. All
+  /** Refuses motions and models that do not suit a wave of this type. All
    *  ranks must call this together. */
   void
   check_wave(const AbsorbingBoundary   &boundary,

@@ -8,8 +8,8 @@
 namespace Voussoir
 {
   /**
-   * The loops over the cells of a material with a given stress law: what
-   * CellKernel asks for, with the same symbols.
+   * The loops over the cells of a material with a given stress law: the
+   * operations of CellKernel, with the same symbols.
    */
   namespace CellKernels
   {
@@ -68,7 +68,7 @@ namespace Voussoir
       return sum;
     }
 
-    /** Adds a number of each cell of a batch, or what it is in all. */
+    /** Adds a number of each cell of a batch, or their sum. */
     inline void
     add_cells(Sum               &sum,
               const CellRange   &cells,
@@ -90,8 +90,8 @@ namespace Voussoir
       sum += of_all;
     }
 
-    /** Calls work(reduce), where reduce(batch, values) is what is summed of a
-     *  number of each cell: each by itself, or their sum. */
+    /** Calls work(reduce), where reduce(batch, values) adds up a number of each
+     *  cell: each by itself, or their sum. */
     template <typename Work>
     void
     with_reduction(const CellRange &cells, const Work &work)
@@ -170,7 +170,7 @@ namespace Voussoir
       const auto               &matrix_free = cells.matrix_free;
       const bool damped = input.damping != SweepInput::Damping::none;
       with_cells(cells, [&](auto &&cell) {
-        // damping does not reach into cracks
+        // damping does not act in cracks
         std::decay_t<decltype(cell)> undamped_cell(matrix_free);
         auto                        &own = damped ? undamped_cell : cell;
         for (unsigned int batch = cells.begin; batch < cells.end; ++batch)

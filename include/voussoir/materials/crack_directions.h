@@ -9,15 +9,16 @@ namespace Voussoir
   template <typename Number>
   struct CrackDirections
   {
-    /** Of the largest tension or, where there is next to none, of the largest
-     *  compression. */
+    /** Direction of the largest tension or, where there is nearly none, of the
+     *  largest compression. */
     dealii::Tensor<1, 3, Number> normal;
 
     dealii::Tensor<1, 3, Number> tension, compression;
 
-    /** Share of the first of the two in the width of the band: one of both is
-     *  whole unless they are about as severe. The width must not jump there, or
-     *  so does the stress, and no search finds an equilibrium. */
+    /** Share of `tension` against `compression` in the width of the band: zero
+     *  or one unless both are about as severe. The width must be continuous,
+     *  since otherwise the stress is not, and the search for equilibrium fails.
+     */
     Number share_of_tension;
   };
 
@@ -53,7 +54,7 @@ namespace Voussoir
     for (unsigned int d = 0; d < 3; ++d)
       result.normal[d] = dealii::compare_and_apply_mask<Comparison::less_than>(
         pull, severity, compression[d], tension[d]);
-    // from none at half the severity to all at twice it
+    // from zero at half the severity to one at twice it
     result.share_of_tension =
       std::min(std::max(Number(3. * pull / (pull + severity + tiny) - 1.),
                         Number(0.)),

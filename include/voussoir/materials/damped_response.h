@@ -10,20 +10,21 @@
 namespace Voussoir
 {
   /**
-   * What a point of a law with memory does under a damping model. With
+   * Response of a point of a law with internal variables under a damping model.
+   * With
    *
    *   u    displacement [m], B u its strain [1]
    *   w    damping memory [m]: filters that follow u, times the damping factor,
-   *        and the viscosity of what the mesh does not carry
-   *   D    elastic stiffness of the law [Pa]
+   *        and the mesh viscosity D    elastic stiffness of the law [Pa]
    *   k    factor on the stress that makes the moduli hold at the reference
    *        frequency
-   *   e_0  strain offset [1]: what the static factor and temperature do
-   *   e_s  elastic strain of the static state [1], which damping leaves out
-   *   e_p  plastic strain of the law [1]
-   *   r    share that damage has left of the stiffness, before this step [1]
+   *   e_0  strain offset [1] by static factor and temperature e_s  elastic
+   * strain of the static state [1], which damping leaves out e_p  plastic
+   * strain of the law [1] r    share of the stiffness that damage has left
+   * before this step [1]
    *
-   * the law sees the strain that makes the whole stress of an elastic point,
+   * the law gets the strain of which the elastic stress is the total stress of
+   * an elastic point,
    *
    *   e = B u + e_0 + (k_r - 1) (B u - e_p - e_s) + r^4 k_r B w ,
    *   1/k_r = 1 - r + r/k ,
@@ -32,33 +33,32 @@ namespace Voussoir
    *
    *   sigma(e) - D : (e_0 - (k - 1) e_s) + s n n ,
    *
-   * which as long as the law is elastic, and r = 1, is k D : B (u + w). What
-   * makes k D of D is a spring in series with the law, whose compliance
-   * (1/k - 1) D^-1 damage leaves alone: it gives back what it has stored as a
-   * crack relieves it, and the law takes its own energy, no more or less. In a
-   * crack damping must not pull, hence the power of r.
+   * which as long as the law is elastic, and r = 1, is k D : B (u + w). The
+   * modulus k D instead of D is that of a spring in series with the law, whose
+   * compliance (1/k - 1) D^-1 does not change with damage: it returns its
+   * stored energy as a crack relieves it, and the law dissipates its own
+   * energy, no more or less. Damping must not transmit tension across a crack,
+   * hence the power of r.
    *
-   * A crack that closes is an impact: the two stiffnesses of a unilateral crack
-   * make energy of the oscillations between them, at any time step. While it is
-   * closed, is about to close or has just opened by the traction of its
-   * effective stress across the crack, a viscosity c acts on that traction,
-   *   s = c d(n . D : B u . n)/dt ,
-   * never in a crack that stays open.
+   * A crack that closes is an impact: oscillations between the two stiffnesses
+   * of a unilateral crack gain energy, at any time step. While it is closed, is
+   * about to close or has just opened by the traction of its effective stress
+   * across the crack, a viscosity c acts on that traction, s = c d(n . D : B u
+   * . n)/dt , never in a crack that stays open.
    *
-   * Central differences integrate the stress by the trapezoidal rule, so that a
-   * step from a to b does three works, each of which has its own account:
+   * Central differences integrate the stress by the trapezoidal rule, so that
+   * in a step from a to b there are three kinds of work, each with its own sum:
    * - (sigma_a + sigma_b) : de/2 on the law. Of it, with the stored energy
    *   sigma : e_e / 2 of the elastic strain e_e, it loses exactly
    *     (sigma_a : e_e,b - sigma_b : e_e,a)/2 + (sigma_a + sigma_b) : de_p/2 .
-   *   The loss that the law itself reports goes into the balance instead, which
-   *   hence shows a law that reports less or more. Where no internal
-   *   variable has changed the law is elastic and loses nothing: what is left
-   *   then is the error of the rule where cracks open and close, which belongs
-   *   to closing.
+   *   The loss that the law itself reports goes into the balance instead, so
+   * that the balance shows a law that reports less or more. Where no internal
+   *   variable has changed the law is elastic and loses nothing: the remainder
+   * is then the error of the rule where cracks open and close, which is added
+   * to the loss of closing.
    * - (s_a + s_b) n . B du . n / 2 on the viscosity of closing, all of it lost.
-   * - (sigma_a + sigma_b) : (B du - de)/2 on damping. Of it damping stores,
-   *   with all since the static state,
-   *     (1/k_r - 1) sigma : e_e / 2
+   * - (sigma_a + sigma_b) : (B du - de)/2 on damping. Of this work, summed up
+   * since the static state, damping stores (1/k_r - 1) sigma : e_e / 2
    *     + r^4 [ k (1 + 1/(s sum D_i)) w : D : w / 2 - sigma : w + j ] .
    *   Here j is the imbalance of the branches, the energy that they store above
    *   the least one for their sum w, k w : D : w / (2 s sum D_i): with that of
@@ -73,7 +73,7 @@ namespace Voussoir
   public:
     /** @param stress_factor k
      *  @param branches s sum D_i of Maxwell damping [1]; 0 if there is none, or
-     *   where only static states are asked for */
+     *   where only static states are computed */
     DampedResponse(const Law   &law,
                    const double stress_factor,
                    const double branches = 0.)
@@ -93,8 +93,8 @@ namespace Voussoir
     }
 
     /**
-     * Lets the memory of point @p q of the cells of a batch go one step on, and
-     * counts what is lost.
+     * Advances the internal variables of point @p q of the cells of a batch by
+     * one step, and sums up the losses.
      *
      * @param elastic    stress if the law is elastic
      * @param level      of the law, which is elastic where it is not above one
@@ -150,7 +150,7 @@ namespace Voussoir
       for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
         if (last.band[lane] == 0.)
           {
-            // alone, this cell would not have been asked
+            // by itself, this cell would not have been evaluated
             if (history.lanes_are_alone() && !(level[lane] > 1.))
               for (unsigned int i = 0; i < Law::n_history; ++i)
                 values[i][lane] = 0.;
@@ -183,7 +183,7 @@ namespace Voussoir
           const Lanes largest_energy =
             std::abs(now.stress * response.elastic_strain) +
             std::numeric_limits<double>::min();
-          // less what is known to be lost, however little
+          // less the known loss, however small
           const Lanes switched =
             0.5 * (last.stress * response.elastic_strain -
                    now.stress * (last.law_strain - last.plastic)) -
@@ -200,7 +200,7 @@ namespace Voussoir
         }
       if (any_above(begins, 0.))
         {
-          // as an elastic point brings it
+          // as at an elastic point
           const SymmetricTensor3<Lanes> law_strain_then =
             elastic_static + offset;
           const SymmetricTensor3<Lanes> elastic_strain =
@@ -253,8 +253,8 @@ namespace Voussoir
     }
 
     /**
-     * Takes a point over from the law of the static state: its stress stays,
-     * and `law_strain` becomes the strain at which this law has it.
+     * Converts a point from the law of the static state: its stress stays, and
+     * `law_strain` becomes the strain at which this law has this stress.
      */
     void
     hand_over(const Law         &static_law,
@@ -353,11 +353,12 @@ namespace Voussoir
 
     /**
      * Energy since the static state of a point that has left the elastic range,
-     * less what the forces of that state do; zero in lanes that are elastic.
+     * less the work of the forces of that state; zero in lanes that are
+     * elastic.
      *
      * @param strain        B u
      * @param static_strain B u_s, or zero
-     * @param at_start      memory of that state; null: elastic
+     * @param at_start      internal variables of that state; null: elastic
      */
     Energy
     energy(const SymmetricTensor3<Lanes> &strain,
@@ -425,8 +426,8 @@ namespace Voussoir
       return k / (k + share * (1. - k));
     }
 
-    /** What the filter w adds to the energy stored [J/m3], at a stress sigma
-     *  since the static state. */
+    /** Stored energy of the filter w [J/m3], at a stress sigma since the static
+     *  state. */
     Lanes
     filter_energy(const SymmetricTensor3<Lanes> &filter,
                   const SymmetricTensor3<Lanes> &stress,
@@ -438,7 +439,7 @@ namespace Voussoir
               stress * filter + imbalance);
     }
 
-    /** How much damage and plastic strain have changed, over themselves. */
+    /** Relative change of damage and plastic strain. */
     static Lanes
     change_of_memory(const ActivePoint &last, const ActivePoint &now)
     {

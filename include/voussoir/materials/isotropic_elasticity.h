@@ -6,10 +6,9 @@
 namespace Voussoir
 {
   /**
-   * What the damage d of the static state, at the modulus a E, becomes at E
-   * where stress and inelastic strain stay: the effective strain is
-   * a (1 - d + d/a) times what it was, and the damage
-   *   d' = (d/a) / (1 - d + d/a) .
+   * Damage at the modulus E with the stress and inelastic strain that a damage
+   * d has at the modulus a E of the static state: the effective strain is
+   * multiplied by a (1 - d + d/a) , and the damage d' = (d/a) / (1 - d + d/a) .
    */
   struct DamageHandedOver
   {
@@ -22,8 +21,8 @@ namespace Voussoir
   };
 
 
-  /** Hooke's law, sigma = lambda tr(epsilon) I + 2 G epsilon: what isotropic
-   *  laws begin with. */
+  /** Hooke's law, sigma = lambda tr(epsilon) I + 2 G epsilon: the base of
+   *  isotropic laws. */
   struct IsotropicElasticity : LawDefaults
   {
     double young_modulus = 24e9; // E [Pa]
@@ -77,7 +76,7 @@ namespace Voussoir
       return result;
     }
 
-    /** The strain of the same stress and inelastic strain as this one has in
+    /** The strain with the same stress and inelastic strain as @p strain has in
      *  the static state. */
     SymmetricTensor3<double>
     strain_handed_over(const SymmetricTensor3<double> &strain,

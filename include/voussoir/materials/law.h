@@ -36,8 +36,8 @@ namespace Voussoir
    *
    * where E and nu are those that waves, boundaries and one-point cells go by.
    *
-   * A law with memory has n_history > 0 numbers at each point, which begin at
-   * zero and stay there while it is elastic, and
+   * A law with internal variables has n_history > 0 of them at each point,
+   * which begin at zero and stay there while it is elastic, and
    *
    *     template <typename Number>
    *     PointResponse<Number>
@@ -52,30 +52,29 @@ namespace Voussoir
    *     void set_static(const double factor);
    *
    * which makes it, once checked, the law of the static state: with its modulus
-   * times the static factor, and strengths without the increase of an
+   * times the static factor, and strengths without the increase for an
    * earthquake.
    *
-   * What LawDefaults has, a law need not have itself.
+   * A law need not have the members that LawDefaults has.
    */
   struct LawDefaults
   {
-    /** Numbers that a point remembers. */
+    /** Internal variables of a point. */
     static constexpr unsigned int n_history = 0;
 
     /** Whether the law has no directions of its own. */
     static constexpr bool isotropic = true;
 
     /** Refuses entries that do not fit together by a UserError that begins with
-     *  @p place, and derives what the law needs of them. */
+     *  @p place, and computes derived constants. */
     void
     check(const std::string & /*place*/) const
     {}
 
     /**
-     * A bound that costs little: above one at the elastic limit or before. A
-     * point that has been elastic so far stays it without a call of `respond`
-     * as long as this is not above one. By default `respond` is called for
-     * every point.
+     * A cheap bound: above one at the elastic limit or before. A point that has
+     * been elastic so far stays elastic without a call of `respond` as long as
+     * this is not above one. By default `respond` is called for every point.
      *
      * @param elastic_stress [Pa]
      * @param element_length as in PointSituation [m]
@@ -89,11 +88,11 @@ namespace Voussoir
     }
 
     /**
-     * Takes a point over from the law of the static state, under which it has
-     * left the elastic range: changes the numbers of its history where they
-     * depend on the modulus, and returns the strain e at which this law has the
-     * same stress with them. By default plastic strains stay, and the elastic
-     * one follows the modulus.
+     * Converts a point from the law of the static state, under which it has
+     * left the elastic range: changes the internal variables where they depend
+     * on the modulus, and returns the strain e at which this law has the same
+     * stress with them. By default plastic strains stay, and the elastic one
+     * follows the modulus.
      *
      * @param strain         e of the law of the static state [1]
      * @param response       of that law
@@ -132,7 +131,7 @@ namespace Voussoir
     }
   };
 
-  /** What a law with memory knows of a point besides its strain. */
+  /** Arguments of a law with internal variables besides the strain. */
   template <typename Number>
   struct PointSituation
   {
@@ -140,8 +139,8 @@ namespace Voussoir
     double time_step;      // since the last call [s]
   };
 
-  /** Response of a law with memory; to begin with, that of a point without
-   *  stress in which nothing is lost. */
+  /** Response of a law with internal variables; by default, that of a point
+   *  without stress and losses. */
   template <typename Number>
   struct PointResponse
   {
@@ -156,12 +155,12 @@ namespace Voussoir
      *  strain unless there is plastic strain. */
     SymmetricTensor3<Number> elastic_strain;
 
-    /** Energy lost in this step to cracks and plastic flow [J/m3]; what damping
-     *  loses is no part of it. */
+    /** Energy lost in this step to cracks and plastic flow [J/m3], without the
+     *  losses of damping. */
     Number dissipation = Number(0.);
 
-    /** Share of the stiffness that damage leaves, with which damping goes; for
-     * a single damage d that is 1 - d. */
+    /** Share of the stiffness that damage leaves, to which damping is
+     *  proportional; for a single damage d that is 1 - d. */
     Number damping_share = Number(1.);
 
     /** Plastic strain of this step [1]. */

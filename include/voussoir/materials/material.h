@@ -7,7 +7,7 @@
 
 namespace Voussoir
 {
-  /** The isotropic elastic constants that waves and boundaries go by. */
+  /** The isotropic elastic constants of waves and boundaries. */
   struct ElasticConstants
   {
     double density;       // rho [kg/m3]
@@ -40,9 +40,9 @@ namespace Voussoir
   /**
    * A material of a case: a named section of the parameter file, the cell sets
    * it fills, a stress law, and the cell kernel that this law makes. The kernel
-   * works on whatever cells, factors on the moduli and memory it is given; the
-   * law knows points only. MaterialOf makes classes of materials from laws, see
-   * law.h.
+   * gets cells, factors on the moduli and internal variables as arguments; the
+   * law evaluates single points. MaterialOf makes classes of materials from
+   * laws, see law.h.
    */
   class Material : public CellKernel
   {
@@ -50,8 +50,8 @@ namespace Voussoir
     virtual void
     declare_parameters(dealii::ParameterHandler &prm);
 
-    /** Refuses values that do not fit together, and derives what the law needs
-     *  of them; @p place names the section. */
+    /** Refuses values that do not fit together, and computes derived constants;
+     *  @p place names the section. */
     virtual void
     check(const std::string &place);
 
@@ -64,18 +64,18 @@ namespace Voussoir
     double
     wave_modulus() const override;
 
-    /** Density times the inertia factor: what the mass matrix sees [kg/m3]. */
+    /** Density times the inertia factor, for the mass matrix [kg/m3]. */
     double
     inertial_density() const;
 
     /** The material of the static state: with its modulus times the static
-     *  factor and its strengths without the increase of an earthquake, if the
-     *  law has a memory; else itself. */
+     *  factor and its strengths without the increase for an earthquake, if the
+     *  law has internal variables; else itself. */
     virtual const Material &
     at_rest() const = 0;
 
-    /** Factor on its stress there: the static factor, unless its modulus has
-     *  it already. */
+    /** Factor on the stress of `static_material`: the static factor, unless its
+     *  modulus contains it. */
     double
     factor_at_rest() const;
 
@@ -83,19 +83,19 @@ namespace Voussoir
     virtual SymmetricTensor3<double>
     stress(const SymmetricTensor3<double> &strain) const = 0;
 
-    /** Response of a point by itself; updates its memory of `n_history` numbers
-     *  by one step. */
+    /** Response of a point by itself; updates its `n_history` internal
+     *  variables by one step. */
     virtual PointResponse<double>
     respond(const SymmetricTensor3<double> &strain,
             double                         *history,
             const PointSituation<double>   &situation) const = 0;
 
-    /** See LawDefaults::yield_ratio; 0 for a law without memory. */
+    /** See LawDefaults::yield_ratio; 0 for a law without internal variables. */
     virtual double
     yield_ratio(const SymmetricTensor3<double> &elastic_stress,
                 const double                    element_length) const = 0;
 
-    /** Of as many points as there are lanes. */
+    /** Response of as many points as there are lanes. */
     virtual Lanes
     yield_ratio(const SymmetricTensor3<Lanes> &elastic_stress,
                 const Lanes                   &element_length) const = 0;
@@ -119,7 +119,7 @@ namespace Voussoir
     virtual bool
     isotropic() const = 0;
 
-    /** Names of the results from the memory, with units. */
+    /** Names of the results from the internal variables, with units. */
     virtual std::vector<std::string>
     output_names() const = 0;
 
@@ -145,7 +145,7 @@ namespace Voussoir
     double      expansion      = 1e-5; // [1/K]
   };
 
-  /** By a function of each material: what is known of all of them by index. */
+  /** The values of a function for all materials, by index. */
   template <typename Function>
   auto
   for_each_material(const std::vector<const Material *> &materials,

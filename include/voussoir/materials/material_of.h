@@ -132,7 +132,7 @@ namespace Voussoir
       CellKernels::add_force(law, cells, damping, input, force);
     }
 
-    // only laws with memory are asked for the next five
+    // the next five are called for laws with internal variables only
 
     void
     add_response(const CellRange  &cells,
@@ -225,8 +225,9 @@ namespace Voussoir
   private:
     static constexpr bool has_memory = Law::n_history > 0;
 
-    Law                               law;
-    std::shared_ptr<const MaterialOf> static_material; // of a law with memory
+    Law law;
+    std::shared_ptr<const MaterialOf>
+      static_material; // of a law with internal variables
   };
 } // namespace Voussoir
 

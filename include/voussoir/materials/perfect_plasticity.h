@@ -7,9 +7,9 @@
 namespace Voussoir
 {
   /**
-   * What laws of rock with friction and cohesion, which yield without hardening
-   * or softening, have in common. They remember the plastic strain and the
-   * equivalent plastic strain, the sum of sqrt(2/3 de : de).
+   * Common part of laws of rock with friction and cohesion, which yield without
+   * hardening or softening. Their internal variables are the plastic strain and
+   * the equivalent plastic strain, the sum of sqrt(2/3 de : de).
    */
   struct PerfectPlasticity : IsotropicElasticity, CohesionAndFriction
   {
@@ -26,7 +26,8 @@ namespace Voussoir
     void
     check(const std::string &place) const;
 
-    /** Flow that takes @p excess off the elastic @p trial stress of a strain.
+    /** Plastic flow that reduces the elastic @p trial stress of a strain by @p
+     *  excess.
      */
     template <typename Number>
     PointResponse<Number>

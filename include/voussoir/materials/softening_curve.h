@@ -10,12 +10,12 @@
 
 namespace Voussoir
 {
-  /** What a point remembers of the curve that its damage follows; zero while it
+  /** Internal variables of a point whose damage follows a curve; zero while it
    *  is elastic. */
   struct CurveMemory
   {
     double largest;  // effective strain so far, from which damage grows
-    double position; // effective strain up to which the curve is used up
+    double position; // effective strain up to which the curve has been followed
     double last;     // effective elastic strain of the last step
     double damage;
 
@@ -23,7 +23,7 @@ namespace Voussoir
   };
 
 
-  /** What a step does to a point whose damage follows a curve. */
+  /** Result of a step at a point whose damage follows a curve. */
   template <typename Number>
   struct DamageProgress
   {
@@ -43,8 +43,8 @@ namespace Voussoir
 
   /**
    * Stress over strain in a uniaxial test beyond the elastic limit, in straight
-   * pieces. The inelastic strain of a node is a part of the material itself and
-   * a displacement that is smeared over a band, as wide as the element: the
+   * pieces. The inelastic strain of a node is a strain of the material itself
+   * and a displacement that is smeared over a band, as wide as the element: the
    * crack band of Bazant and Oh (1983), which makes the energy of a crack the
    * same on all meshes.
    */
@@ -88,10 +88,10 @@ namespace Voussoir
                    const double             relief = 0.);
 
     /**
-     * That of the static state, with the same traction over the opening except
-     * for the increase of strength in an earthquake. Its points follow the
-     * curve exactly instead of by the rule of `go_on`, since a load increment
-     * is no time step: one increment leads to where ten do.
+     * The curve of the static state, with the same traction over the opening
+     * except for the increase of strength in an earthquake. Its points follow
+     * the curve exactly instead of by the rule of `go_on`, since a load
+     * increment is no time step: one increment leads to where ten do.
      *
      * @param static_modulus [Pa]
      * @param strength_increase factor that the stresses have in an earthquake
@@ -101,9 +101,9 @@ namespace Voussoir
                     const double strength_increase = 1.) const;
 
     /**
-     * Continues on this curve the memory of a point of another one: at the same
-     * damage, so that stress and opening stay as they are whatever the strength
-     * of this curve is.
+     * Converts the internal variables of a point from another curve to this
+     * one: at the same damage, so that stress and opening stay as they are
+     * whatever the strength of this curve is.
      *
      * @param damage of the point, with the modulus of this curve
      * @param elastic_strain effective, of now [1]
@@ -115,18 +115,17 @@ namespace Voussoir
               CurveMemory &memory) const;
 
     /** At an effective strain s/E [1] in a band of this width [m]; elastic
-     * below the limit. */
+     *  below the limit. */
     Point
     at(const double strain, const double band) const;
 
     /**
-     * Lets the damage of a point go one step on. A step of finite length cuts
-     * the corners of the curve; it goes as far along it as gives up the energy
-     * that the trapezoidal rule of the time step takes,
-     *   (s_a e_b - s_b e_a)/2 + (s_a + s_b) (p_b - p_a)/2 ,
-     * with the elastic strain e and the irreversible p: then a crack takes its
-     * energy whatever the steps are, and makes none. In the static state it
-     * goes to the strain itself.
+     * Advances the damage of a point by one step. A step of finite length cuts
+     * the corners of the curve; it advances along the curve until the released
+     * energy is that of the trapezoidal rule of the time step, (s_a e_b - s_b
+     * e_a)/2 + (s_a + s_b) (p_b - p_a)/2 , with the elastic strain e and the
+     * irreversible p: then a crack takes its energy with any time step, and
+     * gains none. In the static state it goes to the strain itself.
      *
      * @param equivalent_stress effective stress of a uniaxial test [Pa]
      * @param band width of the band [m]
@@ -192,8 +191,9 @@ namespace Voussoir
     static std::vector<Node>
     exponential(const double strength, const double energy);
 
-    /** A sentence about cells of this length [m] if @p what, which takes the
-     *  energy and begins at @p strength, snaps back in them; else empty. */
+    /** A sentence about cells of this length [m] if a failure, named @p what,
+     *  of the energy and beginning at @p strength snaps back in them; else
+     *  empty. */
     std::string
     remark(const double       element_length,
            const std::string &what     = "a crack",

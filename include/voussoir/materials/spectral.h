@@ -34,7 +34,7 @@ namespace Voussoir
    * The principal value furthest from the other two in closed form, the others
    * in the plane across its direction (Scherzinger and Dohrmann 2008): to
    * round-off, without branches, so that it runs at the full SIMD width, and
-   * not minding equal values. The order of the values is left open.
+   * stable for equal values. The order of the values is left open.
    */
   template <typename Number>
   Spectrum<Number>
@@ -104,7 +104,7 @@ namespace Voussoir
 
     // one of Jacobi's rotations turns them into those of the other values:
     // t = sign(d) b / (|d| + sqrt(d^2 + b^2)) is its tangent with b = 2 b_uv
-    // and d = b_vv - b_uu; tiny keeps 0/0 away
+    // and d = b_vv - b_uu; tiny avoids 0/0
     const Vector3 bu = b * u, bv = b * v;
     const Number  uu = u * bu, uv = u * bv, vv = v * bv;
     const Number  tiny = 1e-150, twice = 2. * uv, d = vv - uu;
@@ -156,6 +156,15 @@ namespace Voussoir
     const Number mean          = (1. / 3.) * first,
                  radius        = std::sqrt(Number((4. / 3.) * second));
     return {mean - radius, mean + radius};
+  }
+
+
+  /** Coefficient alpha of the surface of Lubliner et al. (1989) for a ratio of
+   *  biaxial to uniaxial compressive strength. */
+  inline double
+  lubliner_alpha(const double biaxial_ratio)
+  {
+    return (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
   }
 } // namespace Voussoir
 

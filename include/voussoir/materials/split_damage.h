@@ -23,8 +23,8 @@ namespace Voussoir
 
 
   /**
-   * What laws with two scalar damages of the effective stress s = C : e_e have
-   * in common, which is split into tension and compression (see split_tension):
+   * Common part of laws with two scalar damages of the effective stress s = C :
+   * e_e , which is split into tension and compression (see split_tension):
    *   sigma = (1 - d+) s+ + (1 - d-) s- .
    * Each damage follows a uniaxial curve by the equivalent stress of its own,
    * so that a step needs no iteration, and a crack that closes has its
@@ -34,8 +34,8 @@ namespace Voussoir
    * began: then the compressed part is that of split_tension or, where it has
    * less energy, of stress_beside_crack. The lesser of two potentials is one.
    *
-   * The history begins with the memories of the two curves and the normal of
-   * the crack.
+   * The history begins with the internal variables of the two curves
+   * and the normal of the crack.
    */
   struct SplitDamage : IsotropicElasticity, TensileCrack
   {
@@ -130,8 +130,8 @@ namespace Voussoir
     }
 
     /**
-     * Lets one damage go on where it grows, or may: only there the curve is
-     * looked up.
+     * Advances one damage where it grows, or may grow: only there the curve is
+     * evaluated.
      *
      * @param equivalent effective stress of a uniaxial test [Pa]
      * @param memory     the numbers of a CurveMemory
@@ -187,7 +187,8 @@ namespace Voussoir
       return progress;
     }
 
-    /** What a step does in tension and in compression, or to their parts. */
+    /** Result of a step in tension and in compression, or the parts of the
+     *  stress. */
     template <typename T>
     using OfBoth = std::array<T, 2>;
 

@@ -51,7 +51,7 @@ namespace Voussoir
    * tensile strength and the rest C : a, of which an open crack relieves the
    * material: a >= 0 is the strain of the cracks, n : a = 0 (Del Piero 1989).
    * The two parts are orthogonal in the energy, so that damage of either has a
-   * potential and no closed path of strains makes energy. A split by the signs
+   * potential and no closed path of strains gains energy. A split by the signs
    * of principal stresses alone has none unless Poisson's ratio is zero.
    *
    * @param stress principal values and directions, in any order

@@ -20,7 +20,7 @@ namespace Voussoir
   struct CoarseMesh
   {
     /** One face of one cell, numbered as deal.II numbers faces: -x +x -y +y -z
-     * +z of the reference cell. */
+     *  +z of the reference cell. */
     struct Face
     {
       unsigned int cell;
@@ -41,7 +41,7 @@ namespace Voussoir
        *  the middles of their edges. */
       Points vertices;
 
-      /** From such coordinates to space [m]. */
+      /** Maps such coordinates to space [m]. */
       std::function<Points(const Points &)> positions;
 
       /** Faces, from all their sides, on a surface that is curved in these
@@ -57,13 +57,13 @@ namespace Voussoir
     Chart chart;
 
     /** Vertex indices in deal.II's lexicographic order (x fastest, then y, then
-     * z of the reference cell). */
+     *  z of the reference cell). */
     std::vector<std::array<unsigned int, 8>> cells;
 
     std::map<std::string, std::vector<unsigned int>> cell_sets;
 
     /** Sets of outer or inner faces; an inner face is named from one of its two
-     * sides. */
+     *  sides. */
     std::map<std::string, std::vector<Face>> face_sets;
 
     /** Sets of vertices (Abaqus NSET, Gmsh physical points). */

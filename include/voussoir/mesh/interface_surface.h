@@ -7,8 +7,8 @@
 
 namespace Voussoir
 {
-  /** By cell and face: the neighbour and the number it gives the face; cell
-   * `invalid_unsigned_int` at the mesh's surface. */
+  /** By cell and face: the neighbour and its number of the face; cell
+   *  `invalid_unsigned_int` at the mesh's surface. */
   using FaceNeighbours = std::vector<std::array<CoarseMesh::Face, 6>>;
 
   FaceNeighbours

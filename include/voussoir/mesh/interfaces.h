@@ -5,8 +5,7 @@
 
 namespace Voussoir
 {
-  /** What the face set of an interface's second side has after the name of the
-   * first. */
+  /** Suffix of the name of the face set of an interface's second side. */
   inline const std::string other_side = " (other side)";
 
   /**

@@ -27,38 +27,14 @@ namespace Voussoir
 
   /**
    * Throw UserError, with a sentence that begins with @p place, if so many
-   * cells need more memory than the machines of all ranks have; what each rank
-   * makes as a whole must fit into one.
+   * cells need more memory than the machines of all ranks have; data that each
+   * rank stores as a whole must fit into one.
    */
   void
   check_size(const double       n_cells,
              const unsigned int degree,
              const std::string &place,
              const MPI_Comm     communicator = MPI_COMM_SELF);
-
-  /** A part of the mesh that is connected by vertices and interfaces. */
-  struct MeshPart
-  {
-    std::string place; // "(x, y, z)" of a cell in it
-    bool        is_fixed;
-  };
-
-  /**
-   * The parts of a mesh that is split along the @p interfaces; those that have
-   * faces in the @p fixed_sets are fixed.
-   */
-  std::vector<MeshPart>
-  find_parts(const CoarseMesh               &mesh,
-             const std::vector<std::string> &fixed_sets,
-             const std::vector<std::string> &interfaces);
-
-  /**
-   * Some lines for the log: size, extent, volume, edges, worst corner, parts
-   * that share no vertex, vertices that coincide, and each named set with its
-   * volume or area. Lengths in metres.
-   */
-  std::string
-  describe_mesh(const CoarseMesh &mesh);
 } // namespace Voussoir
 
 #endif

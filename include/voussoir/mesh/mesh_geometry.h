@@ -4,6 +4,7 @@
 #include <voussoir/mesh/coarse_mesh.h>
 
 #include <array>
+#include <string>
 #include <vector>
 
 namespace Voussoir
@@ -45,6 +46,14 @@ namespace Voussoir
   /** Area [length^2]; exact for plane faces, by 4x4 Gauss points for others. */
   double
   face_area(const CoarseMesh &mesh, const CoarseMesh::Face &face);
+
+  /** The vertices of a cell, in deal.II's lexicographic order. */
+  std::array<dealii::Point<3>, 8>
+  cell_vertices(const CoarseMesh &mesh, const unsigned int cell);
+
+  /** "(x, y, z)" for a message. */
+  std::string
+  describe_point(const dealii::Point<3> &point);
 } // namespace Voussoir
 
 #endif

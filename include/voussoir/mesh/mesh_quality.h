@@ -18,7 +18,7 @@ namespace Voussoir
     /** Largest length of an edge over that of the shortest of its cell. */
     double aspect_ratio = 1.;
 
-    /** Between two edges of a face [degrees]. */
+    /** Smallest angle between two edges of a face [degrees]. */
     double smallest_angle = 90.;
 
     /** Adds a cell by its vertices, in deal.II's order. */

@@ -13,7 +13,7 @@ namespace Voussoir
   /** The entries about a wedge of rock in one bank of an arch dam. */
   struct AbutmentWedgeParameters
   {
-    double elevation = 0.; // of the bottom; 0: no wedge
+    double elevation = 0.; // of the base plane; 0: no wedge
     double dip       = 0.; // [degrees]
     double direction = 0.; // [degrees]
     double width     = 100.;
@@ -23,7 +23,7 @@ namespace Voussoir
     void
     declare(dealii::ParameterHandler &prm);
 
-    /** Its bottom in the cross-section. */
+    /** The base plane in the cross-section. */
     ArchDamCrossSection::Ledge
     ledge(const unsigned int bank) const;
   };
@@ -34,8 +34,8 @@ namespace Voussoir
    * In the cross-section it has the rock above a ledge and on the river's side
    * of an upright column; along the river it reaches from the dam's upstream
    * face to where the rock before it is cut away. It is bounded by
-   * three surfaces, base plane (bottom), lateral (side) and rear release plane
-   * (back), and daylights on the canyon's wall and in the cut.
+   * three surfaces, base plane ("bottom"), lateral ("side") and rear release
+   * plane ("back"), and daylights on the canyon's wall and in the cut.
    */
   class AbutmentWedge
   {

@@ -27,9 +27,9 @@ namespace Voussoir
    * They come from a grid of columns and rows in which the contour of the
    * canyon runs along the rows or diagonally through cells, so that these fall
    * into triangles; all are then halved in both directions, and a layer of
-   * quadrilaterals is put on each side along the contour. One row can be laid
-   * level, to be the surface of a reservoir, and one in each bank on a plane,
-   * to be the bottom of a wedge of rock.
+   * quadrilaterals is put on each side along the contour. One row can be made
+   * level, as the surface of a reservoir, and one in each bank be put on a
+   * plane, to be the base plane of a wedge of rock.
    */
   class ArchDamCrossSection
   {
@@ -66,7 +66,7 @@ namespace Voussoir
     /**
      * @param n_blocks          between the abutments at the crest
      * @param columns_per_block columns of the grid
-     * @param rock              of whose columns and rows the halves grow
+     * @param rock              whose columns and rows grow by halves
      * @param water_level       wanted for the surface of a reservoir [m]; 0
      *                          for no reservoir
      * @param ledges            wanted in the right and the left bank
@@ -111,8 +111,8 @@ namespace Voussoir
 
     /**
      * Moves vertices near @p lines, of both banks, onto them, and the others to
-     * where the quadrilaterals are little distorted. Those on the contour stay
-     * on it, and with @p in_dam those of joints in their columns.
+     * where the quadrilaterals are little distorted. Vertices on the contour
+     * stay on it, and with @p in_dam those of joints in their columns.
      */
     void
     follow(const std::array<LedgeLine, 2> &lines,
@@ -128,7 +128,7 @@ namespace Voussoir
     int first_dam_column, last_dam_column, last_column;
 
     /** The surface of the reservoir: it covers the quadrilaterals inside the
-     * canyon with a lower half_row; -1 without reservoir. */
+     *  canyon with a lower half_row; -1 without reservoir. */
     int surface_row = -1;
 
     /** In the right and the left bank. */
@@ -180,7 +180,7 @@ namespace Voussoir
       unsigned int quad, edge;
     };
 
-    /** Between the @p sides, all on the contour, and what lies beyond them,
+    /** Between the @p sides, all on the contour, and the vertices beyond them,
      *  @p inside of the canyon or in the rock. */
     void
     add_layer(const std::vector<Side> &sides, const bool inside);
@@ -202,7 +202,7 @@ namespace Voussoir
 
     /** Moves vertices to where the quadrilaterals are least distorted.
      *
-     * @param joint_stays whether vertices in the columns of joints stay there
+     *  @param joint_stays whether vertices in the columns of joints stay there
      */
     void
     smooth(const std::array<LedgeLine, 2> &lines,
@@ -211,7 +211,7 @@ namespace Voussoir
            std::vector<Vertex>            &moved) const;
 
     /** The ends of the crest, of ledges and of the rock stay where they are,
-     *  and what stays of the joints. */
+     *  and so do vertices of joints where they are fixed. */
     bool
     may_move_along(const unsigned int       vertex,
                    const std::vector<bool> &joint_stays) const;

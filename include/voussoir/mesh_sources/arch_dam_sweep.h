@@ -12,7 +12,7 @@ namespace Voussoir
    * the dam, and on both sides into the river's direction. They run in layers
    * from downstream to upstream, level except where a ledge dips: its vertices
    * have another place in the cross-section of each layer, on a plane in space,
-   * and the others make way.
+   * and the other vertices move with them.
    */
   class ArchDamSweep
   {
@@ -36,7 +36,7 @@ namespace Voussoir
     operator()(const unsigned int vertex) const;
 
     /** From s, layer, which may lie between two, and z to space [m]. Points
-     * with the same s and z in a row cost least. */
+     *  with the same s and z in a row cost least. */
     std::vector<dealii::Point<3>>
     positions(const std::vector<dealii::Point<3>> &coordinates) const;
 

@@ -24,8 +24,8 @@ namespace Voussoir
     virtual CoarseMesh
     generate() const = 0;
 
-    /** What an engineer asks first of a structure like this, a line for the
-     *  log; empty if there is nothing. */
+    /** Key figures of the structure, a line for the log; empty if there are
+     *  none. */
     virtual std::string
     describe(const CoarseMesh &) const
     {

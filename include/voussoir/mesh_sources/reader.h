@@ -12,9 +12,10 @@ namespace Voussoir
 {
   /**
    * Read a mesh of hexahedra with its named sets from a Gmsh (.msh), Abaqus
-   * (.inp), AVS UCD (.ucd or .inp) or VTK legacy (.vtk) file. What is left out
-   * goes to @p report (may be null), one line each. The mesh has passed
-   * check_mesh(). Lengths are those of the file. Throws UserError.
+   * (.inp), AVS UCD (.ucd or .inp) or VTK legacy (.vtk) file. Parts of the file
+   * that are not read are noted in @p report (may be null), one line each. The
+   * mesh has passed check_mesh(). Lengths are those of the file. Throws
+   * UserError.
    */
   CoarseMesh
   read_mesh(const std::string &filename, std::ostream *report);

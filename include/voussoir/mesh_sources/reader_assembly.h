@@ -14,7 +14,7 @@
 namespace Voussoir
 {
   /**
-   * What stands in a mesh file of any format: vertices and elements by the
+   * Contents of a mesh file of any format: vertices and elements by the
    * numbers the file gives them. Hexahedra and quadrilaterals list their
    * vertices as Gmsh, Abaqus and VTK do (around the bottom, then around the
    * top).
@@ -32,11 +32,11 @@ namespace Voussoir
     std::vector<Element<8>>                                hexahedra;
     std::vector<Element<4>>                                quadrilaterals;
 
-    /** Elements that the program cannot compute with, by kind ("tetrahedra").
+    /** Elements that the program does not support, by kind ("tetrahedra").
      */
     std::map<std::string, unsigned int> refused;
 
-    /** Elements without a meaning here, by kind ("lines"). */
+    /** Elements that are ignored, by kind ("lines"). */
     std::map<std::string, unsigned int> ignored;
 
     /** Sets by the indices in the vectors above. */
@@ -56,10 +56,11 @@ namespace Voussoir
 
   /**
    * The mesh of a file: quadrilaterals become faces of cells, cells numbered in
-   * mirror order are turned, vertices without a cell are dropped. What is left
-   * out goes to @p report (may be null), one line each. Throws UserError, with
-   * a sentence that begins with the name of the file, if elements other than
-   * hexahedra with eight vertices are among them or vertices are missing.
+   * mirror order are turned, vertices without a cell are dropped. Parts of the
+   * file that are left out are noted in @p report (may be null), one line each.
+   * Throws UserError, with a sentence that begins with the name of the file, if
+   * elements other than hexahedra with eight vertices are among them or
+   * vertices are missing.
    */
   CoarseMesh
   assemble_mesh(const FileMesh    &file,

@@ -64,7 +64,7 @@ namespace Voussoir
     count(const std::string &expected);
 
     /** @p n, the number of things that follow, unless the file cannot hold as
-     * many. */
+     *  many. */
     std::size_t
     check_count(const std::int64_t n, const std::string &expected) const;
 
@@ -97,7 +97,7 @@ namespace Voussoir
   };
 
 
-  /** What can be shown of a piece of a file, in quotation marks. */
+  /** The printable part of a piece of a file, in quotation marks. */
   std::string
   in_quotes(const std::string_view text);
 

@@ -10,10 +10,10 @@ namespace Voussoir
 {
   /**
    * Read a VTK legacy file (ASCII or binary, versions 1 to 5) with an
-   * unstructured grid. Its numbers in the cell data array that is called, but
-   * for case and signs such as _, MaterialID, MaterialIDs, Material, BlockID,
-   * Block, CellEntityIDs or Region (the first of these that is there), make
-   * cell sets "material 3" of the hexahedra and face sets "boundary 3" of the
+   * unstructured grid. One cell data array gives the sets, the first of
+   * MaterialID, MaterialIDs, Material, BlockID, Block, CellEntityIDs and
+   * Region, whatever their case and signs such as _: its numbers make cell sets
+   * "material 3" of the hexahedra and face sets "boundary 3" of the
    * quadrilaterals. Without such an array there are no sets, and @p report
    * (may be null) notes it. Throws UserError. (deal.II's GridIn::read_vtk()
    * reads neither binary files nor version 5, knows one name of the array only

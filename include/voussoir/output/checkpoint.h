@@ -19,8 +19,8 @@ namespace Voussoir
           const nlohmann::json    &header,
           const StateContent      &content) const;
 
-    /** The newest file that is whole, or an empty name; @p damaged gets those
-     *  that are newer and what is wrong with them. Called on all ranks. */
+    /** The newest file that is whole, or an empty name; @p damaged gets newer
+     *  ones with their errors. Called on all ranks. */
     std::string
     newest(std::vector<std::string> &damaged) const;
 

@@ -10,13 +10,13 @@
 namespace Voussoir
 {
   /**
-   * Where the energy is and where it went, all in J and half a step before the
-   * time of the state. With kinetic energy v^T M v / 2 of the half step and
-   * strain energy u_n^T K u_(n-1) / 2 the balance of the undamped scheme is
-   * exact, not only to the order of the time step. Every loss is a sum of its
-   * own, none is the remainder of the others: their residual is the
-   * energy-balance error. After a static stage u is the displacement since
-   * then: what the static loads do is left out on both sides.
+   * Stored energies, losses and work, all in J and half a step before the time
+   * of the state. With kinetic energy v^T M v / 2 of the half step and strain
+   * energy u_n^T K u_(n-1) / 2 the balance of the undamped scheme is exact, not
+   * only to the order of the time step. Every loss is a sum of its own, none is
+   * the remainder of the others: their residual is the energy-balance error.
+   * After a static stage u is the displacement since then: the work of the
+   * static loads is left out on both sides.
    */
   struct EnergyTerms
   {
@@ -50,7 +50,7 @@ namespace Voussoir
     }
   };
 
-  /** What the balance came to so far. */
+  /** Results of the balance so far. */
   struct EnergySummary
   {
     EnergyTerms terms;
@@ -69,7 +69,7 @@ namespace Voussoir
 
   /**
    * The energy balance: evaluated at intervals, written to energy.csv, and the
-   * alarm when something goes wrong.
+   * reason to stop where it is violated.
    *
    * The losses of Maxwell branches and of viscosity in elastic cells are known
    * exactly for one step, at the price of some products with the stiffness, and
@@ -97,47 +97,47 @@ namespace Voussoir
          Log               &log);
 
     /** Whether the balance is to be evaluated after a step: at its lines, and
-     *  often enough for the sums of what damping loses. */
+     *  often enough for the sums of the losses by damping. */
     bool
     is_due(const unsigned long long step) const;
 
-    /** Keeps the velocity before a step after which the balance is due. */
+    /** Stores the velocity before a step after which the balance is due. */
     void
     before_step(const State &state);
 
     /** Evaluates the balance at the state, and writes its line if it is time
-     *  or this is the @p end of the run. The points of the state come to know
-     *  the imbalance of their branches. */
+     *  or this is the @p end of the run. The points of the state store the
+     *  imbalance of their branches. */
     const EnergyTerms &
     evaluate(State &state, const bool end = false);
 
     const EnergyTerms &
     latest() const;
 
-    /** Energy-balance error [J]: what no account explains, what damping has
-     *  given back, and what cracks made when they closed. */
+    /** Energy-balance error [J]: the residual of all sums, negative losses of
+     *  damping, and energy that cracks gained when they closed. */
     double
     made() const;
 
-    /** That over the largest energy that came in and did not go out through the
-     *  boundary at once, so far. */
+    /** The error over the largest energy that came in and did not leave through
+     *  the boundary at once, so far. */
     double
     relative_error() const;
 
-    /** That over what damping, cracks, friction and impacts took; zero as long
-     *  as they took next to nothing. */
+    /** The error over the losses by damping, cracks, friction and impacts; zero
+     *  as long as these are nearly zero. */
     double
     error_of_losses() const;
 
     /** Why the run must stop: not finite, growing without bound, or an error
-     *  above this share of what came in; else an empty text. */
+     *  above this share of the energy that came in; else an empty text. */
     std::string
     alarm(const double limit) const;
 
     EnergySummary
     summary() const;
 
-    /** Accumulated numbers for a checkpoint. */
+    /** Accumulated sums for a checkpoint. */
     nlohmann::json
     save() const;
 
@@ -145,8 +145,8 @@ namespace Voussoir
     load(const nlohmann::json &saved);
 
   private:
-    /** What the elastic cells have lost until now, with what they lose in the
-     *  next step and in the last one [J]. */
+    /** Losses of the elastic cells until now, and those in the next step and in
+     *  the last one [J]. */
     double
     loss_in_cells(const unsigned long long step,
                   const double             next_loss,

@@ -15,7 +15,7 @@ namespace Voussoir
     /**
      * @param sets      face sets, each checked: at least one, and of the mesh
      * @param place     names the entry with them
-     * @param kind      what they are in VTU files, "face_set" or "interface"
+     * @param kind      their name in VTU files, "face_set" or "interface"
      * @param all_names of that kind, which give the sets their numbers there
      */
     FaceMesh(const Discretization           &discretization,
@@ -78,8 +78,8 @@ namespace Voussoir
 
     /** Numbers of the nodes for a checkpoint, by the name of the set.
      *
-     * @param values @p width of each node
-     * @param what   follows the name */
+     *  @param values @p width of each node
+     *  @param what   follows the name */
     std::map<std::string, KeyedValues>
     keyed_values(std::vector<double> &values,
                  const unsigned int   width,

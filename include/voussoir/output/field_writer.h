@@ -22,9 +22,9 @@ namespace Voussoir
   };
 
   /**
-   * Writes fields of the whole model as one VTU file, with those that it always
-   * has: material and cell set of each cell by number, with their names (see
-   * `ResultNames`), and what cells remember, as a mean over their points.
+   * Writes fields of the whole model as one VTU file, always with material and
+   * cell set of each cell by number, with their names (see `ResultNames`), and
+   * results of the internal variables, as a mean over the points of each cell.
    *
    * @param fields    of the nodes
    * @param stress_of state whose principal stresses are written [MPa], see
@@ -41,7 +41,8 @@ namespace Voussoir
                const double                   time,
                const std::vector<CellField>  &cell_fields = {});
 
-  /** The same at t = 0 of a model without a run, whose cells remember nothing.
+  /** The same at t = 0 of a model without a run, without results of internal
+   *  variables.
    */
   std::string
   write_fields(const ObservedModel           &model,

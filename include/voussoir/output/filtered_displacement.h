@@ -7,11 +7,10 @@
 namespace Voussoir
 {
   /**
-   * What the elastic stress of the equation of motion goes by,
-   *   sigma = k D : B (u + s w) ,
-   * with the displacement u [m], the damping memory w [m] and the damping
-   * factor s of each material, at the time of a state. The branches of w, of
-   * which the state has those of the step before, are carried on to it; the
+   * Data for the elastic stress of the equation of motion, sigma = k D : B (u +
+   * s w) , with the displacement u [m], the damping memory w [m] and the
+   * damping factor s of each material, at the time of a state. The branches of
+   * w, which the state has from the step before, are advanced to its time; the
    * velocity of stiffness-proportional damping and of the mesh viscosity is
    * that of the half step before, as in the step.
    */
@@ -58,7 +57,7 @@ namespace Voussoir
     const Damping    &damping;
     const MaxwellStep maxwell;
     const bool        uniform; // damping factors
-    const double      factor;  // s if they are
+    const double      factor;  // s if it is the same for all materials
     Vector            u, w;
   };
 } // namespace Voussoir

@@ -18,11 +18,11 @@ namespace Voussoir
       shear_x,      // resultant, in global directions [N]
       shear_y,
       shear_z,
-      resistance, // cohesion and friction of what may slip [N]
-      driving_x,  // shear of what may slip, resultant [N]
+      resistance, // cohesion and friction of points without keys [N]
+      driving_x,  // shear of points without keys, resultant [N]
       driving_y,
       driving_z,
-      locked_area, // which keys hold [m2]
+      locked_area, // where keys prevent slip [m2]
       force_x,     // resultant of pressure and shear [N]
       force_y,
       force_z,
@@ -63,7 +63,7 @@ namespace Voussoir
      "sliding safety [-]"}};
 
   /**
-   * The numbers of these columns.
+   * The values of these columns.
    *
    * @param sums    of the surface over all ranks
    * @param largest opening and slip of its points [m]
@@ -80,9 +80,9 @@ namespace Voussoir
   /**
    * Safety of a block: resistance of its planes over the driving force. Its
    * balance is M a = D + R with the contact forces R and all others D: weight,
-   * water, uplift, thrust of the dam. If it went with its base it would lack
-   * the acceleration a_s of its slip, so that limit equilibrium is that of D -
-   * M (a - a_s) = -(R - M a_s) . As long as nothing slides this is -R; while it
+   * water, uplift, thrust of the dam. Without slip its acceleration would be a
+   * - a_s, less that of its slip, so that limit equilibrium is that of D - M (a
+   * - a_s) = -(R - M a_s) . As long as nothing slides this is -R; while it
    * slides, when friction caps R, it shows by how much the driving forces
    * exceed the resistance of the planes.
    *
@@ -97,7 +97,7 @@ namespace Voussoir
                    const dealii::Tensor<1, 3> &inertia);
 
   /** Mean velocity of a block's slip, over the closed points of its planes;
-   * zero if nothing is [m/s]. */
+   *  zero if nothing is [m/s]. */
   dealii::Tensor<1, 3>
   slip_velocity(const SlidingBlock        &block,
                 const double              *sums,

@@ -8,10 +8,10 @@
 namespace Voussoir
 {
   /** Stress of the equation of motion at a point of a cell, for output. Where
-   *  the nearest integration point has left the elastic range, it is the one of
-   *  that point, as its law had it in the last step; elsewhere the elastic
-   *  stress there, which a law with memory caps where it is beyond its limit,
-   * as that of a crack which opens there. */
+   *  the nearest integration point has left the elastic range, it is the stress
+   *  that the law gave at that point in the last step; elsewhere the elastic
+   *  stress, which a law with internal variables limits where it is beyond its
+   *  strength, as if a crack opened there. */
   class LawStress
   {
   public:
@@ -31,11 +31,11 @@ namespace Voussoir
                    const dealii::SymmetricTensor<2, 3> &initial_strain,
                    const double                         temperature) const;
 
-    /** Whether it is this one, that of an elastic point. */
+    /** Whether the stress is the elastic one. */
     bool
     is_elastic(const dealii::SymmetricTensor<2, 3> &elastic_stress) const;
 
-    /** Whether it is so under any strain. */
+    /** Whether the stress is the elastic one under any strain. */
     bool
     is_always_elastic() const;
 
@@ -73,7 +73,7 @@ namespace Voussoir
     set(const unsigned int lane, const LawStress &law);
 
     /** Strain and change of temperature [K] before the earthquake, once the
-     *  laws are set; without this there are none. */
+     *  laws are set; else both are zero. */
     void
     set_initial(const SymmetricTensor3<Lanes> &strain,
                 const Lanes                   &temperature);
@@ -95,7 +95,7 @@ namespace Voussoir
 
     Lanes stress_factor = 0., damping_factor = 0.;
 
-    // what their elastic strain is more than k B (u + s w)
+    // difference of their elastic strain and k B (u + s w)
     SymmetricTensor3<Lanes> offset;
 
     bool all_are_elastic = true; // under any strain

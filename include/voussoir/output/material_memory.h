@@ -8,9 +8,9 @@
 namespace Voussoir
 {
   /**
-   * Results from the memories of all materials (damage, plastic strain, crack
-   * openings), by name: the mean of the integration points of each active cell;
-   * zero in cells whose material has no such thing.
+   * Results from the internal variables of all materials (damage, plastic
+   * strain, crack openings), by name: the mean of the integration points of
+   * each active cell; zero in cells whose material has no such result.
    */
   std::map<std::string, dealii::Vector<float>>
   memory_of_cells(const Solid &solid, const MaterialMemory &memory);
@@ -19,7 +19,7 @@ namespace Voussoir
   bool
   tells_of_cracks(const Material &material);
 
-  /** How far the crack of an integration point is open [m]. */
+  /** Opening of the crack of an integration point [m]. */
   struct CrackOpening
   {
     double now     = 0.; // band width times the inelastic strain across it
@@ -27,7 +27,7 @@ namespace Voussoir
   };
 
   /** Visits the points of this rank's cells that have left the elastic range,
-   * of all materials with crack openings, with the width of their band [m]. */
+   *  of all materials with crack openings, with the width of their band [m]. */
   void
   for_each_crack(const ObservedRun                                      &run,
                  const std::function<void(const Discretization::Cell &,
@@ -35,7 +35,7 @@ namespace Voussoir
                                           const double        band,
                                           const CrackOpening &opening)> &visit);
 
-  /** The crack that is open widest against its cell. */
+  /** The crack with the largest opening over the width of its cell. */
   struct WidestCrack
   {
     double           opening = 0.; // [m]
@@ -49,9 +49,9 @@ namespace Voussoir
   widest_crack(const ObservedRun &run, const bool ever = false);
 
   /**
-   * Of each material with memory: the share of its volume that has left the
-   * elastic range, energy lost in it [J], largest value of each of its results.
-   * All ranks must call this together.
+   * Of each material with internal variables: the share of its volume that has
+   * left the elastic range, energy lost in it [J], largest value of each of its
+   * results. All ranks must call this together.
    *
    * @param names of the materials
    */

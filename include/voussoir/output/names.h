@@ -12,8 +12,8 @@ namespace Voussoir
   class Contact;
 
   /**
-   * The one table of names behind the numbers in results. The number of a thing
-   * is its place in the list of its kind, from zero. VTU files have the numbers
+   * The one table of names behind the numbers in results. The number of a name
+   * is its index in the list of its kind, from zero. VTU files have the numbers
    * as fields and the lists beside them (see `write_vtu`), CSV files have their
    * columns in this order, and summary.json has the table as "names".
    */
@@ -32,7 +32,7 @@ namespace Voussoir
     std::vector<std::string> face_sets; // of the mesh, by name
     std::vector<std::string> interfaces; // in the order of their section
 
-    /** What the number of a point's state at an interface means. */
+    /** Names behind the numbers of the state of a contact point. */
     static const std::vector<std::string> &
     interface_states();
 

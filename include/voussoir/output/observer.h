@@ -21,7 +21,7 @@ namespace Voussoir
   class Reservoir;
   class WaterMotion;
 
-  /** What observers may see of a case before it runs. */
+  /** Parts of a case that observers may read before the run. */
   struct ObservedModel
   {
     const Solid     &solid;
@@ -39,19 +39,19 @@ namespace Voussoir
     /** Whether displacements are relative to a rigid base that moves. */
     bool base_moves;
 
-    /** Takes note of results that cannot be written. */
+    /** Records results that cannot be written. */
     Log &log;
 
-    /** Between two samples that miss no more than 1.2 % of an extreme of what
-     *  oscillates as fast as the mesh carries [s]: 20 in a period. */
+    /** Interval of samples that miss at most 1.2 % of an extreme at the highest
+     *  frequency that the mesh carries [s]: 20 in a period. */
     double
     resolving_interval() const
     {
       return 0.05 / carried_frequency;
     }
 
-    /** Between two samples for extremes of what is written at this interval
-     *  [s]. */
+    /** Interval of samples for extremes of results that are written at this
+     *  interval [s]. */
     double
     sampling_interval(const double interval) const
     {
@@ -65,7 +65,7 @@ namespace Voussoir
                             const std::string &place) const;
   };
 
-  /** What they may see of its run besides the state. */
+  /** Parts of a run that observers may read besides the state. */
   struct ObservedRun : ObservedModel
   {
     const InternalForce     &internal_force; // with the moduli of the run
@@ -75,21 +75,20 @@ namespace Voussoir
     const WaterMotion       *water;   // or null
     const Contact           *contact; // or null
     const RigidBase         &base;    // to which the state is relative
-    const CentralDifference &scheme;  // what marches the state
+    const CentralDifference &scheme;  // the time integration of the state
     std::string              folder;
     double                   time_step; // [s]
 
-    /** When it starts [s], and whether it goes on there with the files of a run
-     *  that was interrupted. */
+    /** When it starts [s], and whether it continues there with the files of a
+     * run that was interrupted. */
     double start_time = 0.;
     bool   restarted  = false;
   };
 
   /**
-   * Something that watches the run: a section of the parameter file under
-   * "Output", called after each step and at the end. What it remembers from one
-   * step to the next it sets and names by `keep`, from which checkpoints
-   * follow.
+   * A writer of one kind of results: a section of the parameter file under
+   * "Output", called after each step and at the end. Its state from one step to
+   * the next is declared by `keep`, from which checkpoints follow.
    */
   class Observer
   {
@@ -99,8 +98,8 @@ namespace Voussoir
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 
-    /** Between two lines of its record [s], which the time step is fitted to if
-     *  it costs little; 0: any step will do. */
+    /** Interval of its lines [s], of which the time step is made an integer
+     *  fraction if that costs little; 0: not needed. */
     virtual double
     record_interval() const
     {
@@ -112,9 +111,9 @@ namespace Voussoir
     check(const ObservedModel &) const
     {}
 
-    /** Begins a run: nothing of an earlier one is left, be it finished or not,
-     *  on this model or another. What @p run refers to must stay until the end
-     *  of the run. Not called if the run has no output folder. */
+    /** Begins a run, and discards the results of an earlier one. The members of
+     *  @p run must live until its end. Not called if the run has no output
+     *  folder. */
     void
     begin(const ObservedRun &run);
 
@@ -127,9 +126,9 @@ namespace Voussoir
     void
     finish(const State &state, nlohmann::json &summary);
 
-    /** What a checkpoint must hold: numbers, the first rank's count, own
-     *  vectors and own numbers of cells or points, by name; files are written
-     *  up to here. Called on all ranks. */
+    /** State for a checkpoint: numbers, of which those of the first rank count,
+     *  own vectors and own numbers of cells or points, by name; files are
+     *  written up to here. Called on all ranks. */
     nlohmann::json
     save();
 
@@ -143,7 +142,7 @@ namespace Voussoir
     checkpoint_values();
 
   protected:
-    /** Initializes the observer for a run, and keeps its state. */
+    /** Initializes the observer for a run, and declares its state. */
     virtual void
     prepare() = 0;
 
@@ -169,7 +168,7 @@ namespace Voussoir
       return observed->solid.grid().communicator();
     }
 
-    /** From now on remembers a value, which JSON can hold and is finite. */
+    /** Adds a value to the state, which JSON can represent and is finite. */
     template <typename T>
     void
     keep(const std::string           &name,
@@ -183,17 +182,17 @@ namespace Voussoir
         [&value](const nlohmann::json &saved) { saved.get_to(value); });
     }
 
-    /** The same of a value with functions of its own that save and load it. */
+    /** The same for a value with functions that save and load it. */
     void
     keep(const std::string                                 &name,
          const std::function<nlohmann::json()>             &save,
          const std::function<void(const nlohmann::json &)> &load);
 
-    /** The same of a nodal vector, which becomes zero. */
+    /** The same for a nodal vector, which becomes zero. */
     void
     keep(const std::string &name, Vector &vector);
 
-    /** The same of numbers of cells or points, by name. */
+    /** The same for numbers of cells or points, by name. */
     void
     keep(const std::function<std::map<std::string, KeyedValues>()> &values);
 
@@ -211,9 +210,9 @@ namespace Voussoir
       kept_values;
   };
 
-  /** Steps at which something with this interval [s] is due: every n-th, so
-   * that a record has equal intervals, the nearest to the one asked for. At an
-   * interval of 0 each step. */
+  /** Steps at which output with this interval [s] is due: every n-th, with n
+   *  such that the interval is nearest to the given one. At an interval of 0
+   *  each step. */
   class Schedule
   {
   public:

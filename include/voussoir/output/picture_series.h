@@ -24,7 +24,7 @@ namespace Voussoir
     check(const ObservedModel &model) const;
 
     /** Begins a new list, with the pictures that a run which was interrupted
-     *  drew before this one goes on. */
+     *  drew before this one continues. */
     void
     prepare(const ObservedRun &run);
 
@@ -51,7 +51,7 @@ namespace Voussoir
     double                                      time_step = 1.;
     Log                                        *log       = nullptr;
     std::vector<std::pair<double, std::string>> pictures;
-    std::shared_ptr<GrowingFile>                list; // of them, to go on from
+    std::shared_ptr<GrowingFile> list; // of them, to continue from
   };
 } // namespace Voussoir
 

@@ -13,7 +13,7 @@ namespace Voussoir
   using PointMotion = std::array<dealii::Tensor<1, 3>, 4>;
 
   /**
-   * What observers of points have in common: the entries that name the points,
+   * Common part of observers of points: the entries that name the points,
    * and one of them as a reference, and the record of their absolute motion.
    * Velocity and acceleration of a step need the half steps before and after
    * it, so they come one step late.
@@ -74,7 +74,7 @@ namespace Voussoir
     void
     observe(const State &state);
 
-    /** Lines recorded and not taken yet. */
+    /** Number of lines recorded since the last call of `take`. */
     std::size_t
     n_waiting() const;
 

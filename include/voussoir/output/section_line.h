@@ -6,7 +6,7 @@
 
 namespace Voussoir
 {
-  /** Where a section through the dam is wanted. */
+  /** Requested position of a section through the dam. */
   struct SectionRequest
   {
     std::string name;

@@ -7,8 +7,8 @@
 namespace Voussoir
 {
   /**
-   * Stress at chosen points of this rank's cells. What a point needs of the
-   * mesh is kept as weights of nodes, so that a sample needs nothing else.
+   * Stress at chosen points of this rank's cells. The data of the mesh for a
+   * point are stored as weights of nodes, so that a sample needs nothing else.
    */
   class StressPoints
   {

@@ -49,7 +49,7 @@ namespace Voussoir
     bool
     is_due(const unsigned long long step) const;
 
-    /** So many sums of none, exact where results are reproducible. */
+    /** A number of empty sums, exact where results are reproducible. */
     std::vector<Sum>
     no_sums(const std::size_t n) const;
 
@@ -76,7 +76,7 @@ namespace Voussoir
       take(const std::vector<double> &line);
     };
 
-    /** Keeps those of so many columns. */
+    /** Initializes the extremes for a number of columns. */
     void
     keep(Extremes &extremes, const std::size_t n_columns);
 

@@ -1,6 +1,7 @@
 #ifndef voussoir_signals_record_h
 #define voussoir_signals_record_h
 
+#include <voussoir/base/gravity.h>
 #include <voussoir/base/option.h>
 #include <voussoir/signals/time_series.h>
 
@@ -8,9 +9,6 @@
 
 namespace Voussoir
 {
-  /** What g means in records and in peak accelerations [m/s2]. */
-  constexpr double standard_gravity = 9.81;
-
   enum class AccelerationUnit
   {
     g,

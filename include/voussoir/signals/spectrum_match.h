@@ -44,7 +44,7 @@ namespace Voussoir
     bool
     wanted() const;
 
-    /** Those at which the spectra are compared [s]; every other one is
+    /** Periods at which the spectra are compared [s]; every other one is
      *  fitted. */
     std::vector<double>
     periods() const;
@@ -62,7 +62,7 @@ namespace Voussoir
      *  of the record times the factor, and of the fitted motion [m/s2]. */
     std::vector<double> periods, target, before, after;
 
-    /** By which the record was multiplied before its shape was changed. */
+    /** Factor on the record before its shape was changed. */
     double factor = 1.;
 
     /** Arias intensity of the record times the factor and of the fitted motion
@@ -77,7 +77,7 @@ namespace Voussoir
     std::pair<double, double>
     largest_misfit() const;
 
-    /** Makes motion and spectra so many times stronger. */
+    /** Multiplies motion and spectra by a factor. */
     void
     multiply(const double by);
   };

@@ -15,8 +15,7 @@ namespace Voussoir
   /**
    * What is marched:
    *   M a + C v + f(u) + K_b u = F_0 + F(t) - M_driven a_base
-   * and the constraints. All that stands here must live as long as the scheme
-   * that marches it.
+   * and the constraints. All members must live as long as the scheme.
    */
   struct EquationOfMotion
   {
@@ -25,11 +24,12 @@ namespace Voussoir
     const LumpedMass     &mass;           // M
     const NodalTerms     &terms;          // boundary K_b and C, added mass
     const Damping        &damping;
-    const InitialState   &initial; // where it starts, and F_0 that holds it
+    const InitialState
+      &initial; // where the motion starts, and F_0 in equilibrium with it
 
     std::vector<NodalLoad *>  loads       = {}; // F(t), in their order
     std::vector<Projection *> projections = {}; // in their order
-    const RigidBase          *base = nullptr;   // null: the ground stands still
+    const RigidBase          *base = nullptr; // null: the ground does not move
 
     double closing_viscosity = 0.; // c of DampedResponse [s]
   };
@@ -66,8 +66,8 @@ namespace Voussoir
     void
     initialize_projections();
 
-    /** Of the force of the step from a state; none if it is not asked for, or
-     *  does not go by the motion. */
+    /** Rounding of the force of the step from a state; none if sums need not be
+     *  reproducible, or if the force does not follow from the motion alone. */
     std::optional<MotionBound>
     bound_of_motion(const State &state) const;
 
@@ -82,11 +82,11 @@ namespace Voussoir
                   const unsigned int          begin,
                   const unsigned int          end);
 
-    /** Lets the projections correct the motion, and updates the accounts. */
+    /** Corrects the motion by the projections, and updates the energies. */
     void
     project(State &state, const dealii::Tensor<1, 3> &base);
 
-    /** Adds to the accounts the work of loads and damping on a node whose
+    /** Adds to the energies the work of loads and damping on a node whose
      *  velocity the projections changed. */
     void
     account_for_projection(const unsigned int          i,

@@ -10,12 +10,10 @@ namespace Voussoir
 {
   /**
    * The part of a step that belongs to the nodes with springs, dashpots, added
-   * mass or forces. The sweep over the cells advances them as if they had none;
-   * then they are corrected to
-   *   (M + M_a + dt/2 C) v+
-   *     = M v* + M_a (v- - dt a_base) + dt (F - K u) - dt/2 C v- ,
-   * with the matrices of NodalTerms, C with alpha M_a (the paper's scheme: dt C
-   * v- on the right alone).
+   * mass or forces. The sweep over the cells advances these nodes without such
+   * terms; then they are corrected to (M + M_a + dt/2 C) v+ = M v* + M_a (v- -
+   * dt a_base) + dt (F - K u) - dt/2 C v- , with the matrices of NodalTerms, C
+   * with alpha M_a (the paper's scheme: dt C v- on the right alone).
    */
   class NodalUpdate
   {
@@ -26,8 +24,8 @@ namespace Voussoir
                 const double      mass_coefficient,
                 const LeapFrog   &leap_frog);
 
-    /** What the update divides by at an owned node [kg], without rows and
-     *  columns where fixed, or null if it has no terms. */
+    /** Matrix by which the update divides at an owned node [kg], without rows
+     *  and columns where fixed, or null if the node has no terms. */
     std::optional<dealii::Tensor<2, 3>>
     mass_at(const unsigned int node) const;
 
@@ -37,9 +35,9 @@ namespace Voussoir
     holding_force(const unsigned int          slot,
                   const dealii::Tensor<1, 3> &next) const;
 
-    /** Stores what the correction needs of the state before the step.
-     *  @param base acceleration of a rigid base, which the added mass feels
-     *   [m/s2] */
+    /** Stores the data of the state before the step for the correction.
+     *  @param base acceleration of a rigid base, which acts on the added mass
+     *  [m/s2] */
     void
     before_step(const State &state, const dealii::Tensor<1, 3> &base);
 
@@ -48,7 +46,7 @@ namespace Voussoir
     void
     correct(State &state, const NodalForces &forces);
 
-    /** Adds to the accounts the work of a @p change of the velocity at the end
+    /** Adds to the energies the work of a @p change of the velocity at the end
      *  of the step, after `correct`. */
     void
     account_for(const unsigned int          slot,

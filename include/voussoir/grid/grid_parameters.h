@@ -1,0 +1,66 @@
+#ifndef voussoir_grid_grid_parameters_h
+#define voussoir_grid_grid_parameters_h
+
+#include <voussoir/base/option.h>
+
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/point.h>
+
+#include <string>
+#include <vector>
+
+namespace Voussoir
+{
+  enum class Partition
+  {
+    p4est,
+    metis
+  };
+
+  inline OptionNames<Partition>
+  option_names(const Partition)
+  {
+    return {{Partition::p4est, "p4est"}, {Partition::metis, "METIS"}};
+  }
+
+
+  /** An item of the entry "Local refinement". */
+  struct LocalRefinement
+  {
+    std::string      set; // empty: a box
+    dealii::Point<3> lower, upper;
+    unsigned int     levels;
+  };
+
+
+  /** The entries of the section "Mesh" that do not depend on where it comes
+   *  from. */
+  struct GridParameters
+  {
+    unsigned int global_refinement = 0;
+    std::string  local_refinement;
+    Partition    partition = Partition::p4est;
+
+    /** Nodes per length of the S waves of this frequency [Hz], down to which
+     *  cells are refined; none are if it is zero. */
+    double nodes_per_wavelength = 0., highest_frequency = 10.;
+
+    /** Numbers of ranks for which a partition is counted, see
+     *  PartitionCounts. */
+    std::vector<unsigned int> counted_ranks;
+
+    void
+    declare(dealii::ParameterHandler &prm);
+
+    /** The items of `local_refinement`; throws UserError if they are none. */
+    std::vector<LocalRefinement>
+    local_refinements() const;
+
+    /** Longest edge that cells of this degree may have where S waves have this
+     *  speed [m/s] [m]. */
+    double
+    longest_edge(const double s_wave_speed, const unsigned int degree) const;
+  };
+} // namespace Voussoir
+
+#endif

@@ -463,6 +463,28 @@ namespace Voussoir
   }
 
 
+  std::vector<std::string>
+  ParameterFile::given_numbers(const dealii::ParameterHandler &prm) const
+  {
+    const auto               declared = declared_entries(prm);
+    std::vector<std::string> result;
+    for (const auto &[path, value] : values)
+      {
+        const auto entry = declared.find(path);
+        if (entry == declared.end() ||
+            entry->second.pattern->description().find("[Double") ==
+              std::string::npos)
+          continue;
+        const auto parts = split_list(value.text);
+        if (std::all_of(parts.begin(), parts.end(), [](const auto &part) {
+              return parse_number(part).has_value();
+            }))
+          result.push_back(path);
+      }
+    return result;
+  }
+
+
   std::string
   ParameterFile::name() const
   {

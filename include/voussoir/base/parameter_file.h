@@ -51,6 +51,11 @@ namespace Voussoir
     void
     parse_declared(dealii::ParameterHandler &prm) const;
 
+    /** Entries of @p prm that are given as numbers which need not be whole, or
+     *  as lists of such. */
+    std::vector<std::string>
+    given_numbers(const dealii::ParameterHandler &prm) const;
+
     /** Name of the file without folder and ending. */
     std::string
     name() const;

@@ -129,10 +129,10 @@ namespace Voussoir
       }
     };
 
-    // Reference: scipy
+    // Reference: other program
     const Registry<Check>::Add<FragilityOfCounts>
       counts("fragility of counts", "Fragility curves by maximum likelihood.");
-    // Reference: scipy
+    // Reference: other program
     const Registry<Check>::Add<FragilityOfColumns>
       columns("fragility of columns", "The fragility curve of a study.");
   } // namespace

@@ -270,6 +270,27 @@ namespace Voussoir
   }
 
 
+  ParameterFile
+  ParameterFile::with_copies(const std::string              &section,
+                             const std::vector<std::string> &copies) const
+  {
+    ParameterFile result      = *this;
+    const auto    replaced_in = [&](auto &items) {
+      const auto originals = items;
+      for (const auto &[path, item] : originals)
+        if (path == section || path.rfind(section + "/", 0) == 0)
+          {
+            items.erase(path);
+            for (const std::string &copy : copies)
+              items.emplace(copy + path.substr(section.size()), item);
+          }
+    };
+    replaced_in(result.values);
+    replaced_in(result.sections);
+    return result;
+  }
+
+
   void
   ParameterFile::change(const std::vector<std::string> &changes)
   {

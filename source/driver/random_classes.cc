@@ -73,8 +73,13 @@ namespace Voussoir
                           type =
                             file.given(section + "/Class", "linear elastic");
         const auto &known = Registry<Material>::entries();
-        if (known.count(type) == 0)
-          continue; // refused later
+        const auto  given = [&](const std::string &entry) {
+          return !file.given(section + "/Random field/" + entry).empty();
+        };
+        // another class is refused later
+        if ((!given("Modulus variation") && !given("Strength variation")) ||
+            known.count(type) == 0)
+          continue;
         const auto       material = known.at(type).create();
         ParameterHandler prm;
         in_section(prm, section, [&] { material->declare_parameters(prm); });

@@ -181,6 +181,8 @@ namespace Voussoir
                     points.emplace_back(move->change, *there);
                     moved[move->change > 0.] = there;
                   }
+            if (points.empty()) // its runs failed
+              continue;
             const Sensitivity      found(*value, points);
             nlohmann::ordered_json line;
             line["number"]             = first->name;

@@ -138,7 +138,7 @@ namespace Voussoir
     if (!parameters.moves_numbers())
       return values;
     if (values.empty())
-      return {{"entry", "as given"}, {"value", ""}};
+      return {{"entry", "none"}, {"value", "as given"}};
     return {{"entry", values[0].first}, {"value", values[0].second}};
   }
 

@@ -32,6 +32,19 @@ namespace Voussoir
       {"Materials/Names", "Modes/Held materials", "Modes/Massless materials"}};
 
 
+    /** Entries of a material that are above zero if it has a field. */
+    std::vector<std::string>
+    variations_given(const ParameterFile &file, const std::string &section)
+    {
+      std::vector<std::string> result;
+      for (const char *const name : {"Modulus variation", "Strength variation"})
+        if (const std::string entry = section + "/Random field/" + name;
+            !file.given(entry).empty())
+          result.push_back(entry);
+      return result;
+    }
+
+
     std::string
     scaled(const std::string &number, const double factor)
     {
@@ -73,12 +86,8 @@ namespace Voussoir
                           type =
                             file.given(section + "/Class", "linear elastic");
         const auto &known = Registry<Material>::entries();
-        const auto  given = [&](const std::string &entry) {
-          return !file.given(section + "/Random field/" + entry).empty();
-        };
         // another class is refused later
-        if ((!given("Modulus variation") && !given("Strength variation")) ||
-            known.count(type) == 0)
+        if (variations_given(file, section).empty() || known.count(type) == 0)
           continue;
         const auto       material = known.at(type).create();
         ParameterHandler prm;
@@ -124,6 +133,18 @@ namespace Voussoir
           changes.push_back(list + "=" + join(names, ", "));
       }
     return result.with(changes);
+  }
+
+
+  ParameterFile
+  without_random_fields(const ParameterFile &file)
+  {
+    std::vector<std::string> changes;
+    for (const std::string &name : split_list(file.given("Materials/Names")))
+      for (const std::string &entry :
+           variations_given(file, "Materials/" + name))
+        changes.push_back(entry + "=0");
+    return file.with(changes);
   }
 
 

@@ -1,6 +1,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
 #include <voussoir/driver/case_identity.h>
+#include <voussoir/driver/random_classes.h>
 #include <voussoir/driver/strength_reduction.h>
 #include <voussoir/driver/study.h>
 
@@ -43,7 +44,7 @@ namespace Voussoir
     , options(options)
     , communicator(communicator)
   {
-    const Case whole(file);
+    const Case whole(without_random_fields(file));
     parameters = whole.study;
     if (parameters.reduces_strengths())
       strengths_kept =

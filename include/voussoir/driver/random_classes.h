@@ -15,6 +15,11 @@ namespace Voussoir
   ParameterFile
   with_random_classes(const ParameterFile &file);
 
+  /** The same file with uniform materials: a study that changes entries of a
+   *  material looks for them in it. */
+  ParameterFile
+  without_random_fields(const ParameterFile &file);
+
   /** Which cells of a coarse mesh are of the class of a material. */
   class RandomClasses
   {

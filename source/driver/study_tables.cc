@@ -80,6 +80,12 @@ namespace Voussoir
                         value("band about the fine one") + ", extrapolated " +
                         value("extrapolated");
             }
+          StudyValues others; // entries, which have a section
+          for (const auto &item : line.items())
+            if (item.key().find('/') != std::string::npos)
+              others.emplace_back(item.key(), item.value());
+          if (!others.empty())
+            text = description(others) + ": " + text;
           if (result.empty() || result.back() != text)
             result.push_back(text);
         }

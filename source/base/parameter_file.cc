@@ -270,6 +270,27 @@ namespace Voussoir
   }
 
 
+  ParameterFile
+  ParameterFile::with_copies(const std::string              &section,
+                             const std::vector<std::string> &copies) const
+  {
+    ParameterFile result      = *this;
+    const auto    replaced_in = [&](auto &items) {
+      const auto originals = items;
+      for (const auto &[path, item] : originals)
+        if (path == section || path.rfind(section + "/", 0) == 0)
+          {
+            items.erase(path);
+            for (const std::string &copy : copies)
+              items.emplace(copy + path.substr(section.size()), item);
+          }
+    };
+    replaced_in(result.values);
+    replaced_in(result.sections);
+    return result;
+  }
+
+
   void
   ParameterFile::change(const std::vector<std::string> &changes)
   {
@@ -460,6 +481,28 @@ namespace Voussoir
     for (const auto &[path, value] : values)
       if (const auto entry = declared.find(path); entry != declared.end())
         set_entry(prm, path, value.text, value.place, *entry->second.pattern);
+  }
+
+
+  std::vector<std::string>
+  ParameterFile::given_numbers(const dealii::ParameterHandler &prm) const
+  {
+    const auto               declared = declared_entries(prm);
+    std::vector<std::string> result;
+    for (const auto &[path, value] : values)
+      {
+        const auto entry = declared.find(path);
+        if (entry == declared.end() ||
+            entry->second.pattern->description().find("[Double") ==
+              std::string::npos)
+          continue;
+        const auto parts = split_list(value.text);
+        if (std::all_of(parts.begin(), parts.end(), [](const auto &part) {
+              return parse_number(part).has_value();
+            }))
+          result.push_back(path);
+      }
+    return result;
   }
 
 

@@ -5,6 +5,7 @@
 #include <voussoir/base/text.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/driver/case.h>
+#include <voussoir/driver/random_classes.h>
 #include <voussoir/mesh/mesh_check.h>
 #include <voussoir/mesh/mesh_report.h>
 #include <voussoir/output/material_memory.h>
@@ -281,13 +282,14 @@ namespace Voussoir
 
   Case::Case(const ParameterFile                           &file,
              const std::function<void(ParameterHandler &)> &declare_more)
-    : file(file)
+    : file(with_random_classes(file))
   {
+    const ParameterFile without_added = this->file;
     add_observers();
     declare();
     if (declare_more)
       declare_more(prm);
-    file.parse(prm);
+    without_added.parse(prm);
     if (!generator && !reader.file.empty())
       reader.file = file.resolve(reader.file);
     warnings = unusual_values(prm);
@@ -562,6 +564,7 @@ namespace Voussoir
     constexpr unsigned int    none = numbers::invalid_unsigned_int;
     std::vector<unsigned int> result(mesh.cells.size(), none);
     std::vector<std::string>  known;
+    RandomClasses             random_classes(mesh);
     for (const auto &set : mesh.cell_sets)
       known.push_back(set.first);
 
@@ -578,6 +581,8 @@ namespace Voussoir
                               known_names(set, known) + ".");
             for (const unsigned int cell : cells->second)
               {
+                if (!random_classes.holds(material->random_field, cell))
+                  continue;
                 if (result[cell] != none && result[cell] != m)
                   throw UserError(
                     "Cells of the set \"" + set + "\" have two materials, \"" +

@@ -204,13 +204,14 @@ namespace Voussoir
                    const RunOptions    &options,
                    const MPI_Comm       communicator)
     {
-      const auto runs    = Study(file, options, communicator).planned_runs();
-      double     seconds = 0.;
-      for (const ParameterFile &run : runs)
-        {
-          Case parameters(run);
-          seconds += estimate(parameters, options, communicator).seconds;
-        }
+      const auto runs = Study(file, options, communicator).planned_runs();
+      // numbers that are moved by a little leave a run as long as it is
+      const std::size_t n_tried =
+        Case(file).study.moves_numbers() ? 1 : runs.size();
+      double seconds = 0.;
+      for (std::size_t i = 0; i < n_tried; ++i)
+        seconds += estimate(Case(runs[i]), options, communicator).seconds *
+                   runs.size() / n_tried;
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
         std::cout
           << "Valid: a study of " << counted(runs.size(), "run", "runs")

@@ -197,6 +197,14 @@ namespace Voussoir
   }
 
 
+  std::string
+  RunSummary::short_verdict() const
+  {
+    const std::string whole = verdict();
+    return whole.substr(0, whole.find(". "));
+  }
+
+
   void
   RunSummary::judge(const AcceptanceParameters &criteria)
   {

@@ -1,8 +1,10 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/base/parse_numbers.h>
+#include <voussoir/base/text.h>
 #include <voussoir/driver/study_parameters.h>
 
-#include <algorithm>
+#include <set>
 
 namespace Voussoir
 {
@@ -21,9 +23,11 @@ namespace Voussoir
         {
           const auto        equals = part.find('=');
           const std::string entry  = Utilities::trim(part.substr(0, equals));
-          const auto        values = equals == std::string::npos ?
-                                       std::vector<std::string>() :
-                                       split_list(part.substr(equals + 1));
+          const char        separator =
+            part.find('|') == std::string::npos ? ',' : '|';
+          const auto values = equals == std::string::npos ?
+                                std::vector<std::string>() :
+                                split_list(part.substr(equals + 1), separator);
           if (values.empty())
             throw UserError("\"Vary\" in section \"Study\" gives \"" + entry +
                             "\" no values; write \"Section/Entry = 1, 2\".");
@@ -41,6 +45,16 @@ namespace Voussoir
         }
       return runs;
     }
+
+
+    std::vector<Criterion>
+    criteria_of(const std::string &list, const std::string &place)
+    {
+      std::vector<Criterion> result;
+      for (const std::string &text : split_list(list, ';'))
+        result.emplace_back(text, place);
+      return result;
+    }
   } // namespace
 
 
@@ -54,7 +68,7 @@ namespace Voussoir
       "semicolons, as in \"Ground motion/Overload factor = 1, 1.2, 1.4; "
       "Materials/rock/Young's modulus = 15e9, 20e9\". Each combination is a "
       "run of its own. \"&\" instead of a semicolon pairs two entries: the "
-      "first values of both together, then the second. \"" +
+      "X +
         strength_reduction +
         "\" divides the entries of \"Reduced strengths\".");
     prm.add_parameter(
@@ -115,13 +129,71 @@ namespace Voussoir
       "Whether to search beyond From and To where the limit is not between "
       "them, by up to four times their distance.");
     prm.leave_subsection();
+
+    prm.enter_subsection("Extrapolation");
+    prm.add_parameter(
+      "Over",
+      refined,
+      "Varied entries, separated by semicolons, that make cells or time steps "
+      "smaller, in at least three runs: study_convergence.csv then gives, by "
+      "Richardson's extrapolation, the observed order of convergence of each "
+      "quantity, its value for cells and steps of no size and a band, or says "
+      "why there is none. Empty: no extrapolation.");
+    prm.add_parameter(
+      "Order",
+      method_order,
+      "Order of convergence that theory has where everything is smooth: 2 for "
+      "time steps and displacements of elements of degree 1. An observed order "
+      "above it is not relied on [-].",
+      Patterns::Double(0.5, 10.));
+    prm.add_parameter(
+      "Dimensions",
+      dimensions,
+      "Directions in which cells become smaller: their size is the number of "
+      "cells to the power of minus one over this. Where all runs have as many "
+      "cells, it is the time step.",
+      Patterns::Integer(1, 3));
+    prm.leave_subsection();
+
+    prm.enter_subsection("Fragility");
+    prm.add_parameter(
+      "Intensity",
+      intensity,
+      "Varied entry that is the intensity of the motion, as \"Ground "
+      "motion/Overload factor\": study_fragility.csv then has the lognormal "
+      "probability that the criterion is met, by maximum likelihood, from all "
+      "runs over \"Spread over\" at each intensity. Empty: no fragility.");
+    prm.add_parameter("Criterion",
+                      fragility_criterion,
+                      "What is looked for, as in section \"Study/Limit\".");
+    prm.add_parameter("Confidence",
+                      confidence,
+                      "That median and dispersion lie within their bounds [-].",
+                      Patterns::Double(0.5, 0.999));
+    prm.leave_subsection();
+
+    prm.enter_subsection("Sensitivity");
+    prm.add_parameter(
+      "Change",
+      change,
+      "Share by which each number that the file gives is moved down and up, in "
+      "two runs of its own, as 0.01; study_sensitivity.csv lists what changes, "
+      "the most sensitive first. Whole numbers, zeros and numbers within texts "
+      "stay as they are. 0: no sensitivity [-].",
+      Patterns::Double(0., 0.5));
+    prm.add_parameter("Entries",
+                      moved,
+                      "Which entries are moved, by their paths, separated by "
+                      "semicolons; a star stands for any letters, as in "
+                      "\"Materials/*\".");
+    prm.leave_subsection();
   }
 
 
   bool
   StudyParameters::wanted() const
   {
-    return !vary.empty() || seeks_limit();
+    return !vary.empty() || seeks_limit() || moves_numbers();
   }
 
 
@@ -129,6 +201,13 @@ namespace Voussoir
   StudyParameters::seeks_limit() const
   {
     return !varied_to_limit.empty();
+  }
+
+
+  bool
+  StudyParameters::moves_numbers() const
+  {
+    return change > 0.;
   }
 
 
@@ -157,6 +236,46 @@ namespace Voussoir
     if (reduces_strengths() && reduced.empty())
       throw UserError("Section \"Study\" has a " + strength_reduction +
                       ", but \"Reduced strengths\" names no entries.");
+    check_evaluations();
+  }
+
+
+  void
+  StudyParameters::check_evaluations() const
+  {
+    if (moves_numbers() && (!vary.empty() || seeks_limit()))
+      throw UserError("\"Change\" in section \"Study/Sensitivity\" moves each "
+                      "number of the case; leave \"Vary\" and the entry of "
+                      "section \"Study/Limit\" empty for it.");
+    for (const auto &[list, place] :
+         {std::pair(refined, "\"Over\" in section \"Study/Extrapolation\""),
+          std::pair(intensity, "\"Intensity\" in section \"Study/Fragility\"")})
+      if (!list.empty() && seeks_limit())
+        throw UserError(std::string(place) +
+                        " is evaluated from runs that are all done; leave it "
+                        "or the entry of section \"Study/Limit\" empty.");
+
+    std::set<StudyValues> others;
+    for (const StudyValues &values : combinations())
+      others.insert(other_values(values, refined_entries()));
+    if (const auto n = combinations().size() / others.size();
+        !refined.empty() && n < 3)
+      throw UserError("\"Over\" in section \"Study/Extrapolation\" has " +
+                      counted(n, "value", "values") + " of \"" + refined +
+                      "\" in \"Vary\"; give at least three.");
+
+    fragility_entries();
+    if (intensity.empty())
+      return;
+    if (fragility_criteria().empty())
+      throw UserError("\"Criterion\" in section \"Study/Fragility\" is empty; "
+                      "say what happens at larger intensities.");
+    for (const StudyValues &values : combinations())
+      for (const auto &[entry, value] : values)
+        if (entry == intensity && !(parse_number(value).value_or(0.) > 0.))
+          throw UserError(
+            "\"Vary\" in section \"Study\" gives the intensity \"" + entry +
+            "\" the value \"" + value + "\"; give it numbers above zero.");
   }
 
 
@@ -182,9 +301,10 @@ namespace Voussoir
 
 
   std::vector<std::string>
-  StudyParameters::spread_entries() const
+  StudyParameters::with_partners(const std::string &list,
+                                 const std::string &place) const
   {
-    const auto               wanted = split_list(spread, ';');
+    const auto               wanted = split_list(list, ';');
     std::vector<std::string> result;
     for (const std::string &group : split_list(vary, ';'))
       {
@@ -200,8 +320,34 @@ namespace Voussoir
       }
     for (const std::string &entry : wanted)
       if (std::find(result.begin(), result.end(), entry) == result.end())
-        throw UserError("\"Spread over\" in section \"Study\" names \"" +
-                        entry + "\", which \"Vary\" does not vary.");
+        throw UserError(place + " names \"" + entry +
+                        "\", which \"Vary\" does not vary.");
+    return result;
+  }
+
+
+  std::vector<std::string>
+  StudyParameters::spread_entries() const
+  {
+    return with_partners(spread, "\"Spread over\" in section \"Study\"");
+  }
+
+
+  std::vector<std::string>
+  StudyParameters::refined_entries() const
+  {
+    return with_partners(refined,
+                         "\"Over\" in section \"Study/Extrapolation\"");
+  }
+
+
+  std::vector<std::string>
+  StudyParameters::fragility_entries() const
+  {
+    std::vector<std::string> result =
+      with_partners(intensity, "\"Intensity\" in section \"Study/Fragility\"");
+    for (const std::string &entry : spread_entries())
+      result.push_back(entry);
     return result;
   }
 
@@ -232,9 +378,37 @@ namespace Voussoir
   std::vector<Criterion>
   StudyParameters::criteria() const
   {
-    std::vector<Criterion> result;
-    for (const std::string &text : split_list(criterion, ';'))
-      result.emplace_back(text, "\"Criterion\" in section \"Study/Limit\"");
-    return result;
+    return criteria_of(criterion, "\"Criterion\" in section \"Study/Limit\"");
+  }
+
+
+  std::vector<Criterion>
+  StudyParameters::fragility_criteria() const
+  {
+    return criteria_of(fragility_criterion,
+                       "\"Criterion\" in section \"Study/Fragility\"");
+  }
+
+
+  std::string
+  description(const StudyValues &values)
+  {
+    std::vector<std::string> parts;
+    for (const auto &[entry, value] : values)
+      parts.push_back(entry.substr(entry.rfind('/') + 1) + " = " + value);
+    return join(parts, ", ");
+  }
+
+
+  StudyValues
+  other_values(const StudyValues              &values,
+               const std::vector<std::string> &entries)
+  {
+    StudyValues others;
+    for (const auto &item : values)
+      if (std::find(entries.begin(), entries.end(), item.first) ==
+          entries.end())
+        others.push_back(item);
+    return others;
   }
 } // namespace Voussoir

@@ -12,20 +12,6 @@ namespace Voussoir
     constexpr std::array<double, 3> shares{{0.16, 0.5, 0.84}};
 
 
-    /** Values of the entries that the list does not contain. */
-    StudyValues
-    other_values(const StudyValues              &values,
-                 const std::vector<std::string> &entries)
-    {
-      StudyValues others;
-      for (const auto &item : values)
-        if (std::find(entries.begin(), entries.end(), item.first) ==
-            entries.end())
-          others.push_back(item);
-      return others;
-    }
-
-
     std::string
     text_of(const std::optional<double> &number)
     {
@@ -79,16 +65,9 @@ namespace Voussoir
                    const std::vector<std::string> &spread_entries,
                    const std::vector<std::string> &names)
   {
-    std::vector<StudyValues> groups; // in the order of the runs
-    for (const StudySample &sample : samples)
-      {
-        const StudyValues others = other_values(sample.values, spread_entries);
-        if (std::find(groups.begin(), groups.end(), others) == groups.end())
-          groups.push_back(others);
-      }
-
+    const auto               groups = grouped(samples, spread_entries);
     std::vector<std::string> heading;
-    for (const auto &item : groups.at(0))
+    for (const auto &item : groups.at(0).others)
       heading.push_back(item.first);
     for (const char *title : {"quantity",
                               "runs",
@@ -100,18 +79,17 @@ namespace Voussoir
                               "84 %"})
       heading.emplace_back(title);
     std::string text = csv_heading(heading) + '\n';
-    for (const StudyValues &group : groups)
+    for (const auto &group : groups)
       for (unsigned int q = 0; q < names.size(); ++q)
         {
           Sample sample;
-          for (const StudySample &run : samples)
-            if (other_values(run.values, spread_entries) == group)
-              sample.push_back(run.quantities[q]);
+          for (const StudySample *run : group.runs)
+            sample.push_back(run->quantities[q]);
           constexpr double infinity = std::numeric_limits<double>::infinity();
           const Statistics found(sample,
                                  is_smallest(names[q]) ? -infinity : infinity);
           std::vector<std::string> line;
-          for (const auto &item : group)
+          for (const auto &item : group.others)
             line.push_back(item.second);
           for (const std::string &item :
                {names[q],

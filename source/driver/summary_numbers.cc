@@ -32,19 +32,6 @@ namespace Voussoir
     }
 
 
-    /** Whether a name is that of a pattern with stars. */
-    bool
-    fits(const std::string_view name, const std::string_view pattern)
-    {
-      if (pattern.empty() || name.empty())
-        return name.empty() &&
-               pattern.find_first_not_of('*') == std::string_view::npos;
-      if (pattern[0] == '*')
-        return fits(name, pattern.substr(1)) || fits(name.substr(1), pattern);
-      return name[0] == pattern[0] && fits(name.substr(1), pattern.substr(1));
-    }
-
-
     /** Visits the values that match the rest of a path, with their object and
      *  the names along the path. */
     void
@@ -86,6 +73,18 @@ namespace Voussoir
                                          nlohmann::json();
     }
   } // namespace
+
+
+  bool
+  fits(const std::string_view name, const std::string_view pattern)
+  {
+    if (pattern.empty() || name.empty())
+      return name.empty() &&
+             pattern.find_first_not_of('*') == std::string_view::npos;
+    if (pattern[0] == '*')
+      return fits(name, pattern.substr(1)) || fits(name.substr(1), pattern);
+    return name[0] == pattern[0] && fits(name.substr(1), pattern.substr(1));
+  }
 
 
   bool
@@ -213,5 +212,28 @@ namespace Voussoir
                       "\"; take one that its summary.json has, "
                       "or add the observer that gives it.");
     return {value, value && (above ? *value > limit : *value < limit)};
+  }
+
+
+  std::optional<std::vector<std::string>>
+  met_criteria(const std::vector<Criterion> &criteria,
+               const RunSummary             &summary)
+  {
+    if (summary.end == RunEnd::failed)
+      return {};
+    std::vector<std::string> met;
+    for (const Criterion &criterion : criteria)
+      try
+        {
+          if (criterion.evaluate(summary).second)
+            met.push_back(criterion.text);
+        }
+      catch (const UserError &)
+        {
+          return {};
+        }
+    if (met.empty() && summary.end == RunEnd::stopped)
+      return {};
+    return met;
   }
 } // namespace Voussoir

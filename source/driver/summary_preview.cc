@@ -74,10 +74,15 @@ namespace Voussoir
     if (!parameters.study.quantities.empty())
       for (const SummaryNumber &number : parameters.study.numbers())
         wanted.emplace_back(number, "\"Quantities\" in section \"Study\"");
-    for (const Criterion &criterion : parameters.study.criteria())
-      if (criterion.about() != nullptr)
-        wanted.emplace_back(*criterion.about(),
-                            "\"Criterion\" in section \"Study/Limit\"");
+    for (const auto &[section, criteria] :
+         {std::pair("Limit", parameters.study.criteria()),
+          std::pair("Fragility", parameters.study.fragility_criteria())})
+      for (const Criterion &criterion : criteria)
+        if (criterion.about() != nullptr)
+          wanted.emplace_back(*criterion.about(),
+                              std::string("\"Criterion\" in section "
+                                          "\"Study/") +
+                                section + "\"");
     if (wanted.empty())
       return;
 

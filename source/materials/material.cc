@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/parameter_section.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/materials/material.h>
 
@@ -42,6 +43,7 @@ namespace Voussoir
                       "Coefficient of thermal expansion [1/K]." +
                         usually(Usual::expansion),
                       Patterns::Double(0.));
+    in_section(prm, "Random field", [&] { random_field.declare(prm); });
   }
 
 

@@ -235,6 +235,8 @@ namespace Voussoir
                        });
         volumes[2] = history->losses.material;
         volumes    = sum_over_ranks(volumes, communicator);
+        if (volumes[0] == 0.) // a class of a random field without cells
+          continue;
         auto &item = result[material_names[m]];
         item["share of the volume that left the elastic range"] =
           volumes[1] / volumes[0];

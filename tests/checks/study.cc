@@ -1,8 +1,8 @@
-#include <voussoir/driver/study.h>
 #include <voussoir/driver/study_statistics.h>
 
 #include "folders.h"
 #include "limit_files.h"
+#include "study_results.h"
 #include "with_files.h"
 
 namespace Voussoir
@@ -11,36 +11,6 @@ namespace Voussoir
 
   namespace
   {
-    /** The case of a test, which is a file of its own beside it. */
-    ParameterFile
-    study_file(const ParameterFile &file,
-               const std::string   &name,
-               const std::string   &folder)
-    {
-      return ParameterFile(file.folder() + "/../data/" + name + ".prm",
-                           {"Output/Folder=" + folder});
-    }
-
-
-    nlohmann::json
-    study_json(const std::string &folder)
-    {
-      std::ifstream in(folder + "/study.json");
-      return nlohmann::json::parse(in);
-    }
-
-
-    nlohmann::json
-    results_of(const ParameterFile &file, const MPI_Comm communicator)
-    {
-      RunOptions options;
-      options.quiet = true;
-      Study(file, options, communicator).run();
-      MPI_Barrier(communicator);
-      return study_json(file.given("Output/Folder"));
-    }
-
-
     /** A search for a limit whose closed form is known. */
     class StudyLimit : public Check
     {

@@ -27,7 +27,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray  # noqa: E402
 from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_QUAD, vtkUnstructuredGrid  # noqa: E402
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: E402
-from voussoir_report import charts, faces, grid, interfaces, page, records, structure, verdict  # noqa: E402
+from voussoir_report import charts, faces, grid, interfaces, page, records, structure, study_evaluations, verdict  # noqa: E402
 from voussoir_report.run import Run  # noqa: E402
 
 compare = functools.partial(verdicts.compare, round_off=1e-9)
@@ -249,6 +249,31 @@ def check_records(scratch):
     is_true("nor with rest", records.correlation(sine, 0. * sine) is None)
 
 
+def check_study_evaluations():
+    levels = [{"Materials/rock/Density": "2600", "intensity": intensity, "runs": 5, "criterion met": met,
+               "probability": None, "median": 2., "median from": 1.5, "median to": 3., "dispersion": 0.4,
+               "dispersion from": 0.2, "dispersion to": 0.8, "verdict": "found"} for intensity, met in ((1., 1), (2., 3))]
+    sizes = {"coarse": 1.16, "middle": 1.04, "fine": 1.01}
+    table, fragility, curve, moves = study_evaluations.evaluations({
+        "convergence": [{"quantity": "crest [m]", **sizes, "observed order": 2., "extrapolated": 1.,
+                         "band about the fine one": 0.0125, "verdict": "converges"},
+                        {"quantity": "heel [MPa]", **sizes, "observed order": None, "extrapolated": None,
+                         "band about the fine one": None, "verdict": "diverges"}],
+        "fragility": {"intensity": "Ground motion/Overload factor", "criterion": "crest [m] > 1", "confidence": 0.9,
+                      "levels": levels},
+        "sensitivity": {"change": 0.01, "numbers": [
+            {"number": f"number {i}", "value": 1., "quantity": "crest [m]", "as given": 1., "largest change [%]": 1.,
+             "change over that of the number": 1.} for i in range(40)]}})
+    is_true("a number that converges has a band", table.rows[0][-2:] == [f"± {page.number(0.0125)}", "converges"])
+    is_true("one that does not has none", table.rows[1][-3:] == ["–", "–", "diverges"])
+    is_true("a fragility curve is of its combination", fragility.rows[0][0] == "Density 2600")
+    is_true("  with runs, median and bounds", f"{page.number(2.)}: 3 of 5" in fragility.rows[0][1]
+            and f"({page.number(1.5)} to {page.number(3.)})" in fragility.rows[0][2])
+    is_true("  and a picture", curve.pictures[0].kind == "svg")
+    is_true("of many sensitivities the first ones, and how many there are",
+            len(moves.rows) == study_evaluations.MOST and "of 40 lines" in moves.caption)
+
+
 def make_page(folder, file, **environment):
     answer = subprocess.run([report / "voussoir-report", folder, "-o", file], text=True, stdout=subprocess.PIPE,
                             stderr=subprocess.STDOUT, check=False, env={**os.environ, **environment})
@@ -316,6 +341,7 @@ def main():
         check_colours()
         check_input(run)
         check_records(scratch)
+        check_study_evaluations()
         check_verdicts(scratch)
         check_page(scratch)
     verdicts.end()

@@ -35,6 +35,12 @@ namespace Voussoir
     ParameterFile
     with(const std::vector<std::string> &changes) const;
 
+    /** A copy in which a section ("Section/Name") is replaced by copies of it
+     *  with these names ("Section/Name 1"). */
+    ParameterFile
+    with_copies(const std::string              &section,
+                const std::vector<std::string> &copies) const;
+
     /** The value given for an entry ("Section/Entry"), or @p otherwise. */
     std::string
     given(const std::string &path, const std::string &otherwise = "") const;
@@ -51,6 +57,11 @@ namespace Voussoir
      */
     void
     parse_declared(dealii::ParameterHandler &prm) const;
+
+    /** Entries of @p prm that are given as numbers which need not be whole, or
+     *  as lists of such. */
+    std::vector<std::string>
+    given_numbers(const dealii::ParameterHandler &prm) const;
 
     /** Name of the file without folder and ending. */
     std::string

@@ -114,6 +114,10 @@ namespace Voussoir
     std::string
     verdict() const;
 
+    /** The same without the advice that follows. */
+    std::string
+    short_verdict() const;
+
     /** Makes the tables of results and acceptance from the rest. */
     void
     judge(const AcceptanceParameters &acceptance);

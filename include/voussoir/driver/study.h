@@ -4,6 +4,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/driver/result_folder.h>
 #include <voussoir/driver/run_summary.h>
+#include <voussoir/driver/sensitivity.h>
 #include <voussoir/driver/study_parameters.h>
 
 namespace Voussoir
@@ -19,8 +20,9 @@ namespace Voussoir
   };
 
   /**
-   * Many runs of one parameter file with some entries varied, and the search
-   * for the value of one at which something happens. Each run has a folder in
+   * Many runs of one parameter file with some entries varied, the search for
+   * the value of one at which something happens, or each number moved by a
+   * little. Each run has a folder in
    * that of the study; a study that is started again does only the missing
    * runs.
    */
@@ -69,12 +71,25 @@ namespace Voussoir
       double      fails = 0., meets = 0.;
     };
 
+    /** One run as the file has it, and those with one number moved that the
+     *  program does not refuse. */
+    void
+    plan_moves(const Case &whole);
+
     /** This file with the values of a run, which is no study itself. */
     ParameterFile
     file_of(const StudyValues &values) const;
 
     std::string
     folder_of(const StudyValues &values) const;
+
+    /** What tables and messages say of the values of a run. */
+    StudyValues
+    shown(const StudyValues &values) const;
+
+    /** How many runs there will be, and what they leave out. */
+    void
+    introduce() const;
 
     /** Makes the folder and takes it for this study. */
     void
@@ -108,7 +123,7 @@ namespace Voussoir
     void
     gather();
 
-    /** Writes study.csv, study.json and study_statistics.csv. */
+    /** Writes study.csv, study.json and the tables of what is evaluated. */
     void
     write_tables() const;
 
@@ -117,6 +132,18 @@ namespace Voussoir
 
     std::string
     statistics() const;
+
+    /** Lines of a table, each with the same columns. */
+    using Table = std::vector<nlohmann::ordered_json>;
+
+    Table
+    convergence() const;
+
+    Table
+    fragility() const;
+
+    Table
+    sensitivities() const;
 
     nlohmann::json
     all_results() const;
@@ -136,6 +163,12 @@ namespace Voussoir
 
     /** Strengths that the strength reduction leaves, "Entry = value". */
     std::vector<std::string> strengths_kept;
+
+    std::vector<StudyValues> combinations; // of the runs, or searches
+
+    // numbers each of which is moved in one run, and those that are refused
+    std::vector<MovedNumber> moves;
+    std::vector<std::string> refused_moves;
 
     std::vector<Outcome> outcomes;
     std::vector<Limit>   limits;

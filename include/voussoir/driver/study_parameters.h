@@ -5,6 +5,7 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace Voussoir
@@ -26,6 +27,19 @@ namespace Voussoir
     double      from = 1., to = 2., accuracy = 0.05;
     bool        extend = true;
 
+    // of the extrapolation to cells and steps of no size
+    std::string  refined;
+    double       method_order = 2.;
+    unsigned int dimensions   = 3;
+
+    // of fragility curves
+    std::string intensity, fragility_criterion;
+    double      confidence = 0.9;
+
+    // of the sensitivity to each number of the file
+    double      change = 0.;
+    std::string moved  = "*";
+
     void
     declare(dealii::ParameterHandler &prm);
 
@@ -35,6 +49,10 @@ namespace Voussoir
 
     bool
     seeks_limit() const;
+
+    /** Whether each number of the file is moved. */
+    bool
+    moves_numbers() const;
 
     /** Whether strengths are divided in some of the runs. */
     bool
@@ -54,12 +72,69 @@ namespace Voussoir
     std::vector<std::string>
     spread_entries() const;
 
+    /** Those that make cells or steps smaller, with their partners. */
+    std::vector<std::string>
+    refined_entries() const;
+
+    /** Those whose runs are trials and levels of a fragility curve. */
+    std::vector<std::string>
+    fragility_entries() const;
+
     std::vector<SummaryNumber>
     numbers() const;
 
     std::vector<Criterion>
     criteria() const;
+
+    std::vector<Criterion>
+    fragility_criteria() const;
+
+  private:
+    /** Refuses what extrapolation, fragility and sensitivity cannot go with. */
+    void
+    check_evaluations() const;
+
+    /** @param list of varied entries, @p place of which it is */
+    std::vector<std::string>
+    with_partners(const std::string &list, const std::string &place) const;
   };
+
+  /** "Overload factor = 1.2, Young's modulus = 15e9". */
+  std::string
+  description(const StudyValues &values);
+
+  /** Values of the entries that are not in a list. */
+  StudyValues
+  other_values(const StudyValues              &values,
+               const std::vector<std::string> &entries);
+
+  /** Runs of which only the values of some entries differ. */
+  template <typename Run>
+  struct StudyGroup
+  {
+    StudyValues              others; // of the other entries
+    std::vector<const Run *> runs;
+  };
+
+  /** All groups, in the order of the runs. */
+  template <typename Run>
+  std::vector<StudyGroup<Run>>
+  grouped(const std::vector<Run> &runs, const std::vector<std::string> &entries)
+  {
+    std::vector<StudyGroup<Run>> groups;
+    for (const Run &run : runs)
+      {
+        const StudyValues others = other_values(run.values, entries);
+        auto              group =
+          std::find_if(groups.begin(), groups.end(), [&](const auto &other) {
+            return other.others == others;
+          });
+        if (group == groups.end())
+          group = groups.insert(groups.end(), {others, {}});
+        group->runs.push_back(&run);
+      }
+    return groups;
+  }
 } // namespace Voussoir
 
 #endif

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace Voussoir
@@ -56,6 +57,11 @@ namespace Voussoir
     std::vector<std::string> names; // along the path
   };
 
+  /** Whether a name is that of a pattern, in which a star stands for any
+   *  letters. */
+  bool
+  fits(const std::string_view name, const std::string_view pattern);
+
   /** Whether of several numbers of a path the smallest counts. */
   bool
   is_smallest(const std::string &path);
@@ -90,6 +96,12 @@ namespace Voussoir
     bool                         above = true;
     double                       limit = 0.;
   };
+
+  /** The criteria that a run meets. None: it failed, was stopped before it met
+   *  any, or lacks their numbers, so that nobody knows. */
+  std::optional<std::vector<std::string>>
+  met_criteria(const std::vector<Criterion> &criteria,
+               const RunSummary             &summary);
 } // namespace Voussoir
 
 #endif

@@ -4,6 +4,7 @@
 #include <voussoir/base/registry.h>
 #include <voussoir/fem/cell_kernel.h>
 #include <voussoir/materials/law.h>
+#include <voussoir/materials/random_field.h>
 
 namespace Voussoir
 {
@@ -143,6 +144,8 @@ namespace Voussoir
     double      damping        = 1.;
     double      static_factor  = 1.;
     double      expansion      = 1e-5; // [1/K]
+
+    RandomFieldParameters random_field;
   };
 
   /** The values of a function for all materials, by index. */

@@ -5,6 +5,7 @@ import pathlib
 from . import charts
 from .files import NUMBER, TEXT, Group, csv_rows, is_number, read_json, refuse
 from .page import Pictures, Section, Table, number
+from .study_evaluations import CONVERGENCE, FRAGILITY, SENSITIVITY, evaluations
 
 MOST = 6  # runs of a study that are shown in detail
 
@@ -13,7 +14,8 @@ STUDY = Group(
     {"runs": [Group({"folder": TEXT, "verdict": TEXT, "values": VALUES},
                     {"quantities": Group(others=NUMBER), "criterion met": TEXT})]},
     {"limits": [Group({"of": TEXT, "criterion": TEXT, "not met at": NUMBER, "met at": NUMBER,
-                       "values": VALUES})]})
+                       "values": VALUES})],
+     "convergence": CONVERGENCE, "fragility": FRAGILITY, "sensitivity": SENSITIVITY})
 
 
 class Study:
@@ -23,6 +25,7 @@ class Study:
         self.folder = pathlib.Path(folder)
         data = read_json(self.folder / "study.json", STUDY, "start the study again, which writes it anew")
         self.runs, self.limits = data["runs"], data.get("limits", [])
+        self.evaluations = {name: data.get(name) for name in ("convergence", "fragility", "sensitivity")}
         if not self.in_detail:
             refuse(self.folder / "study.json", "names no run that has a summary.json beside it",
                    "do the study again with --overwrite")
@@ -156,6 +159,7 @@ def study_section(_, studies):
             parts.append(f"{others + ': ' if others else ''}the limit of {short(limit['of'])} lies between "
                          f"{number(limit['not met at'])} and {number(limit['met at'])} "
                          f"(criterion: {limit['criterion']}).")
+        parts.extend(evaluations(study.evaluations))
         over = abscissa(study)
         if over:
             parts.append(Pictures([curve_picture(study, over, quantity) for quantity in study.quantities]))

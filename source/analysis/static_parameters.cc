@@ -52,6 +52,13 @@ namespace Voussoir
       "static_stages.csv. Empty: the upstream edge of the crest "
       "in the middle of its length and at its quarters, where "
       "the mesh has an \"upstream face\".");
+    prm.add_parameter(
+      "Face sets",
+      faces,
+      "Faces on which the extremes of principal, arch and cantilever stress "
+      "after each stage are in static_stages.csv; see the observer \"face "
+      "stresses\". Empty: \"upstream face\" and \"downstream face\", where the "
+      "mesh has them.");
     prm.add_parameter("Keep in",
                       kept,
                       "Folder, beside that of the results, in which the static "

@@ -176,9 +176,10 @@ namespace Voussoir
       std::unique_ptr<Relaxation>         relaxation; // with contact or memory
       SecantSteps                         secants;    // along this stage
       const StageResults                  results;
-      Vector                              loads;  // so far [N]
-      std::vector<std::string>            stage;  // names of its loads
-      Vector                              before; // displacement before it [m]
+      const Damping                       damping; // none
+      Vector                              loads;   // so far [N]
+      std::vector<std::string>            stage;   // names of its loads
+      Vector                              before;  // displacement before it [m]
       bool                                by_multigrid = true; // this stage
       unsigned int                        damped_steps = 0;    // of this stage
       unsigned int                        increments   = 0;    // of this stage
@@ -209,7 +210,8 @@ namespace Voussoir
           on_springs ? model.boundaries.supports.list() :
                        model.boundaries.supports_with_absorbing(
                          parameters.supports == StaticSupports::roller)))
-      , results(model.solid.discretization, parameters.points)
+      , results(model.solid.discretization, parameters.points, parameters.faces)
+      , damping(Damping::none())
       , loads(model.solid.discretization.create_vector())
     {
       const Timer clock;
@@ -669,7 +671,16 @@ namespace Voussoir
       report["sum of reactions [N]"]        = to_json(reactions);
       report["largest displacement [m]"]    = largest;
       report["names"]                       = stage;
-      results.describe(state.displacement, model.contact, report);
+      results.describe({model.solid.discretization,
+                        materials,
+                        internal_force,
+                        damping,
+                        state.material_memory,
+                        state,
+                        1.},
+                       model.contact,
+                       report);
+      log(description_of_stage(report));
     }
 
 
@@ -691,6 +702,14 @@ namespace Voussoir
       return std::move(stages.state);
     }
   } // namespace
+
+
+  void
+  check_stage_results(const Discretization   &discretization,
+                      const StaticParameters &parameters)
+  {
+    StageResults(discretization, parameters.points, parameters.faces);
+  }
 
 
   InitialState

@@ -119,7 +119,7 @@ namespace Voussoir
                    "[m]",
                    stage.at("place of the largest displacement [m]"),
                    1.);
-        for (const char *group : {"points", "interfaces"})
+        for (const char *group : {"points", "faces", "interfaces"})
           if (stage.contains(group))
             for (const auto &[name, values] : stage.at(group).items())
               for (const auto &[quantity, value] : values.items())

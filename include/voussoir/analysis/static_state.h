@@ -41,6 +41,7 @@ namespace Voussoir
     double         rest       = 1e-6;
     std::string    kept       = "static_states"; // folder
     std::string    points; // whose displacements are results of each stage
+    std::string    faces;  // whose stresses are
 
     /** Loads that are not active. */
     std::vector<std::string> left_out;
@@ -58,6 +59,12 @@ namespace Voussoir
     check(const NamedLoads           &loads,
           const InterfacesParameters &interfaces) const;
   };
+
+  /** Refuses points and faces of results that the mesh does not have. Called on
+   *  all ranks. */
+  void
+  check_stage_results(const Discretization   &discretization,
+                      const StaticParameters &parameters);
 
   /** What the static stage is computed from. */
   struct StaticModel

@@ -75,6 +75,10 @@ namespace Voussoir
     explicit Damping(const DampingParameters   &parameters,
                      const std::vector<double> &natural_frequencies = {});
 
+    /** Without any. */
+    static Damping
+    none();
+
     /** Gives a mesh of this stable step without damping its viscosity [s]. */
     void
     add_mesh_viscosity(const double undamped_limit);

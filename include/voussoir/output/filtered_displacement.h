@@ -19,10 +19,10 @@ namespace Voussoir
   {
   public:
     /** At all nodes, in vectors of the discretization. */
-    explicit FilteredDisplacement(const ObservedRun &run);
+    explicit FilteredDisplacement(const StressModel &model);
 
     /** @param needed entries, of whole nodes; other entries are left at zero */
-    FilteredDisplacement(const ObservedRun      &run,
+    FilteredDisplacement(const StressModel      &model,
                          const dealii::IndexSet &needed);
 
     /** All ranks must call this together. */
@@ -46,7 +46,7 @@ namespace Voussoir
     entries_of(const Vector &vector) const;
 
   private:
-    FilteredDisplacement(const ObservedRun &run, Vector &&layout);
+    FilteredDisplacement(const StressModel &model, Vector &&layout);
 
     /** Adds the owned entries of this range. */
     void

@@ -83,6 +83,8 @@ namespace Voussoir
     bool
     has_record(const unsigned int component) const;
 
+    std::string reversed; // components whose sign is turned
+
     double overload_factor = 1.;
 
     /** What stands for a record whose peak is left alone. */
@@ -173,6 +175,10 @@ namespace Voussoir
     /** Whether the ground moves in this direction. */
     bool
     moves(const unsigned int component) const;
+
+    /** 1, or -1 if it is reversed. */
+    double
+    sign(const unsigned int component) const;
 
     /** From records that are matched to a spectrum. */
     GroundMotionSignals

@@ -550,6 +550,8 @@ namespace Voussoir
     log << describe_mesh(mesh);
     if (generator)
       log << generator->describe(mesh);
+    for (const std::string &remark : mesh.remarks)
+      log << remark << '\n';
     return mesh;
   }
 

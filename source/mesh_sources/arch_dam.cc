@@ -140,6 +140,13 @@ namespace Voussoir
       void
       check_cells(const ArchDamSections &sections, const double height) const;
 
+      /** What a wedge is beside what was asked for, and its volume. */
+      std::string
+      describe_wedge(const AbutmentWedge       &wedge,
+                     const ArchDamSweep        &sweep,
+                     const ArchDamCrossSection &section,
+                     const CoarseMesh          &mesh) const;
+
       /** Those that are asked for; they lay lines of the section straight. */
       std::vector<AbutmentWedge>
       make_wedges(const ArchDamSweep        &sweep,
@@ -185,6 +192,29 @@ namespace Voussoir
                               section,
                               "Mesh/arch dam/" + wedge_section(bank));
       return result;
+    }
+
+
+    std::string
+    ArchDam::describe_wedge(const AbutmentWedge       &wedge,
+                            const ArchDamSweep        &sweep,
+                            const ArchDamCrossSection &section,
+                            const CoarseMesh          &mesh) const
+    {
+      const AbutmentWedgeParameters &wanted = wedges[wedge.bank];
+      double                         volume = 0.;
+      for (const unsigned int cell : mesh.cell_sets.at(wedge.name()))
+        volume += cell_volume(mesh, cell);
+      std::ostringstream text;
+      text << std::setprecision(4) << wedge_section(wedge.bank) << ": "
+           << section.ledges[wedge.bank].laid << " m into the bank ("
+           << wanted.width << " m asked for), "
+           << sweep.length_downstream(wedge.layers_before_dam(),
+                                      section.middle_line(wedge.bank).foot,
+                                      wanted.elevation)
+           << " m downstream of the dam (" << wanted.length
+           << " m asked for), volume " << volume << " m3";
+      return text.str();
     }
 
 
@@ -261,6 +291,8 @@ namespace Voussoir
 
       CoarseMesh mesh = make_arch_dam_mesh(
         section, *sweep, wedges, columns_per_block(*sections), water_end);
+      for (const AbutmentWedge &wedge : wedges)
+        mesh.remarks.push_back(describe_wedge(wedge, *sweep, section, mesh));
       // the planes that wedges slide on are planes in space only
       if (wedges.empty())
         add_surfaces(sections, sweep, mesh.chart);

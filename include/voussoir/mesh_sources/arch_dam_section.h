@@ -41,6 +41,7 @@ namespace Voussoir
       std::string place;     // of its entries, to be named in messages
       double elevation = 0.; // of its foot at the dam's middle; 0 for none [m]
       double width     = 0.; // wanted [m]
+      double laid      = 0.; // width that it has, along the crest [m]
       double length    = 0.; // in which it is plane, downstream of the dam [m]
       dealii::Tensor<1, 2> slope; // by which it rises along x and y [-]
 

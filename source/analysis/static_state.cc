@@ -160,6 +160,10 @@ namespace Voussoir
       bool
       dissipated(const MaterialMemory &memory, const double before = 0.) const;
 
+      /** Says how far the search is, of which this share is done. */
+      void
+      report_progress(const double share, const std::string &text);
+
       void
       report_equilibrium(const unsigned int iterations,
                          const double       seconds,
@@ -181,6 +185,9 @@ namespace Voussoir
       std::vector<std::string>            stage;   // names of its loads
       Vector                              before;  // displacement before it [m]
       bool                                by_multigrid = true; // this stage
+      unsigned int                        number       = 0;    // of this stage
+      Timer                               since_start;         // of its path
+      std::array<double, 2>               increment;           // of its loads
       unsigned int                        damped_steps = 0;    // of this stage
       unsigned int                        increments   = 0;    // of this stage
       bool                                is_last      = true; // increment
@@ -250,6 +257,7 @@ namespace Voussoir
     StaticStages::apply(const std::vector<std::string>            &names,
                         const std::map<std::string, const Load *> &load_of)
     {
+      ++number;
       stage  = names;
       before = state.displacement;
       const Timer    clock;
@@ -345,7 +353,7 @@ namespace Voussoir
       double       step = 1., largest_error = 0.;
       unsigned int iterations = 0, n_jumps = 0;
       Vector       rate; // of the displacement over the share, once they crack
-      Timer        clock;
+      since_start.restart();
       for (double share = 0.; share < 1.;)
         {
           const double    next  = share + step > 1. - 1e-9 ? 1. : share + step;
@@ -356,6 +364,7 @@ namespace Voussoir
           const auto   points_before       = contact_points();
           if (rate.size() > 0 && !secants.empty())
             state.displacement.add(next - share, rate);
+          increment           = {{share, next}};
           is_last             = next == 1.;
           const bool is_trial = step > largest_step;
           may_be_halved       = !is_trial && step > least_step;
@@ -386,8 +395,8 @@ namespace Voussoir
                     log.line("    ",
                              100. * next,
                              " % of the loads of the stage, the rest in about ",
-                             duration_text(clock.wall_time() * (1. - next) /
-                                           next));
+                             duration_text(since_start.wall_time() *
+                                           (1. - next) / next));
                 }
               share = next;
               ++increments;
@@ -399,7 +408,7 @@ namespace Voussoir
               continue;
             }
           if (is_trial)
-            clock.restart();
+            since_start.restart();
           step                  = is_trial ? largest_step : 0.5 * step;
           state.displacement    = displacement_before;
           state.material_memory = memory_before;
@@ -608,14 +617,21 @@ namespace Voussoir
                           tolerance,
                           patience,
                           secants,
-                          log)
+                          [this](const double share, const std::string &text) {
+                            report_progress(share, text);
+                          })
           .find(state.displacement, memory);
       std::ostringstream text;
       text << std::setprecision(2) << "    by multigrid: " << effort.iterations
-           << " iterations in " << effort.steps << " steps, equilibrium to "
-           << effort.residual;
-      if (model.contact != nullptr)
-        text << ", forces of contact to " << effort.contact.force;
+           << " iterations in " << effort.steps << " steps, ";
+      if (!std::isfinite(effort.residual))
+        text << "whose forces are not finite";
+      else
+        {
+          text << "equilibrium to " << effort.residual;
+          if (model.contact != nullptr)
+            text << ", forces of contact to " << effort.contact.force;
+        }
       is_found = effort.found || memory == nullptr || !may_be_halved;
       if (!effort.found)
         text << "; not found, so "
@@ -645,6 +661,23 @@ namespace Voussoir
     {
       return Utilities::MPI::max(memory.losses().material - before,
                                  model.solid.grid().communicator()) > 0.;
+    }
+
+
+    void
+    StaticStages::report_progress(const double share, const std::string &text)
+    {
+      if (!log.progress_is_due())
+        return;
+      const double done = increment[0] + share * (increment[1] - increment[0]);
+      std::ostringstream line;
+      line << "of static stage " << number << " of "
+           << parameters.stage_names().size() << ": " << text;
+      // a first trial may end with the news that there is a path to follow
+      if (done > 0. && !(internal_force.has_memory() && increment[0] == 0.))
+        line << ", time left in it "
+             << duration_text(since_start.wall_time() * (1. - done) / done);
+      log.progress(done, line.str());
     }
 
 

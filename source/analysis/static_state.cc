@@ -283,6 +283,7 @@ namespace Voussoir
       if (model.contact != nullptr)
         model.contact->add_forces(-1., state.force);
       report_equilibrium(iterations, clock.wall_time(), report);
+      state.stages.emplace_back(join(stage, ", "), state.displacement);
       if (model.contact != nullptr &&
           model.contact->grout(stage, state.displacement))
         {

@@ -284,7 +284,8 @@ namespace Voussoir
     declare();
     if (declare_more)
       declare_more(prm);
-    file.parse(prm);
+    for (const std::string &note : file.parse(prm))
+      notes.push_back(note);
     if (!generator && !reader.file.empty())
       reader.file = file.resolve(reader.file);
     warnings = unusual_values(prm);

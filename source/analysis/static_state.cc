@@ -302,9 +302,17 @@ namespace Voussoir
       const Vector force =
         force_of(load, model.solid.discretization, model.terms);
       load.add_temperature(state.temperature);
-      const Tensor<1, 3> sum = resultant(force);
-      log.line("  load ", name, ": resultant ", meganewtons(sum));
+      const Tensor<1, 3> sum                 = resultant(force);
       report["loads"][name]["resultant [N]"] = to_json(sum);
+      const auto  by_geometry                = load.resultant_of_geometry();
+      std::string beside;
+      if (by_geometry)
+        {
+          beside = ", by volumes and areas " + meganewtons(*by_geometry);
+          report["loads"][name]["resultant by volumes and areas [N]"] =
+            to_json(*by_geometry);
+        }
+      log.line("  load ", name, ": resultant ", meganewtons(sum), beside);
       loads += force;
     }
 

@@ -54,10 +54,9 @@ namespace Voussoir
                    const StaticParameters &parameters,
                    Log                    &log);
 
-      /** Applies a stage, whose loads are those of these names; returns what
-       *  the summary says of it. */
+      /** Applies a stage; returns what the summary says of it. */
       nlohmann::json
-      apply(const std::vector<std::string>            &names,
+      apply(const StaticParameters::Stage             &applied,
             const std::map<std::string, const Load *> &load_of);
 
       /** After the stages so far; its force is that of the supports. */
@@ -254,11 +253,11 @@ namespace Voussoir
 
 
     nlohmann::json
-    StaticStages::apply(const std::vector<std::string>            &names,
+    StaticStages::apply(const StaticParameters::Stage             &applied,
                         const std::map<std::string, const Load *> &load_of)
     {
       ++number;
-      stage  = names;
+      stage  = applied.loads;
       before = state.displacement;
       const Timer    clock;
       nlohmann::json report;
@@ -283,7 +282,8 @@ namespace Voussoir
       if (model.contact != nullptr)
         model.contact->add_forces(-1., state.force);
       report_equilibrium(iterations, clock.wall_time(), report);
-      state.stages.emplace_back(join(stage, ", "), state.displacement);
+      report["name"] = applied.title();
+      state.stages.emplace_back(applied.title(), state.displacement);
       if (model.contact != nullptr &&
           model.contact->grout(stage, state.displacement))
         {
@@ -738,8 +738,13 @@ namespace Voussoir
       const std::map<std::string, const Load *> load_of(loads.begin(),
                                                         loads.end());
       StaticStages                              stages(model, parameters, log);
-      for (const auto &stage : parameters.stage_names())
-        summary["stages"].push_back(stages.apply(stage, load_of));
+      for (const auto &stage : parameters.stage_list())
+        {
+          const nlohmann::json report = stages.apply(stage, load_of);
+          summary["stages"].push_back(report);
+          if (!stage.name.empty())
+            summary["combinations"][stage.name] = report;
+        }
       summary["seconds"] = clock.wall_time();
       return std::move(stages.state);
     }

@@ -1,4 +1,3 @@
-#include <voussoir/base/text.h>
 #include <voussoir/driver/first_files.h>
 #include <voussoir/files/table.h>
 #include <voussoir/output/field_writer.h>
@@ -92,7 +91,7 @@ namespace Voussoir
     for (const nlohmann::json &stage : static_state.at("stages"))
       {
         std::vector<std::string> titles{"stage"},
-          line{join(stage.at("names").get<std::vector<std::string>>(), ", ")};
+          line{stage.at("name").get<std::string>()};
         const auto add = [&](const std::string &title, const double value) {
           titles.push_back(title);
           line.push_back(csv_line({value}));

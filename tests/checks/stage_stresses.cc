@@ -92,6 +92,14 @@ namespace Voussoir
                       tolerance);
         verdicts.is_true("  it has no arch stress",
                          !top.contains("largest arch stress [MPa]"));
+        verdicts.is_true(
+          "the last one by its name",
+          summary.at("static state").at("combinations").at("winter") ==
+            stages.at(2));
+        verdicts.is_true(
+          "static_stages.csv: its lines",
+          CsvTable(folder + "/static_stages.csv").texts("stage") ==
+            std::vector<std::string>({"weight", "usual", "winter"}));
         verdicts.near("static_stages.csv: smallest cantilever stress",
                       CsvTable(folder + "/static_stages.csv")
                         .numbers("front smallest cantilever stress [MPa]")

@@ -49,6 +49,20 @@ namespace Voussoir
     void
     declare(dealii::ParameterHandler &prm);
 
+    /** A stage that has active loads. */
+    struct Stage
+    {
+      std::string              name; // of the combination of all loads so far
+      std::vector<std::string> loads;
+
+      /** Its name, or its loads if it has none. */
+      std::string
+      title() const;
+    };
+
+    std::vector<Stage>
+    stage_list() const;
+
     /** Names of the loads of each stage. */
     std::vector<std::vector<std::string>>
     stage_names() const;

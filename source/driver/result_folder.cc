@@ -271,7 +271,9 @@ namespace Voussoir
     for (unsigned int i = n; i > 0 && from.empty(); --i)
       {
         chosen = numbered(name, i);
-        if (Utilities::MPI::broadcast(log.communicator(),
+        // a study goes on with one that it has not noted
+        if (!options.overwrite &&
+            Utilities::MPI::broadcast(log.communicator(),
                                       is_finished(chosen,
                                                   parameters.time.end_time)))
           {

@@ -13,9 +13,7 @@ namespace Voussoir
     // share of the tangent where all points stick: without it parts that have
     // no other support move away
     constexpr double tied_share = 1e-3;
-
-    constexpr double report_interval = 5.; // [s]
-  }                                        // namespace
+  } // namespace
 
 
   EquilibriumSearch::EquilibriumSearch(ElasticSolver       &solver,
@@ -25,7 +23,7 @@ namespace Voussoir
                                        const double         tolerance,
                                        const unsigned int   patience,
                                        SecantSteps         &secants,
-                                       Log                 &log)
+                                       const Report        &report)
     : solver(solver)
     , contact(solver.tangent_contact())
     , internal_force(internal_force)
@@ -34,7 +32,7 @@ namespace Voussoir
     , tolerance(tolerance)
     , patience(patience)
     , secants(secants)
-    , log(log)
+    , report(report)
     , residual(force)
     , change(force)
     , taken(force)
@@ -89,6 +87,8 @@ namespace Voussoir
          ++update)
       {
         find_residual();
+        if (update == 0)
+          first_imbalance = effort.residual;
         balance(contact == nullptr ? tolerance : accuracy);
         effort.found = effort.residual <= tolerance;
         if (contact == nullptr)
@@ -121,8 +121,7 @@ namespace Voussoir
             least_imbalance = imbalance();
             last_gain       = effort.steps;
           }
-        if (since_report.wall_time() > report_interval)
-          report_progress();
+        report_progress();
       }
   }
 
@@ -218,18 +217,25 @@ namespace Voussoir
 
 
   void
-  EquilibriumSearch::report_progress()
+  EquilibriumSearch::report_progress() const
   {
+    // what is missing falls by about the same factor in each step
+    const double done =
+      first_imbalance > tolerance ?
+        std::clamp(std::log(first_imbalance / least_imbalance) /
+                     std::log(first_imbalance / tolerance),
+                   0.,
+                   1.) :
+        0.;
     std::ostringstream text;
-    text << std::setprecision(2) << "    after " << effort.iterations
-         << " iterations: equilibrium to " << effort.residual << " of "
+    text << std::setprecision(2) << effort.iterations
+         << " iterations, equilibrium to " << effort.residual << " of "
          << tolerance;
     if (contact != nullptr)
       text << ", forces of contact to " << effort.contact.force << " of "
            << 10. * tolerance << " (" << effort.contact.open << " of "
            << effort.contact.all << " points are open, " << effort.contact.slide
            << " slide)";
-    log.line(text.str());
-    since_report.restart();
+    report(done, text.str());
   }
 } // namespace Voussoir

@@ -16,15 +16,6 @@ namespace Voussoir
     constexpr unsigned int check_interval = 20;
 
 
-    Damping
-    undamped()
-    {
-      DampingParameters none;
-      none.model = DampingModel::none;
-      return Damping(none);
-    }
-
-
     /** Diagonal of the bounding box of the model [m]. */
     double
     diagonal_of(const Discretization &discretization)
@@ -55,7 +46,7 @@ namespace Voussoir
     , internal_force(internal_force)
     , mass(mass_of_run)
     , terms(terms_of_run)
-    , damping(undamped())
+    , damping(Damping::none())
     , contact(contact)
     , extent(diagonal_of(discretization))
   {

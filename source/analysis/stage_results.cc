@@ -4,6 +4,8 @@
 #include <voussoir/fem/nodal_values.h>
 
 #include <array>
+#include <iomanip>
+#include <sstream>
 
 namespace Voussoir
 {
@@ -114,7 +116,8 @@ namespace Voussoir
 
 
   StageResults::StageResults(const Discretization &discretization,
-                             const std::string    &points)
+                             const std::string    &points,
+                             const std::string    &face_sets)
     : discretization(discretization)
     , points(points_of(discretization.grid, points))
     , weights(this->points.empty() ?
@@ -122,14 +125,16 @@ namespace Voussoir
                 std::make_unique<const PointWeights>(discretization,
                                                      this->points,
                                                      place))
+    , stresses(discretization, face_sets)
   {}
 
 
   void
-  StageResults::describe(const Vector   &displacement,
-                         const Contact  *contact,
-                         nlohmann::json &report) const
+  StageResults::describe(const StressModel &model,
+                         const Contact     *contact,
+                         nlohmann::json    &report) const
   {
+    const Vector  &displacement = model.initial.displacement;
     const MPI_Comm communicator = discretization.grid.communicator();
     // amount, place, displacement
     std::array<double, 7> most{};
@@ -156,7 +161,51 @@ namespace Voussoir
             {"displacement y [m]", values[p][1]},
             {"displacement z [m]", values[p][2]}};
       }
+    stresses.describe(model, report);
     if (contact != nullptr)
       describe_interfaces(*contact, communicator, report["interfaces"]);
+  }
+
+
+  std::string
+  description_of_stage(const nlohmann::json &report)
+  {
+    std::ostringstream text;
+    text << std::setprecision(4);
+    const auto number = [](const nlohmann::json &values, const auto &name) {
+      return values.at(name).template get<double>();
+    };
+    if (report.contains("points"))
+      for (const auto &[name, point] : report.at("points").items())
+        {
+          text << "    " << name << ": displacement (";
+          for (const char axis : {'x', 'y', 'z'})
+            text << 1e3 * number(point,
+                                 std::string("displacement ") + axis + " [m]")
+                 << (axis == 'z' ? ") mm\n" : ", ");
+        }
+    if (report.contains("faces"))
+      for (const auto &[name, face] : report.at("faces").items())
+        {
+          std::string between = "    " + name + ": ";
+          for (const std::string kind : {"principal", "arch", "cantilever"})
+            if (const std::string stress = kind + " stress [MPa]";
+                face.contains("largest " + stress))
+              {
+                text << between << kind << " stress "
+                     << number(face, "smallest " + stress) << " to "
+                     << number(face, "largest " + stress) << " MPa";
+                between = ", ";
+              }
+          text << '\n';
+        }
+    if (report.contains("interfaces"))
+      for (const auto &[name, surface] : report.at("interfaces").items())
+        text << "    " << name << ": opening "
+             << number(surface, "largest opening [mm]") << " mm, slip "
+             << number(surface, "largest slip [mm]") << " mm, normal force "
+             << number(surface, "normal force [MN]") << " MN, shear "
+             << number(surface, "shear force [MN]") << " MN\n";
+    return text.str();
   }
 } // namespace Voussoir

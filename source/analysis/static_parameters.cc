@@ -18,7 +18,9 @@ namespace Voussoir
       "Loads that act before the earthquake: stages separated by "
       "semicolons, in their order, with the names of loads separated by "
       "commas, as in \"weight; water, silt; temperature\". They stay as they "
-      "are at t = 0. Empty: no static stage.");
+      "are at t = 0. A stage may have a name, that of the load combination "
+      "after it, as in \"weight; usual: water, silt; winter: temperature\", by "
+      "which its results are kept. Empty: no static stage.");
     add_option(
       prm,
       "Supports",
@@ -52,6 +54,13 @@ namespace Voussoir
       "static_stages.csv. Empty: the upstream edge of the crest "
       "in the middle of its length and at its quarters, where "
       "the mesh has an \"upstream face\".");
+    prm.add_parameter(
+      "Face sets",
+      faces,
+      "Faces on which the extremes of principal, arch and cantilever stress "
+      "after each stage are in static_stages.csv; see the observer \"face "
+      "stresses\". Empty: \"upstream face\" and \"downstream face\", where the "
+      "mesh has them.");
     prm.add_parameter("Keep in",
                       kept,
                       "Folder, beside that of the results, in which the static "
@@ -61,20 +70,41 @@ namespace Voussoir
   }
 
 
+  std::string
+  StaticParameters::Stage::title() const
+  {
+    return name.empty() ? join(loads, ", ") : name;
+  }
+
+
+  std::vector<StaticParameters::Stage>
+  StaticParameters::stage_list() const
+  {
+    std::vector<Stage> list;
+    for (const std::string &item : split_list(stages, ';'))
+      {
+        Stage      stage;
+        const auto colon = item.find(':');
+        if (colon != std::string::npos)
+          stage.name = Utilities::trim(item.substr(0, colon));
+        for (const std::string &name : split_list(
+               colon == std::string::npos ? item : item.substr(colon + 1)))
+          if (std::find(left_out.begin(), left_out.end(), name) ==
+              left_out.end())
+            stage.loads.push_back(name);
+        if (!stage.loads.empty())
+          list.push_back(stage);
+      }
+    return list;
+  }
+
+
   std::vector<std::vector<std::string>>
   StaticParameters::stage_names() const
   {
     std::vector<std::vector<std::string>> names;
-    for (const std::string &stage : split_list(stages, ';'))
-      {
-        std::vector<std::string> there;
-        for (const std::string &name : split_list(stage))
-          if (std::find(left_out.begin(), left_out.end(), name) ==
-              left_out.end())
-            there.push_back(name);
-        if (!there.empty())
-          names.push_back(there);
-      }
+    for (const Stage &stage : stage_list())
+      names.push_back(stage.loads);
     return names;
   }
 
@@ -86,7 +116,7 @@ namespace Voussoir
     std::vector<std::string> known;
     for (const auto &load : loads)
       known.push_back(load.first);
-    std::set<std::string> staged;
+    std::set<std::string> staged, titles;
     for (const auto &stage : stage_names())
       for (const std::string &name : stage)
         {
@@ -100,6 +130,11 @@ namespace Voussoir
             throw UserError("\"Stages\" in section \"Static state\" names \"" +
                             name + "\" twice; keep one of them.");
         }
+    for (const Stage &stage : stage_list())
+      if (!titles.insert(stage.title()).second)
+        throw UserError("Two \"Stages\" in section \"Static state\" have the "
+                        "name \"" +
+                        stage.title() + "\"; give one of them another.");
     for (const auto &[name, load] : loads)
       if (load->steady() && staged.count(name) == 0)
         throw UserError("The load \"" + name +

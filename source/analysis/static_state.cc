@@ -55,10 +55,9 @@ namespace Voussoir
                    const StaticParameters &parameters,
                    Log                    &log);
 
-      /** Applies a stage, whose loads are those of these names; returns its
-       *  part of the summary. */
+      /** Applies a stage; returns its part of the summary. */
       nlohmann::json
-      apply(const std::vector<std::string>            &names,
+      apply(const StaticParameters::Stage             &applied,
             const std::map<std::string, const Load *> &load_of);
 
       /** State after the stages so far; its force is that of the supports. */
@@ -163,6 +162,10 @@ namespace Voussoir
       bool
       dissipated(const MaterialMemory &memory, const double before = 0.) const;
 
+      /** Says how far the search is, of which this share is done. */
+      void
+      report_progress(const double share, const std::string &text);
+
       void
       report_equilibrium(const unsigned int iterations,
                          const double       seconds,
@@ -180,10 +183,14 @@ namespace Voussoir
                                relaxation; // with contact or internal variables
       SecantSteps              secants;    // along this stage
       const StageResults       results;
-      Vector                   loads;  // so far [N]
-      std::vector<std::string> stage;  // names of its loads
-      Vector                   before; // displacement before it [m]
+      const Damping            damping; // none
+      Vector                   loads;   // so far [N]
+      std::vector<std::string> stage;   // names of its loads
+      Vector                   before;  // displacement before it [m]
       bool                     by_multigrid = true; // this stage
+      unsigned int             number       = 0;    // of this stage
+      Timer                    since_start;         // of its path
+      std::array<double, 2>    increment;           // of its loads
       unsigned int             damped_steps = 0;    // of this stage
       unsigned int             increments   = 0;    // of this stage
       bool                     is_last      = true; // increment
@@ -214,7 +221,8 @@ namespace Voussoir
           on_springs ? model.boundaries.supports.list() :
                        model.boundaries.supports_with_absorbing(
                          parameters.supports == StaticSupports::roller)))
-      , results(model.solid.discretization, parameters.points)
+      , results(model.solid.discretization, parameters.points, parameters.faces)
+      , damping(Damping::none())
       , loads(model.solid.discretization.create_vector())
     {
       const Timer clock;
@@ -250,10 +258,11 @@ namespace Voussoir
 
 
     nlohmann::json
-    StaticStages::apply(const std::vector<std::string>            &names,
+    StaticStages::apply(const StaticParameters::Stage             &applied,
                         const std::map<std::string, const Load *> &load_of)
     {
-      stage  = names;
+      ++number;
+      stage  = applied.loads;
       before = state.displacement;
       const Timer    clock;
       nlohmann::json report;
@@ -278,6 +287,8 @@ namespace Voussoir
       if (model.contact != nullptr)
         model.contact->add_forces(-1., state.force);
       report_equilibrium(iterations, clock.wall_time(), report);
+      report["name"] = applied.title();
+      state.stages.emplace_back(applied.title(), state.displacement);
       if (model.contact != nullptr &&
           model.contact->grout(stage, state.displacement))
         {
@@ -296,9 +307,17 @@ namespace Voussoir
       const Vector force =
         force_of(load, model.solid.discretization, model.terms);
       load.add_temperature(state.temperature);
-      const Tensor<1, 3> sum = resultant(force);
-      log.line("  load ", name, ": resultant ", meganewtons(sum));
+      const Tensor<1, 3> sum                 = resultant(force);
       report["loads"][name]["resultant [N]"] = to_json(sum);
+      const auto  by_geometry                = load.resultant_of_geometry();
+      std::string beside;
+      if (by_geometry)
+        {
+          beside = ", by volumes and areas " + meganewtons(*by_geometry);
+          report["loads"][name]["resultant by volumes and areas [N]"] =
+            to_json(*by_geometry);
+        }
+      log.line("  load ", name, ": resultant ", meganewtons(sum), beside);
       loads += force;
     }
 
@@ -349,7 +368,7 @@ namespace Voussoir
       unsigned int iterations = 0, n_jumps = 0;
       Vector
         rate; // derivative of the displacement by the share, once they crack
-      Timer clock;
+      since_start.restart();
       for (double share = 0.; share < 1.;)
         {
           const double    next  = share + step > 1. - 1e-9 ? 1. : share + step;
@@ -360,6 +379,7 @@ namespace Voussoir
           const auto   points_before       = contact_points();
           if (rate.size() > 0 && !secants.empty())
             state.displacement.add(next - share, rate);
+          increment           = {{share, next}};
           is_last             = next == 1.;
           const bool is_trial = step > largest_step;
           may_be_halved       = !is_trial && step > least_step;
@@ -390,8 +410,8 @@ namespace Voussoir
                     log.line("    ",
                              100. * next,
                              " % of the loads of the stage, the rest in about ",
-                             duration_text(clock.wall_time() * (1. - next) /
-                                           next));
+                             duration_text(since_start.wall_time() *
+                                           (1. - next) / next));
                 }
               share = next;
               ++increments;
@@ -403,7 +423,7 @@ namespace Voussoir
               continue;
             }
           if (is_trial)
-            clock.restart();
+            since_start.restart();
           step                  = is_trial ? largest_step : 0.5 * step;
           state.displacement    = displacement_before;
           state.material_memory = memory_before;
@@ -611,14 +631,21 @@ namespace Voussoir
                           tolerance,
                           patience,
                           secants,
-                          log)
+                          [this](const double share, const std::string &text) {
+                            report_progress(share, text);
+                          })
           .find(state.displacement, memory);
       std::ostringstream text;
       text << std::setprecision(2) << "    by multigrid: " << effort.iterations
-           << " iterations in " << effort.steps << " steps, equilibrium to "
-           << effort.residual;
-      if (model.contact != nullptr)
-        text << ", forces of contact to " << effort.contact.force;
+           << " iterations in " << effort.steps << " steps, ";
+      if (!std::isfinite(effort.residual))
+        text << "whose forces are not finite";
+      else
+        {
+          text << "equilibrium to " << effort.residual;
+          if (model.contact != nullptr)
+            text << ", forces of contact to " << effort.contact.force;
+        }
       is_found = effort.found || memory == nullptr || !may_be_halved;
       if (!effort.found)
         text << "; not found, so "
@@ -652,6 +679,23 @@ namespace Voussoir
 
 
     void
+    StaticStages::report_progress(const double share, const std::string &text)
+    {
+      if (!log.progress_is_due())
+        return;
+      const double done = increment[0] + share * (increment[1] - increment[0]);
+      std::ostringstream line;
+      line << "of static stage " << number << " of "
+           << parameters.stage_names().size() << ": " << text;
+      // a first trial may end with the news that there is a path to follow
+      if (done > 0. && !(internal_force.has_memory() && increment[0] == 0.))
+        line << ", time left in it "
+             << duration_text(since_start.wall_time() * (1. - done) / done);
+      log.progress(done, line.str());
+    }
+
+
+    void
     StaticStages::report_equilibrium(const unsigned int iterations,
                                      const double       seconds,
                                      nlohmann::json    &report) const
@@ -674,7 +718,16 @@ namespace Voussoir
       report["sum of reactions [N]"]        = to_json(reactions);
       report["largest displacement [m]"]    = largest;
       report["names"]                       = stage;
-      results.describe(state.displacement, model.contact, report);
+      results.describe({model.solid.discretization,
+                        materials,
+                        internal_force,
+                        damping,
+                        state.material_memory,
+                        state,
+                        1.},
+                       model.contact,
+                       report);
+      log(description_of_stage(report));
     }
 
 
@@ -690,12 +743,25 @@ namespace Voussoir
       const std::map<std::string, const Load *> load_of(loads.begin(),
                                                         loads.end());
       StaticStages                              stages(model, parameters, log);
-      for (const auto &stage : parameters.stage_names())
-        summary["stages"].push_back(stages.apply(stage, load_of));
+      for (const auto &stage : parameters.stage_list())
+        {
+          const nlohmann::json report = stages.apply(stage, load_of);
+          summary["stages"].push_back(report);
+          if (!stage.name.empty())
+            summary["combinations"][stage.name] = report;
+        }
       summary["seconds"] = clock.wall_time();
       return std::move(stages.state);
     }
   } // namespace
+
+
+  void
+  check_stage_results(const Discretization   &discretization,
+                      const StaticParameters &parameters)
+  {
+    StageResults(discretization, parameters.points, parameters.faces);
+  }
 
 
   InitialState

@@ -307,6 +307,8 @@ namespace Voussoir
         if (!is_utf8(item))
           throw UserError(value.place + " is not written in UTF-8.");
         refuse_second_equals(path, value.text, value.place);
+        if (values[path].text != value.text)
+          replaced[path].push_back(values[path].text);
         values[path] = value;
       }
   }
@@ -409,7 +411,11 @@ namespace Voussoir
     if (!section.empty())
       throw UserError(filename + ": the section \"" + join_path(section) +
                       "\" is never closed; add the missing \"end\".");
-    values.insert(included.values.begin(), included.values.end());
+    for (const auto &[path, value] : included.values)
+      if (const auto [own, is_new] = values.emplace(path, value);
+          !is_new && own->second.text != value.text)
+        replaced[path].push_back(value.text);
+    replaced.insert(included.replaced.begin(), included.replaced.end());
     sections.insert(included.sections.begin(), included.sections.end());
   }
 
@@ -423,7 +429,44 @@ namespace Voussoir
   }
 
 
-  void
+  bool
+  ParameterFile::is_replaced(const std::string &entry,
+                             const std::string &place) const
+  {
+    // the file, or --set
+    const auto source = [](const std::string &text) {
+      return text.rfind("--set", 0) == 0 ? "--set" :
+                                           text.substr(0, text.rfind(", line"));
+    };
+    const auto now = values.find(entry);
+    return replaced.count(entry) > 0 &&
+           source(now->second.place) != source(place);
+  }
+
+
+  std::string
+  ParameterFile::cause_of_no_use(const std::string &path,
+                                 const std::string &place) const
+  {
+    for (std::string part = path; !part.empty(); part = section_of(part))
+      {
+        const std::string section = section_of(part);
+        for (const std::string entry : {"Class", "Law"})
+          if (is_replaced(section + "/" + entry, place))
+            return section + "/" + entry;
+        for (const std::string entry : {"Names", "Type"})
+          if (const std::string chooser = section + "/" + entry;
+              is_replaced(chooser, place))
+            for (const std::string &before : replaced.at(chooser))
+              for (const std::string &name : split_list(before))
+                if (name == entry_of(part))
+                  return chooser;
+      }
+    return "";
+  }
+
+
+  std::vector<std::string>
   ParameterFile::parse(dealii::ParameterHandler &prm) const
   {
     const auto            declared = declared_entries(prm);
@@ -453,13 +496,34 @@ namespace Voussoir
                       "\" " + section_text(parent) +
                       known_names(entry_of(section), siblings) + cause + ".");
     };
+    std::vector<std::string> notes;
+    const auto               is_left_out = [&](const std::string &what,
+                                 const std::string &path,
+                                 const std::string &place) {
+      const std::string cause = cause_of_no_use(path, place);
+      if (!cause.empty())
+        notes.push_back(what + " is not used, as \"" + entry_of(cause) + "\" " +
+                        section_text(section_of(cause)) + " is now \"" +
+                        given(cause) + "\"");
+      return !cause.empty();
+    };
     for (const auto &[section, place] : sections)
-      if (declared_sections.count(section) == 0)
+      if (declared_sections.count(section) == 0 &&
+          !is_left_out("section \"" + section + "\"", section, place))
         refuse_section(section, place);
 
     for (const auto &[path, value] : values)
       if (declared.count(path) == 0)
         {
+          // that of its section is enough
+          if (declared_sections.count(section_of(path)) == 0 &&
+              !cause_of_no_use(section_of(path), value.place).empty())
+            continue;
+          if (is_left_out("entry \"" + entry_of(path) + "\" " +
+                            section_text(section_of(path)),
+                          path,
+                          value.place))
+            continue;
           const std::string section = section_of(path);
           if (declared_sections.count(section) == 0)
             refuse_section(section, value.place);
@@ -471,6 +535,7 @@ namespace Voussoir
                           entry_of(path) + "\" " + section_text(section) +
                           known_names(entry_of(path), siblings) + ".");
         }
+    return notes;
   }
 
 

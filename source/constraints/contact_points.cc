@@ -92,7 +92,17 @@ namespace Voussoir
   void
   ContactPoints::update_limits(ContactPoint &point) const
   {
-    const ContactSurface   &surface  = surfaces[point.surface];
+    constexpr double beyond_all_stresses = 1e12; // [Pa]
+
+    const ContactSurface &surface = surfaces[point.surface];
+    if (surface.tied)
+      {
+        point.limits         = {};
+        point.limits.tension = beyond_all_stresses * point.area;
+        point.limits.locked  = true;
+        point.given_force    = point.uplift * point.area;
+        return;
+      }
     const InterfaceStrength strength = surface.law->strength(point.history);
     point.limits                     = {strength.tension * point.area,
                                         strength.bond * point.area,

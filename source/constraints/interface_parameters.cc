@@ -133,6 +133,13 @@ namespace Voussoir
       "transmits no force, and its sides move independently. Opening and slip "
       "count from that moment. Empty: joined from the start.");
     prm.add_parameter(
+      "Tied after grouting",
+      tied,
+      "Once it is grouted, or from the start, its two sides are "
+      "one body that neither opens nor slips, whatever the law "
+      "and the bars: for linear analyses of a dam whose blocks "
+      "stand free under their weight.");
+    prm.add_parameter(
       "Key depth",
       key_depth,
       "Depth of shear keys, which prevent slip while the opening is smaller; "
@@ -177,6 +184,10 @@ namespace Voussoir
     if (!between.empty() && split_list(between).size() != 2)
       throw UserError("\"Between\" in section \"" + place +
                       "\" needs two cell sets, separated by a comma.");
+    if (tied && initial_gap > 0.)
+      throw UserError("Section \"" + place +
+                      "\" has both an \"Initial gap\" and \"Tied after "
+                      "grouting\"; leave one of them out.");
     if (uplift.given() == split_list(uplift.downstream_faces).empty())
       throw UserError("Section \"" + place +
                       "/Uplift\" needs both \"Upstream faces\" and "

@@ -40,6 +40,7 @@ namespace Voussoir
           ContactSurface surface;
           surface.law       = interfaces.list[i].law.get();
           surface.key_depth = interfaces.list[i].key_depth;
+          surface.tied      = interfaces.list[i].tied;
           surfaces.push_back(surface);
           interface_of_surface.push_back(i);
         }

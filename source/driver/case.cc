@@ -289,7 +289,8 @@ namespace Voussoir
     declare();
     if (declare_more)
       declare_more(prm);
-    without_added.parse(prm);
+    for (const std::string &note : without_added.parse(prm))
+      notes.push_back(note);
     if (!generator && !reader.file.empty())
       reader.file = file.resolve(reader.file);
     warnings = unusual_values(prm);
@@ -554,6 +555,8 @@ namespace Voussoir
     log << describe_mesh(mesh);
     if (generator)
       log << generator->describe(mesh);
+    for (const std::string &remark : mesh.remarks)
+      log << remark << '\n';
     return mesh;
   }
 

@@ -1,4 +1,3 @@
-#include <voussoir/base/text.h>
 #include <voussoir/driver/first_files.h>
 #include <voussoir/files/table.h>
 #include <voussoir/output/field_writer.h>
@@ -92,7 +91,7 @@ namespace Voussoir
     for (const nlohmann::json &stage : static_state.at("stages"))
       {
         std::vector<std::string> titles{"stage"},
-          line{join(stage.at("names").get<std::vector<std::string>>(), ", ")};
+          line{stage.at("name").get<std::string>()};
         const auto add = [&](const std::string &title, const double value) {
           titles.push_back(title);
           line.push_back(csv_line({value}));
@@ -119,7 +118,7 @@ namespace Voussoir
                    "[m]",
                    stage.at("place of the largest displacement [m]"),
                    1.);
-        for (const char *group : {"points", "interfaces"})
+        for (const char *group : {"points", "faces", "interfaces"})
           if (stage.contains(group))
             for (const auto &[name, values] : stage.at(group).items())
               for (const auto &[quantity, value] : values.items())

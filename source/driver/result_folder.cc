@@ -2,6 +2,7 @@
 #include <voussoir/base/text.h>
 #include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/result_folder.h>
+#include <voussoir/driver/run_summary.h>
 #include <voussoir/output/checkpoint.h>
 
 #include <unistd.h>
@@ -9,6 +10,8 @@
 #include <cerrno>
 #include <climits>
 #include <filesystem>
+#include <fstream>
+#include <limits>
 #include <regex>
 
 namespace Voussoir
@@ -109,6 +112,28 @@ namespace Voussoir
       while (is_there(numbered(name, n + 1)))
         ++n;
       return n;
+    }
+
+
+    /** Whether a run to this time has come to its end and left all files. */
+    bool
+    is_finished(const std::string &folder, const double end_time)
+    {
+      std::ifstream        in(folder + "/summary.json");
+      const nlohmann::json summary =
+        nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
+      if (!is_summary(summary) || summary.contains("files not written"))
+        return false;
+      const std::string verdict = summary.at("verdict");
+      const auto        number  = [&](const char *name) {
+        const auto found = summary.find(name);
+        return found != summary.end() && found->is_number() ?
+                         found->get<double>() :
+                         std::numeric_limits<double>::quiet_NaN();
+      };
+      return verdict.rfind("stopped", 0) != 0 &&
+             verdict.rfind("failed", 0) != 0 &&
+             number("end time [s]") > end_time - 0.5 * number("time step [s]");
     }
 
 
@@ -242,12 +267,27 @@ namespace Voussoir
     const std::string  name = name_in(parameters);
     const unsigned int n =
       Utilities::MPI::broadcast(log.communicator(), count(name));
-    std::vector<std::string> damaged;
+    std::vector<std::string> damaged, finished;
     for (unsigned int i = n; i > 0 && from.empty(); --i)
       {
         chosen = numbered(name, i);
-        from   = Checkpoint(checkpoints(), log.communicator()).newest(damaged);
+        // a study goes on with one that it has not noted
+        if (!options.overwrite &&
+            Utilities::MPI::broadcast(log.communicator(),
+                                      is_finished(chosen,
+                                                  parameters.time.end_time)))
+          {
+            finished.push_back(chosen);
+            continue;
+          }
+        from = Checkpoint(checkpoints(), log.communicator()).newest(damaged);
       }
+    if (from.empty() && !finished.empty())
+      throw UserError(
+        "The run in \"" + finished[0] +
+        "\" has come to its end, so that there is nothing to go "
+        "on with; set a later \"End time\" in section \"Time\", or "
+        "run the case without --restart.");
     if (from.empty())
       throw UserError(
         "There is no checkpoint in \"" + numbered(name, std::max(n, 1u)) +

@@ -313,7 +313,7 @@ namespace Voussoir
                 component.emplace();
               component->push_back(
                 motion.overload_factor * standard_gravity * peak *
-                motion.spectrum.spectrum.amplification(period));
+                motion.spectrum.target(d).amplification(period));
             }
       return target;
     }

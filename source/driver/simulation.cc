@@ -47,6 +47,9 @@ namespace Voussoir
     {
       const Case &parameters = plan.model.parameters;
       check_modes(plan.model);
+      if (!parameters.static_state.stage_names().empty())
+        check_stage_results(plan.model.solid.discretization,
+                            parameters.static_state);
       const bool needs_modes =
         parameters.modes.number > 0 && parameters.damping.depends_on_modes();
       const bool waits = needs_modes && !options.validate;

@@ -21,6 +21,9 @@ namespace Voussoir
              {"contact force", &initial.contact_force}})
         if (vector->size() > 0)
           content.values[name] = nodes.values(*vector);
+      for (auto &[name, displacement] : initial.stages)
+        content.values["displacement after " + name] =
+          nodes.values(displacement);
       for (unsigned int m = 0; m < model.solid.materials.size(); ++m)
         if (PointHistory *history = initial.material_memory.of(m))
           content
@@ -65,11 +68,15 @@ namespace Voussoir
                      const std::string    &file,
                      const nlohmann::json &identity)
   {
-    StaticState copy(static_state);
+    StaticState    copy(static_state);
+    nlohmann::json stages = nlohmann::json::array();
+    for (const auto &stage : static_state.initial.stages)
+      stages.push_back(stage.first);
     write_state(
       file,
       {{"identity", identity},
        {"static state", static_state.initial.displacement.size() > 0},
+       {"stages", stages},
        {"grouted", static_state.initial.grouted_displacement.size() > 0},
        {"contact force", static_state.initial.contact_force.size() > 0},
        {"contact",
@@ -92,6 +99,9 @@ namespace Voussoir
         model.solid.discretization.create_vector();
     if (header.at("grouted"))
       initial.grouted_displacement = model.solid.discretization.create_vector();
+    for (const std::string stage : header.at("stages"))
+      initial.stages.emplace_back(stage,
+                                  model.solid.discretization.create_vector());
     if (header.at("contact force"))
       initial.contact_force = model.solid.discretization.create_vector();
 

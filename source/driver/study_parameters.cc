@@ -68,7 +68,8 @@ namespace Voussoir
       "semicolons, as in \"Ground motion/Overload factor = 1, 1.2, 1.4; "
       "Materials/rock/Young's modulus = 15e9, 20e9\". Each combination is a "
       "run of its own. \"&\" instead of a semicolon pairs two entries: the "
-      "X +
+      "first values of both together, then the second. \"|\" separates values "
+      "that are lists, as in \"Mesh/box/Cells = 1, 1, 10 | 1, 1, 20\". \"" +
         strength_reduction +
         "\" divides the entries of \"Reduced strengths\".");
     prm.add_parameter(

@@ -69,22 +69,70 @@ namespace Voussoir
     }
 
 
-    /** Largest reduction of a strength by long cells [%], and its material.
-     */
-    std::pair<double, std::string>
+    /** Strength reduced by long cells. */
+    struct LoweredStrength
+    {
+      double          share    = 0.; // [%]
+      unsigned int    material = 0;
+      const Material *law      = nullptr; // of the run or of the static state
+      double          sign     = 1.;      // tension
+      double          band     = 0.;      // widest [m]
+    };
+
+
+    /** The largest reduction. */
+    LoweredStrength
     most_lowered_strength(const Model &model)
     {
-      std::pair<double, std::string> most(0., "");
-      const std::vector<double>      bands = model.widest_crack_bands();
+      LoweredStrength           most;
+      const std::vector<double> bands = model.widest_crack_bands();
       for (unsigned int m = 0; m < bands.size(); ++m)
         if (model.solid.materials[m]->n_history() > 0 && bands[m] > 0.)
           for (const Material *law :
                {model.solid.materials[m], &model.solid.materials[m]->at_rest()})
             for (const double sign : {1., -1.})
-              most = std::max(most,
-                              {lowered_by(*law, bands[m], sign),
-                               model.parameters.materials.objects[m].first});
+              if (const double share = lowered_by(*law, bands[m], sign);
+                  most.law == nullptr || share > most.share)
+                most = {share, m, law, sign, bands[m]};
       return most;
+    }
+
+
+    /** The refinement of its cells that leaves a strength, and what it costs:
+     *  each halving makes eight cells of one, and no more than doubles the
+     *  number of steps. */
+    std::string
+    remedy_for(const LoweredStrength &lowered, const Model &model)
+    {
+      constexpr unsigned int most_halvings = 10;
+      unsigned int           n             = 1;
+      while (n < most_halvings && lowered_by(*lowered.law,
+                                             std::ldexp(lowered.band, -int(n)),
+                                             lowered.sign) > most_lowered)
+        ++n;
+      double own = 0., all = 0.;
+      for (const auto &cell :
+           model.grid.triangulation().active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            all += 1.;
+            own += model.grid.material(cell) == lowered.material ? 1. : 0.;
+          }
+      const double share = Utilities::MPI::sum(own, model.grid.communicator()) /
+                           Utilities::MPI::sum(all, model.grid.communicator());
+      const double more = 1. + share * (std::ldexp(1., 3 * n) - 1.);
+
+      std::vector<std::string> items;
+      for (const std::string &set :
+           split_list(model.parameters.materials.objects[lowered.material]
+                        .second->cell_sets))
+        items.push_back(set + ": " + std::to_string(n));
+      return "cells of at most " +
+             number_text(std::ldexp(lowered.band, -int(n))) +
+             " m keep it (\"Local refinement = " + join(items, "; ") +
+             "\" in section \"Mesh\"), with about " + number_text(more) +
+             " times as many cells in all and up to " +
+             number_text(std::ldexp(1., n)) + " times as many steps";
     }
 
 
@@ -286,9 +334,14 @@ namespace Voussoir
       at_least(worst_jacobian(model), least_jacobian);
     if (model.solid.internal_force.has_memory())
       {
-        const auto [share, material] = most_lowered_strength(model);
-        checks["strength lowered by long cells [%]"] =
-          of(at_most(share, most_lowered), material);
+        const LoweredStrength lowered = most_lowered_strength(model);
+        nlohmann::json &line = checks["strength lowered by long cells [%]"];
+        line                 = at_most(lowered.share, most_lowered);
+        if (lowered.share > 0.)
+          line["of"] =
+            model.parameters.materials.objects[lowered.material].first;
+        if (lowered.share > most_lowered)
+          line["remedy"] = remedy_for(lowered, model);
       }
     if (const double needed =
           frequency_of_intensity(setup.plan.motion.accelerations,
@@ -388,6 +441,8 @@ namespace Voussoir
           text << ", at " << text_of(line, "at the time [s]") << " s";
         if (line.contains("at [m]"))
           text << ", at " << line.at("at [m]").dump() << " m";
+        if (line.contains("remedy"))
+          text << "; " << text_of(line, "remedy");
         text << '\n';
       }
     return text.str();

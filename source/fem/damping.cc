@@ -150,6 +150,15 @@ namespace Voussoir
   }
 
 
+  Damping
+  Damping::none()
+  {
+    DampingParameters parameters;
+    parameters.model = DampingModel::none;
+    return Damping(parameters);
+  }
+
+
   void
   Damping::add_mesh_viscosity(const double undamped_limit)
   {

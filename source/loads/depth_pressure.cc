@@ -60,11 +60,22 @@ namespace Voussoir
                     level,
                     "\"Level\"" + section,
                     log);
-        forces = depth_pressure_forces(solid.discretization,
+        forces      = depth_pressure_forces(solid.discretization,
                                        sets,
                                        "\"Face sets\"" + section,
                                        level,
                                        gradient());
+        of_geometry = depth_pressure_resultant(solid.discretization,
+                                               sets,
+                                               "\"Face sets\"" + section,
+                                               level,
+                                               gradient());
+      }
+
+      std::optional<Tensor<1, 3>>
+      resultant_of_geometry() const override
+      {
+        return of_geometry;
       }
 
       void
@@ -82,6 +93,7 @@ namespace Voussoir
       std::string             face_sets = "upstream face";
       double                  level     = 0.;
       std::vector<NodalForce> forces;
+      Tensor<1, 3>            of_geometry; // resultant by areas and depths [N]
     };
 
 

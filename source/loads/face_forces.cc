@@ -189,6 +189,40 @@ namespace Voussoir
   }
 
 
+  Tensor<1, 3>
+  depth_pressure_resultant(const Discretization           &discretization,
+                           const std::vector<std::string> &sets,
+                           const std::string              &place,
+                           const double                    level,
+                           const double                    gradient)
+  {
+    constexpr unsigned int n_parts = 16; // of an edge
+    Tensor<1, 3>           sum;
+    for_each_face(
+      discretization,
+      sets,
+      place,
+      [&](const auto &cell, const unsigned int number) {
+        const auto         face     = cell->face(number);
+        const Tensor<1, 3> a        = face->vertex(1) - face->vertex(0),
+                           b        = face->vertex(2) - face->vertex(0),
+                           ab       = face->vertex(3) - face->vertex(2) - a;
+        const Tensor<1, 3> outwards = face->center() - cell->center();
+        for (unsigned int part = 0; part < n_parts * n_parts; ++part)
+          {
+            const double s    = (part % n_parts + 0.5) / n_parts,
+                         t    = (part / n_parts + 0.5) / n_parts;
+            const Point<3> at = face->vertex(0) + s * a + t * b + s * t * ab;
+            const Tensor<1, 3> area =
+              cross_product_3d(a + t * ab, b + s * ab) / (n_parts * n_parts);
+            sum -= gradient * std::max(0., level - at[2]) *
+                   (area * outwards < 0. ? -1. : 1.) * area;
+          }
+      });
+    return Utilities::MPI::sum(sum, discretization.grid.communicator());
+  }
+
+
   void
   add_to(Vector &vector, const std::vector<NodalForce> &forces)
   {

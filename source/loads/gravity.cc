@@ -59,14 +59,16 @@ namespace Voussoir
           factor.prepare("\"Time function\" in section \"" + place + "\"");
         const Discretization &discretization = solid.discretization;
         NodalVolumes          nodal_volumes(discretization);
+        double                mass_of_cells = 0.;
         std::vector<std::pair<types::global_dof_index, double>> records;
         for_each_cell(discretization,
                       split_list(cell_sets),
                       "\"Cell sets\" in section \"" + place + "\"",
                       [&](const Discretization::Cell &cell) {
                         const double density = solid.material_of(cell).density;
-                        const auto  &volumes = nodal_volumes.of(cell);
-                        const auto   nodes   = discretization.cell_nodes(cell);
+                        mass_of_cells += density * cell->measure();
+                        const auto &volumes = nodal_volumes.of(cell);
+                        const auto  nodes   = discretization.cell_nodes(cell);
                         for (unsigned int j = 0; j < nodes.size(); ++j)
                           for (const auto &share :
                                discretization.carriers(nodes[j]))
@@ -74,6 +76,9 @@ namespace Voussoir
                                                  share.weight * density *
                                                    volumes[j]);
                       });
+        weight =
+          Utilities::MPI::sum(mass_of_cells, solid.grid().communicator()) *
+          acceleration;
         mass.assign(discretization.n_owned_nodes(), 0.);
         for (const auto &[node, part] : discretization.send_to_owners(records))
           mass[node] += part;
@@ -113,6 +118,12 @@ namespace Voussoir
             force.local_element(3 * node + d) += mass[node] * acceleration[d];
       }
 
+      std::optional<Tensor<1, 3>>
+      resultant_of_geometry() const override
+      {
+        return weight;
+      }
+
     private:
       void
       check(const std::string &place, Log &log) const
@@ -139,7 +150,8 @@ namespace Voussoir
       std::string         cell_sets;
       Tensor<1, 3>        acceleration{{0., 0., -standard_gravity}};
       TimeFactor          factor{""};
-      std::vector<double> mass; // of each owned node [kg]
+      Tensor<1, 3>        weight; // by volume [N]
+      std::vector<double> mass;   // of each owned node [kg]
 
       // for weight over time, nodes and their mass [kg]
       std::vector<std::pair<unsigned int, double>> shares;

@@ -51,6 +51,12 @@ namespace Voussoir
           "9.81 m/s2]; 0 for no motion. \"as recorded\" takes a record "
           "unscaled; with the other types there is no motion.",
         Anything());
+    prm.add_parameter(
+      "Reversed",
+      reversed,
+      "Components whose sign is reversed, \"y\" or \"x, z\"; empty: none. Joints "
+      "and cracks respond to the two signs differently.",
+      MultipleSelection("x|y|z"));
     prm.add_parameter("Overload factor",
                       overload_factor,
                       "Multiplies all components, for studies beyond the "
@@ -210,6 +216,13 @@ namespace Voussoir
   }
 
 
+  double
+  GroundMotion::sign(const unsigned int component) const
+  {
+    return reversed.find(axis_names[component]) == std::string::npos ? 1. : -1.;
+  }
+
+
   std::vector<std::string>
   GroundMotion::warnings() const
   {
@@ -289,7 +302,9 @@ namespace Voussoir
                         "\" in section \"Ground motion\" is \"" + as_recorded +
                         "\", but the target spectrum of a record that is "
                         "matched is a multiple of it; set it.");
-    match.check(spectrum.spectrum);
+    match.check(spectrum.spectrum, "Ground motion/Spectrum");
+    if (spectrum.vertical.shape != SpectrumShape::as_horizontal)
+      match.check(spectrum.vertical, "Ground motion/Spectrum/Vertical");
   }
 
 
@@ -382,13 +397,15 @@ namespace Voussoir
           fit.periods      = match.periods();
           for (const double period : fit.periods)
             fit.target.push_back(standard_gravity * *peak_acceleration(c) *
-                                 spectrum.spectrum.amplification(period));
+                                 spectrum.target(c).amplification(period));
         }
     fit_to_spectrum(records, match, spectrum.damping_ratio, components);
     GroundMotionSignals signals;
     for (SpectrumFit &fit : components)
       {
         fit.multiply(overload_factor);
+        for (double &value : fit.acceleration.values)
+          value *= sign(fit.component);
         signals[fit.component] = std::make_unique<Tabulated>(fit.acceleration);
       }
     if (fits != nullptr)
@@ -414,17 +431,16 @@ namespace Voussoir
         if (!moves(c))
           continue;
 
-        const std::optional<double> own = peak_acceleration(c);
-        const double                largest =
-          overload_factor * standard_gravity * own.value_or(0.);
+        const std::optional<double> own    = peak_acceleration(c);
+        const double                factor = sign(c) * overload_factor;
+        const double largest = factor * standard_gravity * own.value_or(0.);
         if (type == GroundMotionType::record)
           {
             const TimeSeries motion    = read_component(record, c, folder);
             const double     unchanged = peak(motion.values);
             if (own)
               check_it_moves(unchanged, c);
-            signals[c] =
-              scaled(motion, own ? largest / unchanged : overload_factor);
+            signals[c] = scaled(motion, own ? largest / unchanged : factor);
           }
         else if (type == GroundMotionType::ricker)
           signals[c] =
@@ -509,7 +525,9 @@ namespace Voussoir
             .acceleration;
         text << "Ground motion " << axis_names[c]
              << ": mean deviation from the design spectrum "
-             << 100. * spectrum.mean_deviation({spectrum.time_step, a}, peak(a))
+             << 100. * spectrum.mean_deviation({spectrum.time_step, a},
+                                               peak(a),
+                                               spectrum.target(c))
              << " %\n";
         for (unsigned int d = 0; d < c; ++d)
           if (signals[d])

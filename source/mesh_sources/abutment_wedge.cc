@@ -85,6 +85,7 @@ namespace Voussoir
                                const std::string             &place)
     : bank(bank)
     , n_layers(layers.n)
+    , dam_begin(layers.dam_begin)
     , end(layers.dam_end)
     , ledge(section.ledges[bank])
   {
@@ -96,6 +97,20 @@ namespace Voussoir
                       "wedge or increase \"Rock extent\".");
     begin     = layers.dam_begin - wedge;
     cut_begin = layers.dam_begin - std::max(all, wedge + 1);
+  }
+
+
+  std::string
+  AbutmentWedge::name() const
+  {
+    return bank == 0 ? "right wedge" : "left wedge";
+  }
+
+
+  unsigned int
+  AbutmentWedge::layers_before_dam() const
+  {
+    return dam_begin - begin;
   }
 
 
@@ -132,7 +147,7 @@ namespace Voussoir
                           const std::vector<unsigned int> &cell_number,
                           CoarseMesh                      &mesh) const
   {
-    const std::string name = bank == 0 ? "right wedge" : "left wedge";
+    const std::string                                  name = this->name();
     std::vector<std::pair<unsigned int, unsigned int>> place(mesh.cells.size());
     std::vector<bool> is_rock(mesh.cells.size()), is_wedge(mesh.cells.size());
     for (unsigned int i = 0; i < cell_number.size(); ++i)

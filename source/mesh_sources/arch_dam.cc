@@ -51,6 +51,14 @@ namespace Voussoir
                           "Length of the dam's cells along the crest [m]; "
                           "rounded so that cells fill the blocks.",
                           Patterns::Double(1e-3));
+        prm.add_parameter(
+          "Row height",
+          row_height,
+          "Height of the dam's cells [m], rounded so that rows fill its "
+          "height; 0: as high as they are long along the crest, or as the "
+          "steeper bank rises over that, if that is more. Where a bank is "
+          "steeper, cells become shorter along the crest.",
+          Patterns::Double(0.));
         prm.add_parameter("Cells through thickness",
                           n_thickness,
                           "Number of cells from the downstream to the upstream "
@@ -131,6 +139,11 @@ namespace Voussoir
       unsigned int
       columns_per_block(const ArchDamSections &sections) const;
 
+      /** Of the contour over one of so many columns [m]. */
+      static double
+      largest_rise(const ArchDamSections &sections,
+                   const unsigned int     n_columns);
+
       /** The true surfaces of the dam and its canyon. */
       void
       add_surfaces(const std::shared_ptr<const ArchDamSections> &sections,
@@ -140,6 +153,13 @@ namespace Voussoir
       /** Refuses meshes with many more cells than fit into memory. */
       void
       check_cells(const ArchDamSections &sections, const double height) const;
+
+      /** Dimensions of a wedge beside those given, and its volume. */
+      std::string
+      describe_wedge(const AbutmentWedge       &wedge,
+                     const ArchDamSweep        &sweep,
+                     const ArchDamCrossSection &section,
+                     const CoarseMesh          &mesh) const;
 
       /** The wedges of the case; lines of the section are made straight for
        *  them. */
@@ -156,6 +176,7 @@ namespace Voussoir
       std::string  shape_name            = "Baihetan-like";
       unsigned int n_joints              = 9;
       double       cell_size             = 16.;
+      double       row_height            = 0.;
       unsigned int n_thickness           = 2;
       double       rock_extent           = 2.;
       double       growth                = 1.4;
@@ -190,14 +211,66 @@ namespace Voussoir
     }
 
 
+    std::string
+    ArchDam::describe_wedge(const AbutmentWedge       &wedge,
+                            const ArchDamSweep        &sweep,
+                            const ArchDamCrossSection &section,
+                            const CoarseMesh          &mesh) const
+    {
+      const AbutmentWedgeParameters &wanted = wedges[wedge.bank];
+      double                         volume = 0.;
+      for (const unsigned int cell : mesh.cell_sets.at(wedge.name()))
+        volume += cell_volume(mesh, cell);
+      std::ostringstream text;
+      text << std::setprecision(4) << wedge_section(wedge.bank) << ": "
+           << section.ledges[wedge.bank].laid << " m into the bank ("
+           << wanted.width << " m asked for), "
+           << sweep.length_downstream(wedge.layers_before_dam(),
+                                      section.middle_line(wedge.bank).foot,
+                                      wanted.elevation)
+           << " m downstream of the dam (" << wanted.length
+           << " m asked for), volume " << volume << " m3";
+      return text.str();
+    }
+
+
     unsigned int
     ArchDam::columns_per_block(const ArchDamSections &sections) const
     {
-      // columns are halved in the cross-section
-      const double crest   = sections.left_end - sections.right_end;
-      const double columns = std::max(least_columns, crest / (2. * cell_size));
-      // more are refused later
-      return std::clamp(std::round(columns / (n_joints + 1.)), 1., 1e9);
+      // columns and rows are halved in the cross-section
+      const double crest    = sections.left_end - sections.right_end;
+      double       columns  = std::max(least_columns, crest / (2. * cell_size));
+      const auto   in_block = [&] {
+        // more are refused later
+        return std::clamp(std::round(columns / (n_joints + 1.)), 1., 1e9);
+      };
+      constexpr double many = 1e5;
+      while (row_height > 0. && columns < many)
+        {
+          columns           = in_block() * (n_joints + 1.);
+          const double rise = largest_rise(sections, columns);
+          if (rise <= 2. * row_height)
+            break;
+          columns = std::max(columns + n_joints + 1.,
+                             0.9 * columns * rise / (2. * row_height));
+        }
+      return in_block();
+    }
+
+
+    double
+    ArchDam::largest_rise(const ArchDamSections &sections,
+                          const unsigned int     n_columns)
+    {
+      const double crest  = sections.left_end - sections.right_end;
+      const auto   height = [&](const unsigned int column) {
+        return sections.contour(sections.right_end +
+                                column * crest / n_columns);
+      };
+      double rise = 0.;
+      for (unsigned int i = 0; i < n_columns; ++i)
+        rise = std::max(rise, std::abs(height(i + 1) - height(i)));
+      return rise;
     }
 
 
@@ -210,16 +283,11 @@ namespace Voussoir
       const double crest     = sections.left_end - sections.right_end;
       const double n_columns = (n_joints + 1.) * columns_per_block(sections);
       constexpr unsigned int n_samples = 100;
-      double                 slope     = 1.;
-      for (unsigned int i = 0; i < n_samples; ++i)
-        {
-          const double s = sections.right_end + i * crest / n_samples;
-          slope          = std::max(slope,
-                           std::abs(sections.contour(s + crest / n_samples) -
-                                    sections.contour(s)) /
-                             (crest / n_samples));
-        }
-      const double n_rows = n_columns * height / (slope * crest);
+      const double           slope =
+        std::max(1., largest_rise(sections, n_samples) * n_samples / crest);
+      const double n_rows = row_height > 0. ?
+                              height / (2. * row_height) :
+                              n_columns * height / (slope * crest);
       const double n_layers =
         n_thickness +
         2. *
@@ -249,6 +317,7 @@ namespace Voussoir
                                         shape.height,
                                         n_joints + 1,
                                         columns_per_block(*sections),
+                                        2. * row_height,
                                         rock,
                                         water_level,
                                         ledges);
@@ -263,6 +332,14 @@ namespace Voussoir
 
       CoarseMesh mesh = make_arch_dam_mesh(
         section, *sweep, wedges, columns_per_block(*sections), water_end);
+      std::ostringstream cells;
+      cells << std::setprecision(3)
+            << "Cells of the dam: " << section.height_and_length().second
+            << " m along the crest, " << section.height_and_length().first
+            << " m high";
+      mesh.remarks.push_back(cells.str());
+      for (const AbutmentWedge &wedge : wedges)
+        mesh.remarks.push_back(describe_wedge(wedge, *sweep, section, mesh));
       // the planes that wedges slide on are planes in space only
       if (wedges.empty())
         add_surfaces(sections, sweep, mesh.chart);

@@ -28,6 +28,7 @@ namespace Voussoir
                                            const double           height,
                                            const unsigned int     n_blocks,
                                            const unsigned int columns_per_block,
+                                           const double       row_height,
                                            const RockGrading &rock,
                                            const double       water_level,
                                            const std::array<Ledge, 2> &wanted)
@@ -37,7 +38,7 @@ namespace Voussoir
     , columns_per_block(columns_per_block)
   {
     place_columns(n_blocks * columns_per_block, rock);
-    place_rows(rock);
+    place_rows(row_height, rock);
     step_rows();
     follow_contour();
     on_surface.resize(vertices.size());
@@ -105,20 +106,23 @@ namespace Voussoir
 
   // Rows so high that the contour crosses at most one of them per column.
   void
-  ArchDamCrossSection::place_rows(const RockGrading &rock)
+  ArchDamCrossSection::place_rows(const double wanted, const RockGrading &rock)
   {
-    double row_height =
-      columns[first_dam_column + 1] - columns[first_dam_column];
+    double least = wanted > 0. ?
+                     0. :
+                     columns[first_dam_column + 1] - columns[first_dam_column];
     for (unsigned int i = 1; i < columns.size(); ++i)
-      row_height = std::max(row_height, std::abs(contour[i] - contour[i - 1]));
-    const unsigned int n_dam_rows =
-      std::max(1., std::floor(height / row_height * (1. + 1e-9)));
-    row_height = height / n_dam_rows;
+      least = std::max(least, std::abs(contour[i] - contour[i - 1]));
+    double n_dam_rows = std::max(1., std::floor(height / least * (1. + 1e-9)));
+    if (wanted > 0.)
+      n_dam_rows = std::min(n_dam_rows, std::round(height / wanted));
     if (n_dam_rows < 3)
       throw UserError("In section \"Mesh/arch dam\" the canyon's banks are so "
-                      "steep that the dam would have fewer than three rows of "
-                      "blocks; choose a smaller \"Cell size\" or gentler "
+                      "steep, or the \"Row height\" is so large, that the dam "
+                      "would have fewer than three rows of blocks; choose a "
+                      "smaller \"Cell size\" or \"Row height\", or gentler "
                       "banks.");
+    const double row_height = height / n_dam_rows;
 
     const double depth = rock.extent * height;
     const auto   below = graded_points(depth,
@@ -131,6 +135,15 @@ namespace Voussoir
     for (unsigned int i = 0; i < n_dam_rows; ++i)
       rows.push_back(i * row_height);
     rows.push_back(height);
+  }
+
+
+  std::pair<double, double>
+  ArchDamCrossSection::height_and_length() const
+  {
+    return {0.5 * height / (rows.size() - 1 - base_row),
+            0.5 * (sections.left_end - sections.right_end) /
+              (last_dam_column - first_dam_column)};
   }
 
 

@@ -133,6 +133,7 @@ namespace Voussoir
     const LedgeLine line = middle_line(bank < 0 ? 0 : 1);
     const double    side = columns[ledge.side_column],
                  end     = columns[bank < 0 ? 0 : last_column];
+    ledge.laid           = std::abs(side - columns[foot]);
     for (int i = foot; i >= 0 && i <= last_column; i += bank)
       {
         const bool   on_it  = (ledge.side_column - i) * bank >= 0;

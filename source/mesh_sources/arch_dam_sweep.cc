@@ -141,14 +141,22 @@ namespace Voussoir
     const int    side = layer < first_in_dam ? -1 : 1;
     const double beside =
       side < 0 ? first_in_dam - layer : layer - first_in_dam - n_thickness;
-    const Point<2> start  = face(line, side);
-    const double   end    = side < 0 ? downstream_end : upstream_end;
-    const double   length = std::abs(end - start[1]) + turning_length -
-                          path(line.angle, turning_length)[1];
-    Point<2> x = start + side * path(line.angle, part_of_way(beside) * length);
+    Point<2> x =
+      face(line, side) +
+      side * path(line.angle, part_of_way(beside) * length_beside(line, side));
     if (beside == points.size() - 1.)
-      x[1] = end;
+      x[1] = side < 0 ? downstream_end : upstream_end;
     return x;
+  }
+
+
+  double
+  ArchDamSweep::length_beside(const ArchDamSections::Line &line,
+                              const int                    side) const
+  {
+    const double end = side < 0 ? downstream_end : upstream_end;
+    return std::abs(end - face(line, side)[1]) + turning_length -
+           path(line.angle, turning_length)[1];
   }
 
 
@@ -243,6 +251,15 @@ namespace Voussoir
              std::abs(points[layers] * full_length - length))
       ++layers;
     return layers;
+  }
+
+
+  double
+  ArchDamSweep::length_downstream(const unsigned int layers,
+                                  const double       s,
+                                  const double       z) const
+  {
+    return part_of_way(layers) * length_beside(sections.line(s, z), -1);
   }
 
 

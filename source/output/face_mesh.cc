@@ -229,14 +229,21 @@ namespace Voussoir
   }
 
 
-  void
-  FaceMesh::check_not_level(const std::string &place) const
+  bool
+  FaceMesh::is_level() const
   {
     const bool level =
       std::any_of(normals.begin(), normals.end(), [](const auto &normal) {
         return std::abs(normal[2]) > 1. - 1e-6;
       });
-    if (Utilities::MPI::max(int(level), communicator()) == 1)
+    return Utilities::MPI::logical_or(level, communicator());
+  }
+
+
+  void
+  FaceMesh::check_not_level(const std::string &place) const
+  {
+    if (is_level())
       throw UserError(place +
                       " names faces that are level somewhere, where arch and "
                       "cantilever have no direction; name the upstream and "
@@ -327,9 +334,9 @@ namespace Voussoir
   }
 
 
-  FaceStress::FaceStress(const ObservedRun &run, const FaceMesh &mesh)
+  FaceStress::FaceStress(const StressModel &model, const FaceMesh &mesh)
     : mesh(mesh)
-    , points(run, mesh.places(), mesh.nodes_of_places(), mesh.n_nodes())
+    , points(model, mesh.places(), mesh.nodes_of_places(), mesh.n_nodes())
     , sums(mesh.make_vector(6))
     , means(mesh.n_nodes())
   {}

@@ -28,6 +28,10 @@ namespace Voussoir
                             "displacement|" + since_static_state + "|" +
                             since_grouting +
                             "|velocity|principal stress|mesh quality"));
+        prm.add_parameter("Static stages",
+                          static_stages,
+                          "Write the displacement after each static stage, in "
+                          "static_stages.vtu.");
         pictures.declare_parameters(prm);
       }
 
@@ -86,6 +90,13 @@ namespace Voussoir
       {
         aspect_ratio.reinit(0);
         pictures.prepare(run());
+        const auto &stages = run().initial.stages;
+        if (!static_stages || stages.empty() || run().restarted)
+          return;
+        std::vector<NodalField> fields;
+        for (const auto &[name, displacement] : stages)
+          fields.push_back({&displacement, {"displacement after " + name}});
+        write_fields(run(), fields, nullptr, "static_stages", 0.);
       }
 
       void
@@ -114,7 +125,8 @@ namespace Voussoir
             }
       }
 
-      std::string   quantities = "displacement, principal stress";
+      std::string   quantities    = "displacement, principal stress";
+      bool          static_stages = true;
       PictureSeries pictures{"fields", "Output/fields"};
 
       // of the cells, once a picture needs them

@@ -7,10 +7,10 @@ namespace Voussoir
   namespace
   {
     Vector
-    vector_with(const ObservedRun &run, const IndexSet &needed)
+    vector_with(const StressModel &model, const IndexSet &needed)
     {
       const auto &all =
-        *run.solid.discretization.matrix_free.get_vector_partitioner();
+        *model.discretization.matrix_free.get_vector_partitioner();
       const auto partitioner = std::make_shared<Utilities::MPI::Partitioner>(
         all.locally_owned_range(), needed, all.get_mpi_communicator());
       return Vector(partitioner);
@@ -18,16 +18,16 @@ namespace Voussoir
   } // namespace
 
 
-  FilteredDisplacement::FilteredDisplacement(const ObservedRun &run)
-    : FilteredDisplacement(run, run.solid.discretization.create_vector())
+  FilteredDisplacement::FilteredDisplacement(const StressModel &model)
+    : FilteredDisplacement(model, model.discretization.create_vector())
   {
     add_range(0, u.locally_owned_size());
   }
 
 
-  FilteredDisplacement::FilteredDisplacement(const ObservedRun &run,
+  FilteredDisplacement::FilteredDisplacement(const StressModel &model,
                                              const IndexSet    &needed)
-    : FilteredDisplacement(run, vector_with(run, needed))
+    : FilteredDisplacement(model, vector_with(model, needed))
   {
     const auto &partitioner = *u.get_partitioner();
     // for this rank and for those whose ghosts they are
@@ -57,14 +57,14 @@ namespace Voussoir
   }
 
 
-  FilteredDisplacement::FilteredDisplacement(const ObservedRun &run,
+  FilteredDisplacement::FilteredDisplacement(const StressModel &model,
                                              Vector           &&layout)
-    : damping(run.damping)
-    , maxwell(run.damping, run.time_step)
+    : damping(model.damping)
+    , maxwell(model.damping, model.time_step)
     , uniform(
-        run.internal_force.uniform_damping() ||
+        model.internal_force.uniform_damping() ||
         (damping.n_branches() == 0 && damping.stiffness_coefficient == 0.))
-    , factor(uniform ? run.internal_force.damping_factor() : 1.)
+    , factor(uniform ? model.internal_force.damping_factor() : 1.)
     , u(std::move(layout))
     , w(uniform ? Vector() : u)
   {}

@@ -198,6 +198,8 @@ namespace Voussoir
             block["slip at the end [mm]"]    = 1e3 * now[slip_now];
             block["largest slip [mm]"]       = 1e3 * now[largest_slip];
             block["slip rate at the end [mm/s]"] = 1e3 * now[rate_now];
+            block["volume [m3]"]                 = blocks[b].volume;
+            block["weight [MN]"]                 = 1e-6 * blocks[b].weight;
             block["mass [kg]"]                   = blocks[b].mass;
             describe_forces(b, block["forces at the smallest safety [N]"]);
             block["id"] = number_of(blocks[b].name, run().names.cell_sets);

@@ -4,18 +4,18 @@ namespace Voussoir
 {
   using namespace dealii;
 
-  LawStress::LawStress(const ObservedRun          &run,
+  LawStress::LawStress(const StressModel          &model,
                        const Discretization::Cell &cell,
                        const Point<3>             &unit)
   {
-    const unsigned int number = run.solid.grid().material(cell);
-    material                  = run.solid.materials[number];
-    history                   = run.material_memory.of(number);
-    k                         = run.internal_force.factor_of(number);
+    const unsigned int number = model.discretization.grid.material(cell);
+    material                  = model.materials[number];
+    history                   = model.material_memory.of(number);
+    k                         = model.internal_force.factor_of(number);
     if (history == nullptr)
       return;
-    place              = run.solid.discretization.place_of(cell);
-    const auto &points = run.solid.discretization.points(number).get_points();
+    place              = model.discretization.place_of(cell);
+    const auto &points = model.discretization.points(number).get_points();
     for (unsigned int i = 1; i < points.size(); ++i)
       // of equally near ones the first, independent of round-off
       if (points[i].distance(unit) < points[q].distance(unit) - 1e-10)

@@ -3,6 +3,7 @@
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/mesh/interfaces.h>
 #include <voussoir/output/sliding_block.h>
+#include <voussoir/signals/record.h>
 
 #include <algorithm>
 #include <limits>
@@ -94,9 +95,15 @@ namespace Voussoir
         const std::vector<bool> inside = grid.tags_in({block.name});
         for (const auto &cell : grid.triangulation().active_cell_iterators())
           if (cell->is_locally_owned() && inside[cell->material_id()])
-            block.mass +=
-              cell->measure() * solid.material_of(cell).inertial_density();
-        block.mass = Utilities::MPI::sum(block.mass, grid.communicator());
+            {
+              const Material &material = solid.material_of(cell);
+              block.volume += cell->measure();
+              block.weight +=
+                standard_gravity * cell->measure() * material.density;
+              block.mass += cell->measure() * material.inertial_density();
+            }
+        for (double *sum : {&block.volume, &block.weight, &block.mass})
+          *sum = Utilities::MPI::sum(*sum, grid.communicator());
         blocks.push_back(block);
       }
     return blocks;

@@ -74,26 +74,26 @@ namespace Voussoir
   } // namespace
 
 
-  StressPoints::StressPoints(const ObservedRun        &run,
+  StressPoints::StressPoints(const StressModel        &model,
                              const std::vector<Place> &places)
-    : StressPoints(run, places, counted(places.size()), places.size())
+    : StressPoints(model, places, counted(places.size()), places.size())
   {}
 
 
-  StressPoints::StressPoints(const ObservedRun               &run,
+  StressPoints::StressPoints(const StressModel               &model,
                              const std::vector<Place>        &places,
                              const std::vector<unsigned int> &point_of_place,
                              const unsigned int               n_points)
     : stress(n_points)
   {
-    const bool is_static = run.initial.displacement.size() > 0;
+    const bool is_static = model.initial.displacement.size() > 0;
     if (is_static)
-      run.initial.temperature.update_ghost_values();
+      model.initial.temperature.update_ghost_values();
     std::vector<Sample>                                              samples;
     std::map<std::pair<unsigned int, const Material *>, std::size_t> linear;
     for (std::size_t i = 0; i < places.size(); ++i)
       {
-        const LawStress law(run, places[i].cell, places[i].unit);
+        const LawStress law(model, places[i].cell, places[i].unit);
         std::size_t     sample = samples.size();
         if (law.is_always_elastic())
           sample = linear.insert({{point_of_place[i], &law.law()}, sample})
@@ -101,12 +101,12 @@ namespace Voussoir
         if (sample == samples.size())
           samples.push_back({point_of_place[i], law, {}, 0.});
         add(places[i],
-            run.solid.discretization,
-            is_static ? &run.initial.temperature : nullptr,
+            model.discretization,
+            is_static ? &model.initial.temperature : nullptr,
             samples[sample]);
       }
 
-    IndexSet needed(run.solid.discretization.dof_handler.n_dofs());
+    IndexSet needed(model.discretization.dof_handler.n_dofs());
     {
       std::vector<types::global_dof_index> indices;
       for (const Sample &sample : samples)
@@ -116,9 +116,9 @@ namespace Voussoir
       std::sort(indices.begin(), indices.end());
       needed.add_indices(indices.begin(), indices.end());
     }
-    filtered = std::make_unique<FilteredDisplacement>(run, needed);
+    filtered = std::make_unique<FilteredDisplacement>(model, needed);
     const Vector initial =
-      is_static ? filtered->entries_of(run.initial.displacement) : Vector();
+      is_static ? filtered->entries_of(model.initial.displacement) : Vector();
 
     for (std::size_t first = 0; first < samples.size(); first += Lanes::size())
       {
@@ -162,7 +162,7 @@ namespace Voussoir
                                  temperature);
       }
     if (is_static)
-      run.initial.temperature.zero_out_ghost_values();
+      model.initial.temperature.zero_out_ghost_values();
   }
 
 

@@ -13,14 +13,23 @@ namespace Voussoir
   DesignSpectrum::declare(dealii::ParameterHandler &prm)
   {
     using namespace dealii::Patterns;
+    std::vector<SpectrumShape> shapes{SpectrumShape::hydropower_code,
+                                      SpectrumShape::table};
+    const bool is_vertical = shape == SpectrumShape::as_horizontal;
+    if (is_vertical)
+      shapes.push_back(SpectrumShape::as_horizontal);
     add_option(prm,
                "Shape",
                shape,
-               "hydropower code: the standard design spectrum of the "
-               "Chinese codes NB 35047 and GB 51247, which rises to a "
-               "plateau from 0.1 s to the characteristic period and "
-               "then decays. table: the entries Periods and "
-               "Amplifications.");
+               std::string("hydropower code: the standard design spectrum of "
+                           "the Chinese codes NB 35047 and GB 51247, which "
+                           "rises to a plateau from 0.1 s to the "
+                           "characteristic period and then decays. table: the "
+                           "entries Periods and Amplifications.") +
+                 (is_vertical ? " as horizontal: that of the other components; "
+                                "the entries below are not used." :
+                                ""),
+               shapes);
     prm.add_parameter(
       "Maximum amplification",
       maximum_amplification,
@@ -52,12 +61,12 @@ namespace Voussoir
 
 
   void
-  DesignSpectrum::check() const
+  DesignSpectrum::check(const std::string &place) const
   {
     if (shape != SpectrumShape::table)
       return;
     if (periods.size() != amplifications.size())
-      throw UserError("\"Periods\" in section \"Ground motion/Spectrum\" has " +
+      throw UserError("\"Periods\" in section \"" + place + "\" has " +
                       std::to_string(periods.size()) +
                       " values and \"Amplifications\" has " +
                       std::to_string(amplifications.size()) +
@@ -65,9 +74,10 @@ namespace Voussoir
     if (std::adjacent_find(periods.begin(),
                            periods.end(),
                            std::greater_equal<double>()) != periods.end())
-      throw UserError("\"Periods\" in section \"Ground motion/Spectrum\" must "
-                      "increase from each value to the next; sort them and "
-                      "remove repeated ones.");
+      throw UserError(
+        "\"Periods\" in section \"" + place +
+        "\" must increase from each value to the next; sort them and "
+        "remove repeated ones.");
   }
 
 

@@ -238,19 +238,20 @@ namespace Voussoir
 
 
   void
-  SpectrumMatch::check(const DesignSpectrum &target) const
+  SpectrumMatch::check(const DesignSpectrum &target,
+                       const std::string    &place) const
   {
     if (longest_period < 1.1 * shortest_period)
       throw UserError("\"Longest period\" in section \"Ground "
                       "motion/Matching\" must be at least 1.1 times the "
                       "\"Shortest period\".");
-    target.check();
+    target.check(place);
     if (target.shape == SpectrumShape::table &&
         (target.periods.front() > shortest_period ||
          target.periods.back() < longest_period))
       {
         std::ostringstream text;
-        text << "\"Periods\" in section \"Ground motion/Spectrum\" go from "
+        text << "\"Periods\" in section \"" << place << "\" go from "
              << target.periods.front() << " to " << target.periods.back()
              << " s, but records are matched from " << shortest_period << " to "
              << longest_period

@@ -49,6 +49,9 @@ namespace Voussoir
   {
     using namespace dealii::Patterns;
     spectrum.declare(prm);
+    prm.enter_subsection("Vertical");
+    vertical.declare(prm);
+    prm.leave_subsection();
     prm.add_parameter("Damping ratio",
                       damping_ratio,
                       "Damping ratio the design spectrum is given for [-].",
@@ -92,7 +95,8 @@ namespace Voussoir
   void
   SpectrumMotion::check() const
   {
-    spectrum.check();
+    spectrum.check("Ground motion/Spectrum");
+    vertical.check("Ground motion/Spectrum/Vertical");
     if (rise_time + plateau_duration > duration)
       throw UserError(
         "\"Rise time\" and \"Plateau duration\" in section \"Ground "
@@ -101,9 +105,19 @@ namespace Voussoir
   }
 
 
+  const DesignSpectrum &
+  SpectrumMotion::target(const unsigned int component) const
+  {
+    return component == 2 && vertical.shape != SpectrumShape::as_horizontal ?
+             vertical :
+             spectrum;
+  }
+
+
   double
-  SpectrumMotion::mean_deviation(const TimeSeries &acceleration,
-                                 const double      peak_acceleration) const
+  SpectrumMotion::mean_deviation(const TimeSeries     &acceleration,
+                                 const double          peak_acceleration,
+                                 const DesignSpectrum &target) const
   {
     const std::vector<double> periods = logarithmic_grid(0.05, 2., 75);
     const ResponseSpectrum    obtained =
@@ -111,10 +125,9 @@ namespace Voussoir
 
     double sum = 0;
     for (std::size_t i = 0; i < periods.size(); ++i)
-      sum +=
-        std::abs(obtained.pseudo_acceleration[i] /
-                   (peak_acceleration * spectrum.amplification(periods[i])) -
-                 1.);
+      sum += std::abs(obtained.pseudo_acceleration[i] /
+                        (peak_acceleration * target.amplification(periods[i])) -
+                      1.);
     return sum / periods.size();
   }
 
@@ -143,7 +156,9 @@ namespace Voussoir
 
     /** Random phases, amplitudes that roughly fit the design spectrum. */
     TimeSeries
-    random_motion(const SpectrumMotion &parameters, std::mt19937_64 &generator)
+    random_motion(const SpectrumMotion &parameters,
+                  const DesignSpectrum &target,
+                  std::mt19937_64      &generator)
     {
       const std::vector<double> intensity = envelope(parameters);
       const std::size_t         size      = transform_size(intensity.size());
@@ -157,10 +172,9 @@ namespace Voussoir
           const double phase = 2. * dealii::numbers::PI * uniform(generator);
           if (1. / frequency > shortest_period &&
               1. / frequency < longest_period)
-            fourier[k] =
-              std::polar(parameters.spectrum.amplification(1. / frequency) /
-                           std::sqrt(frequency),
-                         phase);
+            fourier[k] = std::polar(target.amplification(1. / frequency) /
+                                      std::sqrt(frequency),
+                                    phase);
         }
 
       TimeSeries motion{parameters.time_step,
@@ -195,15 +209,17 @@ namespace Voussoir
 
     /** Multiply the Fourier amplitudes by target / obtained spectrum. */
     void
-    fit_amplitudes(TimeSeries &motion, const SpectrumMotion &parameters)
+    fit_amplitudes(TimeSeries           &motion,
+                   const DesignSpectrum &target,
+                   const double          damping_ratio)
     {
       const std::vector<double> periods = matched_periods();
       const ResponseSpectrum    obtained =
-        response_spectrum(motion, periods, parameters.damping_ratio);
+        response_spectrum(motion, periods, damping_ratio);
       std::vector<double> ratio(periods.size());
       for (std::size_t i = 0; i < periods.size(); ++i)
-        ratio[i] = parameters.spectrum.amplification(periods[i]) /
-                   obtained.pseudo_acceleration[i];
+        ratio[i] =
+          target.amplification(periods[i]) / obtained.pseudo_acceleration[i];
 
       const std::size_t n       = motion.values.size();
       const std::size_t size    = transform_size(2 * n);
@@ -230,22 +246,25 @@ namespace Voussoir
 
     /** The best of the iterates for one stream of random numbers. */
     TimeSeries
-    matched_motion(const SpectrumMotion &parameters, std::mt19937_64 &generator)
+    matched_motion(const SpectrumMotion &parameters,
+                   const DesignSpectrum &target,
+                   std::mt19937_64      &generator)
     {
-      TimeSeries motion = random_motion(parameters, generator);
+      TimeSeries motion = random_motion(parameters, target, generator);
       scale_to_unit_peak(motion.values);
       TimeSeries best;
       double     best_deviation = std::numeric_limits<double>::max();
       for (unsigned int i = 0; i < n_iterations; ++i)
         {
-          fit_amplitudes(motion, parameters);
+          fit_amplitudes(motion, target, parameters.damping_ratio);
           bring_to_rest(motion);
           limit_peak(motion.values);
           bring_to_rest(motion);
 
           TimeSeries candidate = motion;
           scale_to_unit_peak(candidate.values);
-          const double deviation = parameters.mean_deviation(candidate, 1.);
+          const double deviation =
+            parameters.mean_deviation(candidate, 1., target);
           if (deviation < best_deviation)
             {
               best           = candidate;
@@ -270,7 +289,8 @@ namespace Voussoir
     unsigned int              n_motions = 0;
     for (unsigned int i = 0; i < n_attempts && n_motions < 3; ++i)
       {
-        motions[n_motions] = matched_motion(*this, generator);
+        motions[n_motions] =
+          matched_motion(*this, target(n_motions), generator);
 
         const auto is_correlated = [&](const TimeSeries &other) {
           return std::abs(correlation(motions[n_motions].values,
@@ -287,9 +307,9 @@ namespace Voussoir
         "correlation below 0.1 were found; lengthen the \"Duration\" or choose "
         "another \"Seed\".");
 
-    for (const TimeSeries &motion : motions)
+    for (unsigned int c = 0; c < 3; ++c)
       {
-        const double deviation = mean_deviation(motion, 1.);
+        const double deviation = mean_deviation(motions[c], 1., target(c));
         if (deviation > tolerance)
           throw UserError(
             "Section \"Ground motion/Spectrum\": the mean deviation from the "

@@ -64,6 +64,10 @@ namespace Voussoir
         const auto &driving = block.at("forces at the smallest safety [N]")
                                 .at("driving, with inertia");
         constexpr double mass = 4000.;
+        verdicts.near("  weight [MN]",
+                      block.at("weight [MN]"),
+                      1e-6 * mass * g,
+                      1e-9);
         verdicts.near("  then driven along the plane by [N]",
                       driving.at(0),
                       -mass * A,

@@ -301,9 +301,10 @@ namespace Voussoir
 
 
     /** Mean deviation from the spectrum of NB 35047: from 1 up to 2.5 at 0.1 s,
-     *  level to 0.2 s, then falling by the power 0.6. */
+     *  level to the characteristic period, then falling by the power 0.6. */
     double
-    deviation_from_code(const TimeSeries &motion)
+    deviation_from_code(const TimeSeries &motion,
+                        const double      characteristic_period = 0.2)
     {
       double             sum = 0.;
       const unsigned int n   = 40;
@@ -311,7 +312,9 @@ namespace Voussoir
         {
           const double T = 0.05 * std::pow(40., double(i) / (n - 1));
           const double wanted =
-            T < 0.1 ? 1. + 15. * T : 2.5 * std::pow(std::min(1., 0.2 / T), 0.6);
+            T < 0.1 ?
+              1. + 15. * T :
+              2.5 * std::pow(std::min(1., characteristic_period / T), 0.6);
           sum += std::abs(pseudo_acceleration(motion, T) / wanted - 1.) / n;
         }
       return sum;
@@ -344,6 +347,30 @@ namespace Voussoir
     }
 
 
+    /** A vertical component that follows a spectrum of its own. */
+    void
+    check_vertical_spectrum(Verdicts &verdicts)
+    {
+      SpectrumMotion generator;
+      generator.duration                       = 12.;
+      generator.plateau_duration               = 5.;
+      generator.tolerance                      = 0.1;
+      const auto as_horizontal                 = generator.generate();
+      generator.vertical.shape                 = SpectrumShape::hydropower_code;
+      generator.vertical.characteristic_period = 0.12;
+      const auto motion                        = generator.generate();
+      verdicts.is_true("vertical spectrum: the others stay as they are",
+                       motion[0].values == as_horizontal[0].values &&
+                         motion[1].values == as_horizontal[1].values);
+      verdicts.below("  mean deviation from its own",
+                     deviation_from_code(motion[2], 0.12),
+                     0.1);
+      verdicts.above("  from the horizontal one",
+                     deviation_from_code(motion[2]),
+                     0.15);
+    }
+
+
     /** Treatment of a record by section "Ground motion". */
     void
     check_section(const std::string &record, Verdicts &verdicts)
@@ -367,6 +394,21 @@ namespace Voussoir
                     "g");
       verdicts.near("its length", signals[0]->end(), 20., 1e-9, "s");
       verdicts.is_true("no vertical motion without a file", !signals[2]);
+
+      motion.reversed     = "y";
+      const auto reversed = motion.build(".");
+      double     kept = 0., turned = 0.;
+      for (double t = 0.; t < 20.; t += 0.013)
+        {
+          keep_largest(kept,
+                       std::abs(reversed[0]->acceleration(t) -
+                                signals[0]->acceleration(t)));
+          keep_largest(turned,
+                       std::abs(reversed[1]->acceleration(t) +
+                                signals[1]->acceleration(t)));
+        }
+      verdicts.is_true("reversed: y turned, x as it was",
+                       kept == 0. && turned == 0.);
     }
 
 
@@ -388,6 +430,7 @@ namespace Voussoir
         check_response_spectrum(verdicts);
         check_deconvolution(elcentro, verdicts);
         check_spectrum_motion(verdicts);
+        check_vertical_spectrum(verdicts);
         check_section(record, verdicts);
       }
     };

@@ -199,6 +199,7 @@ namespace Voussoir
         refuse(folder(file, "refused", false).with({"Time/End time=0.1"}),
                communicator,
                verdicts);
+        refuse(folder(file, "straight", false), communicator, verdicts);
       }
 
     private:

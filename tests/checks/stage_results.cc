@@ -1,3 +1,5 @@
+#include <voussoir/fem/nodal_values.h>
+
 #include "csv_table.h"
 #include "with_files.h"
 
@@ -22,7 +24,9 @@ namespace Voussoir
       {
         constexpr double E = 1e9, rho = 2000., g = 9.81, H = 10., p = 3e5;
         const auto       parameters = make_case(file);
-        make_simulation_with_files(*parameters, communicator)->run.march();
+        const auto       simulation =
+          make_simulation_with_files(*parameters, communicator);
+        simulation->run.march();
         const std::string    folder  = parameters->output.folder;
         const nlohmann::json summary = read_summary(folder);
         const nlohmann::json stages  = summary.at("static state").at("stages");
@@ -73,6 +77,28 @@ namespace Voussoir
           summary.at("histories").at("top").at("largest displacement [m]"),
           of_both,
           1e-6);
+        verdicts.is_true(
+          "static_stages.vtu is there",
+          std::ifstream(folder + "/static_stages.vtu").is_open());
+        const auto largest = [&](const std::string  &name,
+                                 const InitialState &initial) {
+          verdicts.near(name + ": after the weight [m]",
+                        largest_amount(initial.stages.at(0).second),
+                        of_weight,
+                        1e-6);
+          verdicts.near("  after both [m]",
+                        largest_amount(initial.stages.at(1).second),
+                        of_both,
+                        1e-6);
+        };
+        largest("pictures", simulation->static_state.initial);
+        const auto keeping =
+          make_case(file.with({"Static state/Keep in=kept_stages",
+                               "Output/Folder=stage_results_kept"}));
+        make_simulation_with_files(*keeping, communicator);
+        largest("pictures of a kept state",
+                make_simulation_with_files(*keeping, communicator)
+                  ->static_state.initial);
       }
     };
 

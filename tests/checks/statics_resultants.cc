@@ -27,7 +27,15 @@ namespace Voussoir
         for (const auto &stage : stages)
           {
             for (const auto &[name, load] : stage.at("loads").items())
-              applied += found[name] = vector(load.at("resultant [N]"));
+              {
+                applied += found[name] = vector(load.at("resultant [N]"));
+                const Tensor<1, 3> by_geometry =
+                  vector(load.at("resultant by volumes and areas [N]"));
+                verdicts.below(name + ": forces and geometry differ by",
+                               (by_geometry - found[name]).norm() /
+                                 found[name].norm(),
+                               name == "weight" ? 1e-8 : 1e-3);
+              }
             const Tensor<1, 3> reactions =
               vector(stage.at("sum of reactions [N]"));
             verdicts.below("reactions and loads of a stage, sum over loads",

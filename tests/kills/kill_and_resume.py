@@ -152,6 +152,9 @@ def main():
                 shutil.copytree(disturbed, options.folder / f"failed-{failures}",
                                 dirs_exist_ok=True)
                 break
+            if code != STOPPED and (disturbed / "run" / "summary.json").exists():
+                code = 0  # killed once all was done
+                break
             restart = has_checkpoint(disturbed)
             if not restart:
                 shutil.rmtree(disturbed / "run", ignore_errors=True)

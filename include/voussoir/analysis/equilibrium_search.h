@@ -3,9 +3,8 @@
 
 #include <voussoir/analysis/elastic_solver.h>
 #include <voussoir/analysis/secant_steps.h>
-#include <voussoir/base/log.h>
 
-#include <deal.II/base/timer.h>
+#include <functional>
 
 namespace Voussoir
 {
@@ -34,6 +33,9 @@ namespace Voussoir
       StaticContact::Change contact; // by the last update of the multipliers
     };
 
+    /** Takes the share of the search that is done and where it stands. */
+    using Report = std::function<void(const double, const std::string &)>;
+
     /**
      * @param solver    with the interfaces, if there are any
      * @param springs   of the absorbing boundary, or null if it is fixed
@@ -42,6 +44,7 @@ namespace Voussoir
      * @param patience  number of steps in which the residual has to halve
      * @param secants   of the searches before on the same path, kept for the
      *   next: with such, interfaces are near their equilibrium from the start
+     * @param report    called after each step
      */
     EquilibriumSearch(ElasticSolver       &solver,
                       const InternalForce &internal_force,
@@ -50,7 +53,7 @@ namespace Voussoir
                       const double         tolerance,
                       const unsigned int   patience,
                       SecantSteps         &secants,
-                      Log                 &log);
+                      const Report        &report);
 
     /**
      * @param displacement where to start from; the equilibrium if it was found,
@@ -89,7 +92,7 @@ namespace Voussoir
     is_worth_it() const;
 
     void
-    report_progress();
+    report_progress() const;
 
     ElasticSolver       &solver;
     StaticContact       *contact; // null without interfaces
@@ -99,7 +102,7 @@ namespace Voussoir
     const double         tolerance;
     const unsigned int   patience;
     SecantSteps         &secants;
-    Log                 &log;
+    const Report         report;
     double               size; // of the force on free entries
 
     Vector         *displacement = nullptr;
@@ -107,9 +110,9 @@ namespace Voussoir
     MaterialMemory  memory_before;
     Vector          residual, change, taken;
     Effort          effort;
+    double          first_imbalance = 0.;
     double          least_imbalance = std::numeric_limits<double>::max();
     unsigned int    last_gain       = 0; // the step of it
-    dealii::Timer   since_report;
   };
 } // namespace Voussoir
 

@@ -41,12 +41,27 @@ namespace Voussoir
     double         rest       = 1e-6;
     std::string    kept       = "static_states"; // folder
     std::string    points; // whose displacements are results of each stage
+    std::string    faces;  // whose stresses are
 
     /** Loads that are not active. */
     std::vector<std::string> left_out;
 
     void
     declare(dealii::ParameterHandler &prm);
+
+    /** A stage that has active loads. */
+    struct Stage
+    {
+      std::string              name; // of the combination of all loads so far
+      std::vector<std::string> loads;
+
+      /** Its name, or its loads if it has none. */
+      std::string
+      title() const;
+    };
+
+    std::vector<Stage>
+    stage_list() const;
 
     /** Names of the loads of each stage. */
     std::vector<std::vector<std::string>>
@@ -58,6 +73,12 @@ namespace Voussoir
     check(const NamedLoads           &loads,
           const InterfacesParameters &interfaces) const;
   };
+
+  /** Refuses points and faces of results that the mesh does not have. Called on
+   *  all ranks. */
+  void
+  check_stage_results(const Discretization   &discretization,
+                      const StaticParameters &parameters);
 
   /** Input of the static stages. */
   struct StaticModel

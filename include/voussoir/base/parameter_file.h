@@ -48,9 +48,13 @@ namespace Voussoir
     /**
      * Sets all given values in @p prm. An entry that @p prm does not know, or a
      * value it does not allow, is refused with file, line, section, entry, and
-     * what is allowed.
+     * what is allowed. Entries of a "Class", "Law" or "Type" that --set or a
+     * file that includes theirs has changed, and sections that "Names" then
+     * does not list any more, are left out.
+     *
+     * @return a note for each of these
      */
-    void
+    std::vector<std::string>
     parse(dealii::ParameterHandler &prm) const;
 
     /** The same for the entries that @p prm declares; other values are ignored.
@@ -91,8 +95,23 @@ namespace Voussoir
     void
     change(const std::vector<std::string> &changes);
 
-    std::string                        filename;
-    std::map<std::string, Value>       values; // by "Section/Subsection/Entry"
+    /** What stands at a place belonged to the value that an entry had there,
+     *  but has no more. */
+    bool
+    is_replaced(const std::string &entry, const std::string &place) const;
+
+    /** The entry whose change leaves a section or an entry without use, or "".
+     *  @param path  of the section or the entry
+     *  @param place where it stands */
+    std::string
+    cause_of_no_use(const std::string &path, const std::string &place) const;
+
+    std::string                  filename;
+    std::map<std::string, Value> values; // by "Section/Subsection/Entry"
+
+    // texts that others took the place of, "" for the default
+    std::map<std::string, std::vector<std::string>> replaced;
+
     std::map<std::string, std::string> sections; // path and place
   };
 

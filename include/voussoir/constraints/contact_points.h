@@ -19,7 +19,8 @@ namespace Voussoir
   {
     const InterfaceLaw *law = nullptr;
 
-    double key_depth = 0.; // no slip while the opening is below [m]
+    double key_depth = 0.;    // no slip while the opening is below [m]
+    bool   tied      = false; // once it is joined, whatever the law
 
     // bars across the surface, elastic and perfectly plastic, per area
     double bar_stiffness = 0.; // [Pa/m]

@@ -37,6 +37,7 @@ namespace Voussoir
     std::string                   name;
     std::string                   face_sets, between;
     std::string                   grouted_after; // load of a static stage
+    bool                          tied = false;  // from then on
     std::unique_ptr<InterfaceLaw> law;
     double                        initial_gap = 0., key_depth = 0.; // [m]
 

@@ -75,6 +75,10 @@ namespace Voussoir
     explicit Damping(const DampingParameters   &parameters,
                      const std::vector<double> &natural_frequencies = {});
 
+    /** No damping. */
+    static Damping
+    none();
+
     /** Sets the viscosity for a mesh with this stable step without damping [s].
      */
     void

@@ -20,6 +20,9 @@ namespace Voussoir
      *  was. */
     Vector grouted_displacement;
 
+    /** Displacement after each static stage, by the names of its loads [m]. */
+    std::vector<std::pair<std::string, Vector>> stages;
+
     /** Change of temperature since the joints were closed, of each node in all
      *  three components [K]. */
     Vector temperature;

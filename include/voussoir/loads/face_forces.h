@@ -44,6 +44,15 @@ namespace Voussoir
                         const double                    level,
                         const double                    gradient);
 
+  /** The resultant of such a pressure by areas and depths of small parts of the
+   *  faces, which are bilinear between their corners [N]. */
+  dealii::Tensor<1, 3>
+  depth_pressure_resultant(const Discretization           &discretization,
+                           const std::vector<std::string> &sets,
+                           const std::string              &place,
+                           const double                    level,
+                           const double                    gradient);
+
   /** Adds the forces to a vector of all nodes. */
   void
   add_to(Vector &vector, const std::vector<NodalForce> &forces);

@@ -84,6 +84,8 @@ namespace Voussoir
     bool
     has_record(const unsigned int component) const;
 
+    std::string reversed; // components whose sign is turned
+
     double overload_factor = 1.;
 
     /** The value that leaves the peak of a record unscaled. */
@@ -174,6 +176,10 @@ namespace Voussoir
     /** Whether the ground moves in this direction. */
     bool
     moves(const unsigned int component) const;
+
+    /** 1, or -1 if it is reversed. */
+    double
+    sign(const unsigned int component) const;
 
     /** From records that are matched to a spectrum. */
     GroundMotionSignals

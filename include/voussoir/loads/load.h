@@ -10,6 +10,8 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <optional>
+
 namespace Voussoir
 {
   /**
@@ -65,6 +67,14 @@ namespace Voussoir
     virtual void
     add_steady_force(Vector &) const
     {}
+
+    /** Resultant by volumes and areas of the mesh alone, to compare with that
+     *  of its steady forces [N]; none if it has none. */
+    virtual std::optional<dealii::Tensor<1, 3>>
+    resultant_of_geometry() const
+    {
+      return {};
+    }
 
     /** Adds its change of temperature in all three components of a node [K]. */
     virtual void

@@ -68,6 +68,9 @@ namespace Voussoir
 
     /** Sets of vertices (Abaqus NSET, Gmsh physical points). */
     std::map<std::string, std::vector<unsigned int>> vertex_sets;
+
+    /** Lines for the log: where it is not quite what was asked for. */
+    std::vector<std::string> remarks;
   };
 } // namespace Voussoir
 

@@ -61,6 +61,16 @@ namespace Voussoir
                   const ArchDamCrossSection     &section,
                   const std::string             &place);
 
+    const unsigned int bank; // 0 for the right one, 1 for the left
+
+    /** "left wedge" or "right wedge". */
+    std::string
+    name() const;
+
+    /** Layers from its downstream end to the dam. */
+    unsigned int
+    layers_before_dam() const;
+
     bool
     contains(const ArchDamCrossSection::Quad &quad,
              const unsigned int               layer) const;
@@ -87,8 +97,7 @@ namespace Voussoir
     bool
     is_in_columns(const ArchDamCrossSection::Quad &quad) const;
 
-    const unsigned int bank;
-    const unsigned int n_layers, end; // the back
+    const unsigned int n_layers, dam_begin, end; // the back
     unsigned int       begin, cut_begin;
 
     const ArchDamCrossSection::Ledge ledge;

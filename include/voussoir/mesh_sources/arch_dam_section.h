@@ -41,6 +41,7 @@ namespace Voussoir
       std::string place;     // of its entries, to be named in messages
       double elevation = 0.; // of its foot at the dam's middle; 0 for none [m]
       double width     = 0.; // wanted [m]
+      double laid      = 0.; // width that it has, along the crest [m]
       double length    = 0.; // in which it is plane, downstream of the dam [m]
       dealii::Tensor<1, 2> slope; // by which it rises along x and y [-]
 
@@ -66,6 +67,9 @@ namespace Voussoir
     /**
      * @param n_blocks          between the abutments at the crest
      * @param columns_per_block columns of the grid
+     * @param row_height        wanted for its rows [m]; 0 for that of the
+     *                          columns' width. They are higher where a bank
+     *                          rises more over a column.
      * @param rock              whose columns and rows grow by halves
      * @param water_level       wanted for the surface of a reservoir [m]; 0
      *                          for no reservoir
@@ -75,6 +79,7 @@ namespace Voussoir
                         const double                height,
                         const unsigned int          n_blocks,
                         const unsigned int          columns_per_block,
+                        const double                row_height,
                         const RockGrading          &rock,
                         const double                water_level,
                         const std::array<Ledge, 2> &ledges);
@@ -104,6 +109,11 @@ namespace Voussoir
     /** At the middle of the dam. */
     std::vector<Vertex> vertices;
     std::vector<Quad>   quads;
+
+    /** Height of the dam's quadrilaterals, which is half of a row's, and their
+     *  mean length along the crest [m]. */
+    std::pair<double, double>
+    height_and_length() const;
 
     /** At the middle of the dam. */
     LedgeLine
@@ -143,7 +153,7 @@ namespace Voussoir
     place_foot(Ledge &ledge, const int bank);
 
     void
-    place_rows(const RockGrading &rock);
+    place_rows(const double wanted, const RockGrading &rock);
 
     void
     step_rows();

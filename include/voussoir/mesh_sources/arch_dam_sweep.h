@@ -44,12 +44,24 @@ namespace Voussoir
     unsigned int
     layers_along(const double length) const;
 
+    /** Length of so many layers downstream of the dam, on the sweep of the
+     *  horizontal line through s and z [m]. */
+    double
+    length_downstream(const unsigned int layers,
+                      const double       s,
+                      const double       z) const;
+
     unsigned int first_in_dam, n_layers;
 
   private:
     /** x, y on the sweep of a horizontal line through the dam. */
     dealii::Point<2>
     point(const ArchDamSections::Line &line, const double layer) const;
+
+    /** Length of the sweep of such a line from the dam's downstream (-1) or
+     *  upstream (1) face to the end of the rock [m]. */
+    double
+    length_beside(const ArchDamSections::Line &line, const int side) const;
 
     /** Share of the distance through the rock beside the dam after some layers.
      */

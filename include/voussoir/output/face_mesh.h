@@ -34,9 +34,13 @@ namespace Voussoir
     const dealii::Point<3> &
     position(const unsigned int node) const;
 
-    /** Refuses faces that are level somewhere, where arch and cantilever have
-     *  no direction; @p place names the entry with them. All ranks must call
-     *  this together. */
+    /** Whether faces are level somewhere, where arch and cantilever have no
+     *  direction. All ranks must call this together. */
+    bool
+    is_level() const;
+
+    /** Refuses such faces; @p place names the entry with them. All ranks must
+     *  call this together. */
     void
     check_not_level(const std::string &place) const;
 
@@ -187,7 +191,7 @@ namespace Voussoir
   {
   public:
     /** @param mesh must live as long as this */
-    FaceStress(const ObservedRun &run, const FaceMesh &mesh);
+    FaceStress(const StressModel &model, const FaceMesh &mesh);
 
     /** Stress of the equation of motion at each node [Pa]; all ranks must call
      *  this together. */

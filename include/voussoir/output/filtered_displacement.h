@@ -18,10 +18,10 @@ namespace Voussoir
   {
   public:
     /** At all nodes, in vectors of the discretization. */
-    explicit FilteredDisplacement(const ObservedRun &run);
+    explicit FilteredDisplacement(const StressModel &model);
 
     /** @param needed entries, of whole nodes; other entries are left at zero */
-    FilteredDisplacement(const ObservedRun      &run,
+    FilteredDisplacement(const StressModel      &model,
                          const dealii::IndexSet &needed);
 
     /** All ranks must call this together. */
@@ -45,7 +45,7 @@ namespace Voussoir
     entries_of(const Vector &vector) const;
 
   private:
-    FilteredDisplacement(const ObservedRun &run, Vector &&layout);
+    FilteredDisplacement(const StressModel &model, Vector &&layout);
 
     /** Adds the owned entries of this range. */
     void

@@ -16,7 +16,7 @@ namespace Voussoir
   {
   public:
     /** @param unit point of the reference cell */
-    LawStress(const ObservedRun          &run,
+    LawStress(const StressModel          &model,
               const Discretization::Cell &cell,
               const dealii::Point<3>     &unit);
 

@@ -65,6 +65,18 @@ namespace Voussoir
                             const std::string &place) const;
   };
 
+  /** Input of the stress at a point, in a run or in a static stage. */
+  struct StressModel
+  {
+    const Discretization                &discretization;
+    const std::vector<const Material *> &materials; // by number
+    const InternalForce                 &internal_force;
+    const Damping                       &damping;
+    const MaterialMemory                &material_memory;
+    const InitialState                  &initial;
+    double                               time_step; // [s]
+  };
+
   /** Parts of a run that observers may read besides the state. */
   struct ObservedRun : ObservedModel
   {
@@ -83,6 +95,17 @@ namespace Voussoir
      * run that was interrupted. */
     double start_time = 0.;
     bool   restarted  = false;
+
+    operator StressModel() const
+    {
+      return {solid.discretization,
+              solid.materials,
+              internal_force,
+              damping,
+              material_memory,
+              initial,
+              time_step};
+    }
   };
 
   /**

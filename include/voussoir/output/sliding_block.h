@@ -22,7 +22,9 @@ namespace Voussoir
 
     std::string        name; // of its cell set
     std::vector<Plane> planes;
-    double             mass = 0.; // that has inertia [kg]
+    double             volume = 0.; // [m3]
+    double weight = 0.; // by density, whatever loads the case has [N]
+    double mass   = 0.; // that has inertia [kg]
   };
 
   /**

@@ -21,11 +21,11 @@ namespace Voussoir
     };
 
     /** Each place is a point. */
-    StressPoints(const ObservedRun &run, const std::vector<Place> &places);
+    StressPoints(const StressModel &model, const std::vector<Place> &places);
 
     /** The stress of a point is the sum over the places whose entry in
      *  @p point_of_place it is. */
-    StressPoints(const ObservedRun               &run,
+    StressPoints(const StressModel               &model,
                  const std::vector<Place>        &places,
                  const std::vector<unsigned int> &point_of_place,
                  const unsigned int               n_points);

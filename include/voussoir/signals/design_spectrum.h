@@ -12,14 +12,16 @@ namespace Voussoir
   enum class SpectrumShape
   {
     hydropower_code,
-    table
+    table,
+    as_horizontal // of a vertical spectrum
   };
 
   inline OptionNames<SpectrumShape>
   option_names(const SpectrumShape)
   {
     return {{SpectrumShape::hydropower_code, "hydropower code"},
-            {SpectrumShape::table, "table"}};
+            {SpectrumShape::table, "table"},
+            {SpectrumShape::as_horizontal, "as horizontal"}};
   }
 
 
@@ -40,13 +42,15 @@ namespace Voussoir
     std::vector<double> periods        = {0., 0.1, 0.2, 2.};
     std::vector<double> amplifications = {1., 2.5, 2.5, 0.63};
 
+    /** With the shape as it is by default; only where that is as the horizontal
+     *  one, it can be so. */
     void
     declare(dealii::ParameterHandler &prm);
 
     /** Refuses a table with lists of different lengths or with periods that do
-     *  not increase. */
+     *  not increase; @p place names the section. */
     void
-    check() const;
+    check(const std::string &place) const;
 
     /** The amplification at a natural period [s]. */
     double

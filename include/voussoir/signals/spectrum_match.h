@@ -37,9 +37,10 @@ namespace Voussoir
     void
     declare(dealii::ParameterHandler &prm);
 
-    /** Refuses a target that does not cover the periods. */
+    /** Refuses a target that does not cover the periods; @p place names its
+     *  section. */
     void
-    check(const DesignSpectrum &target) const;
+    check(const DesignSpectrum &target, const std::string &place) const;
 
     bool
     wanted() const;

@@ -16,7 +16,11 @@ namespace Voussoir
    */
   struct SpectrumMotion
   {
-    DesignSpectrum spectrum;
+    DesignSpectrum spectrum, vertical{SpectrumShape::as_horizontal};
+
+    /** That of a component. */
+    const DesignSpectrum &
+    target(const unsigned int component) const;
 
     double damping_ratio = 0.05;
 
@@ -54,8 +58,9 @@ namespace Voussoir
      * 0.05 to 2 s for an acceleration of given peak.
      */
     double
-    mean_deviation(const TimeSeries &acceleration,
-                   const double      peak_acceleration) const;
+    mean_deviation(const TimeSeries     &acceleration,
+                   const double          peak_acceleration,
+                   const DesignSpectrum &target) const;
   };
 
   /**

@@ -1,0 +1,83 @@
+#include <voussoir/base/error.h>
+
+#include <fstream>
+
+#include "check.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Entries and sections that --set or a file that includes another leave
+     *  without use are left out with a note; mistakes are refused as before. */
+    class UnusedByChange : public Check
+    {
+    public:
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm) override
+      {
+        const std::string law = "Interfaces/plane/Law=friction",
+                          note =
+                            "entry \"Tensile strength\" in section "
+                            "\"Interfaces/plane\" is not used, as \"Law\" in "
+                            "section \"Interfaces/plane\" is now \"friction\"";
+        verdicts.is_true("as it is: no note", make_case(file)->notes.empty());
+        verdicts.same_text("entry of the law before",
+                           only_note(file.with({law})),
+                           note);
+        verdicts.same_text(
+          "section that \"Names\" had",
+          only_note(file.with({"Interfaces/Names="})),
+          "section \"Interfaces/plane\" is not used, as \"Names\" in section "
+          "\"Interfaces\" is now \"\"");
+        verdicts.is_true("the same entry by --set: refused",
+                         is_refused(file.with(
+                           {law, "Interfaces/plane/Tensile strength=1"})));
+        verdicts.is_true("a section that it never had: refused",
+                         is_refused(file.with({"Interfaces/Names=",
+                                               "Interfaces/other/Law="
+                                               "friction"})));
+
+        std::ofstream("unused_including.prm")
+          << "include " << file.resolve("unused_by_change.prm")
+          << "\nsubsection Interfaces\n  subsection plane\n"
+             "    set Law = friction\n  end\nend\n";
+        verdicts.same_text("in a file that is included",
+                           only_note(ParameterFile("unused_including.prm")),
+                           note);
+      }
+
+    private:
+      static std::string
+      only_note(const ParameterFile &file)
+      {
+        const auto &notes = make_case(file)->notes;
+        return notes.size() == 1 ? notes[0] :
+                                   std::to_string(notes.size()) + " notes";
+      }
+
+      static bool
+      is_refused(const ParameterFile &file)
+      {
+        try
+          {
+            make_case(file);
+          }
+        catch (const UserError &)
+          {
+            return true;
+          }
+        return false;
+      }
+    };
+
+    // Reference: closed form
+    const Registry<Check>::Add<UnusedByChange>
+      registered("unused by change",
+                 "Entries that a change leaves without use.");
+  } // namespace
+} // namespace Voussoir

@@ -161,6 +161,21 @@ def check_colours():
         compare("tension and pressure of the same amount, distances from white", scale.norm(3.) - 0.5,
                 0.5 - scale.norm(-3.), 0.)
         compare("white is zero", scale.norm(0.), 0.5, 0.)
+        compare("the bar goes as far to both sides", scale.levels[-1], -scale.levels[0], 0.)
+    # all of a face at 4.4 MPa, where half a per cent is left out above 4 MPa
+    stress = np.concatenate([np.linspace(-10., 4., 2000), [4.4]])
+    face = charts.Panel("", np.array([[(0., 0.), (1., 0.), (1., 1.), (0., 1.)]]), np.full((1, 4), 4.4))
+    axes = charts.place(charts.Figure(), 0., 0., 4., 2.)
+    scale = charts.Scale([stress], "stress")
+    charts.draw_panel(axes, face, scale)
+    drawn = next(colour for bands in axes.collections
+                 for colour, path in zip(bands.get_facecolor(), bands.get_paths()) if len(path.vertices))
+    is_true("what the range leaves out is not drawn as more than it is",
+            np.abs(drawn - scale.colours(scale.norm(4.4))).max() < 0.05)
+    pressure = charts.Scale([np.array([-5., -1.])], "stress")
+    compare("a bar of pressure alone ends at zero", pressure.levels[-1], 0., 0.)
+    cracked = charts.Scale([np.concatenate([np.zeros(999), [3.]])], "opening [mm]", colours="inferno_r", low=0.)
+    is_true("one cracked cell of a thousand is seen", cracked.levels[-1] >= 3. and "everywhere" not in cracked.label)
     noise = charts.Scale([np.array([0., 3e-14])], "opening [mm]", 0., "inferno_r", low=0.)
     compare("end of the bar of noise", noise.levels[-1], 1., 0.)
     is_true("noise is said to be zero", noise.label == "opening [mm]: 0 everywhere")

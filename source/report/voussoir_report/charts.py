@@ -126,26 +126,31 @@ NOISE = 1e-6  # below it a stress [MPa], an opening [mm] or a time [s] is zero
 class Scale:
     """Colours of a quantity, the same in all pictures that are compared.
 
-    Tension is red and pressure blue, and both grow as deep at the same amount. The
-    range leaves out the outermost @p cut of the values, as at the ends of joints and
-    abutments, where they depend on the mesh.
+    Tension is red and pressure blue, both as deep at the same amount, and where there
+    are both the range goes as far on either side of zero. It leaves out the outermost
+    @p cut of the values, as at the ends of joints and abutments, where they depend on
+    the mesh; these have the colours of its ends.
     """
 
     def __init__(self, values, label, cut=0.005, colours=None, low=None, high=None):
+        has_both = False
         if low is None or high is None:
             values = np.concatenate([np.ravel(v) for v in values])
             values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
-            low = np.quantile(values, cut) if low is None else low
-            high = np.quantile(values, 1. - cut) if high is None else high
+            has_both = values.min() < -NOISE and values.max() > NOISE
+            ends = np.quantile(values, (cut, 1. - cut))
+            if np.ptp(ends) <= NOISE:  # so few values differ that all of them count
+                ends, cut = (values.min(), values.max()), 0.
+            low, high = ends[0] if low is None else low, ends[1] if high is None else high
         low, high = (0. if abs(end) < NOISE else end for end in (low, high))
         if colours is None:
-            low, high = min(low, 0.), max(high, 0.)
+            largest = max(abs(low), abs(high))
+            low, high = (-largest, largest) if has_both else (min(low, 0.), max(high, 0.))
         if high - low <= NOISE:
             high, label = low + 1., f"{label}: {number(low)} everywhere"
         elif high - low < 1e-3 * abs(high):
             high = low + 1e-3 * abs(high)
         self.label = label
-        # what the range leaves out has the colours of its ends
         self.is_cut = cut > 0.
         self.levels = ticker.MaxNLocator(8, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
         largest = np.abs(self.levels).max()
@@ -163,7 +168,7 @@ class Scale:
         axes.grid(False)
         ticks = self.levels[::2 if len(self.levels) > 9 else 1]
         texts = [f"{tick:g}".replace("-", "−") for tick in ticks]
-        if self.is_cut and last == ticks[-1]:
+        if self.is_cut and last == ticks[-1] != 0.:
             texts[-1] = f"≥ {texts[-1]}"
         if self.is_cut and first != 0.:
             texts[0] = f"≤ {texts[0]}"
@@ -324,5 +329,7 @@ def scale_bar(axes, right, at, about):
 
 
 def fine(levels):
-    """Each interval in two."""
-    return np.sort(np.concatenate([levels, 0.5 * (levels[1:] + levels[:-1])]))
+    """Each interval in parts, about sixteen in all."""
+    n = len(levels) - 1
+    parts = -(-16 // n)
+    return np.interp(np.arange(n * parts + 1) / parts, np.arange(n + 1), levels)

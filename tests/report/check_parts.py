@@ -281,8 +281,15 @@ def check_page(scratch):
     is_true("all of the input", "all of parameters.prm" in text and "subsection Interfaces" in text)
     library = page.vtk_js()
     browser = shutil.which("chromium")
-    if library is None or browser is None:
-        print("the scene is not tried, as there is no " + ("chromium" if library else "vtk.js"))
+    if browser is None:
+        print("neither phone nor scene are tried, as there is no chromium")
+        return
+    phone = scratch / "phone.html"
+    phone.write_text(text.replace("</body>", TOO_WIDE + "</body>"))
+    is_true("no table is wider than a phone", 'data-too-wide="0"'
+            in browse(browser, scratch, "--dump-dom", phone, size="390,3000"))
+    if library is None:
+        print("the scene is not tried, as there is no vtk.js")
         return
     file = scratch / "with.html"
     text = make_page(folder, file)
@@ -312,12 +319,19 @@ window.addEventListener("load", () => setTimeout(() => {
 </script>"""
 
 
-def browse(browser, scratch, what, file):
+# how many tables have to be pushed aside to be read
+TOO_WIDE = """<script>
+document.body.dataset.tooWide = [...document.querySelectorAll(".scroll")].filter(
+  (place) => place.scrollWidth > place.clientWidth).length;
+</script>"""
+
+
+def browse(browser, scratch, what, file, size="1280,3000"):
     with tempfile.TemporaryDirectory(dir=scratch) as profile:
         return subprocess.run(
             [browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
              "--disable-background-networking", "--disable-component-update", "--disable-sync",
-             f"--user-data-dir={profile}", "--window-size=1280,3000", "--virtual-time-budget=15000", what,
+             f"--user-data-dir={profile}", f"--window-size={size}", "--virtual-time-budget=15000", what,
              f"file://{file}"], text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False,
             timeout=300).stdout
 

@@ -27,7 +27,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray  # noqa: E402
 from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_QUAD, vtkUnstructuredGrid  # noqa: E402
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: E402
-from voussoir_report import charts, faces, grid, interfaces, page, records, structure, verdict  # noqa: E402
+from voussoir_report import charts, faces, grid, interfaces, page, records, stages, structure, verdict  # noqa: E402
 from voussoir_report.run import Run  # noqa: E402
 
 compare = functools.partial(verdicts.compare, round_off=1e-9)
@@ -249,6 +249,27 @@ def check_input(run):
     is_true("extent", structure.extents(run) == "−20.0 to 20.0; −4.00 to 4.00; 0 to 20.0")
 
 
+def check_stages(scratch):
+    """Whatever a stage names is in a table, with the stage, and round-off is zero."""
+    def stage(name, size):
+        return {"names": [name], "iterations": 12, "found by multigrid": True, "largest displacement [m]": 0.1 * size,
+                "sum of loads so far [N]": [0., 0., -1.], "sum of reactions [N]": [0., 0., 1.],
+                "points": {"crest": {"position [m]": [0., 4., 20.], "displacement y [m]": -0.05 * size}},
+                "face stresses": {"upstream face": {"largest arch stress [MPa]": size,
+                                                    "smallest": {"value [MPa]": None, "at [m]": [1e-15, 2., 3.]}}}}
+    run = make_wall(scratch / "stages", {**SUMMARY, "static state": {"stages": [stage("weight", 1.), stage("water", 2.)]}})
+    tables = {part.head[0]: part for part in stages.stages_section([run]).parts if isinstance(part, page.Table)}
+    is_true("stages by themselves, without what the solver did", tables["after the stage"].rows
+            == [["weight", "0.100"], ["water", "0.200"]] and len(tables["after the stage"].head) == 2)
+    is_true("points over the stages", tables["points"].rows
+            == [["crest", "weight", "0; 4.00; 20.0", "−0.0500"], ["crest", "water", "0; 4.00; 20.0", "−0.100"]])
+    is_true("stresses over the stages", [row[:3] for row in tables["face stresses"].rows[:2]]
+            == [["upstream face", "weight", "1.00"], ["upstream face", "water", "2.00"]])
+    is_true("objects in objects, numbers that are none, round-off", tables["face stresses"].rows[2]
+            == ["upstream face, smallest", "weight", "–", "–", "0; 2.00; 3.00"])
+    is_true("no stage, no section", stages.stages_section([make_wall(scratch / "no_stages")]) is None)
+
+
 def check_records(scratch):
     table = scratch / "table.txt"
     table.write_text("# A record. From a book.\n" + "".join(f"{0.02 * i:.2f} 0.1\n" for i in range(151)))
@@ -344,6 +365,7 @@ def main():
         check_abscissa(run)
         check_colours()
         check_input(run)
+        check_stages(scratch)
         check_records(scratch)
         check_verdicts(scratch)
         check_page(scratch)

@@ -27,7 +27,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray  # noqa: E402
 from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_QUAD, vtkUnstructuredGrid  # noqa: E402
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: E402
-from voussoir_report import charts, faces, grid, interfaces, page, records, stages, structure, verdict  # noqa: E402
+from voussoir_report import charts, faces, grid, interfaces, page, records, stages, structure, study, verdict  # noqa: E402
 from voussoir_report.run import Run  # noqa: E402
 
 compare = functools.partial(verdicts.compare, round_off=1e-9)
@@ -237,6 +237,26 @@ def check_verdicts(scratch):
             is_true("with its limit and source", lines["crest, MCE: 4.2"].limit == "at most 0.150 (user's)")
 
 
+def check_study(scratch):
+    """The acceptance table of each run stands before the numbers of the study."""
+    folder = scratch / "study"
+    folder.mkdir()
+    for factor, demand in ((1, 0.1), (2, 0.2)):
+        made = make_wall(folder / f"run_{factor}", {**SUMMARY, "acceptance table": {"crest": {
+            "load case": "MCE", "source": "user's", "demand": demand, "at most": 0.15, "met": demand <= 0.15}}})
+        with open(made.folder / "parameters.prm", "a") as file:
+            file.write("subsection Acceptance\n  set Names = crest\nend\n")
+    (folder / "study.json").write_text(json.dumps({"runs": [
+        {"folder": f"run_{factor}", "verdict": "no objection", "values": {"Ground motion/Overload factor": str(factor)},
+         "quantities": {"largest displacement [m]": 0.1 * factor}} for factor in (1, 2)]}))
+    table = next(part for part in study.study_section([], [study.Study(folder)]).parts if isinstance(part, page.Table))
+    is_true("acceptance of the runs of a study", table.head == ["Overload factor", "crest, MCE"]
+            and table.rows == [["1", "met: 0.100"], ["2", "not met: 0.200"]])
+    is_true("in their colours", [row[1].colour for row in table.rows] == ["good", "bad"])
+    text = make_page(folder, scratch / "study.html")
+    is_true("and in the page", '<td class="judged bad" data-of="crest, MCE">not met: 0.200</td>' in text)
+
+
 def check_input(run):
     is_true("entries of what the case does not use are left out",
             run.own_entries == ["Interfaces/Names = joint", "Interfaces/joint/Key depth = 0",
@@ -368,6 +388,7 @@ def main():
         check_stages(scratch)
         check_records(scratch)
         check_verdicts(scratch)
+        check_study(scratch)
         check_page(scratch)
     verdicts.end()
 

@@ -27,7 +27,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray  # noqa: E402
 from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_QUAD, vtkUnstructuredGrid  # noqa: E402
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: E402
-from voussoir_report import charts, faces, grid, interfaces, page, records, stages, structure, study, verdict  # noqa: E402
+from voussoir_report import case, charts, faces, grid, interfaces, page, records, stages, structure, study, verdict  # noqa: E402
 from voussoir_report.run import Run  # noqa: E402
 
 compare = functools.partial(verdicts.compare, round_off=1e-9)
@@ -52,6 +52,7 @@ subsection Materials
   set Names = concrete # default:
   subsection concrete
     set Class = linear elastic
+    set Tensile strength = 0
   end
 end
 subsection Mesh
@@ -64,7 +65,8 @@ subsection Mesh
   end
 end
 """
-LOG = """Material concrete: mass 1.5e+07 kg, P wave 4015 m/s, S wave 2532 m/s; its largest cells carry waves up to 6.4 Hz with 8 nodes per wavelength
+LOG = """Dam: 20 m high, crest 41.5 m long; at the crown 7 to 9 m thick; volume 6400 m3; slenderness 15.2 (Lombardi: ...)
+Material concrete: mass 1.5e+07 kg, P wave 4015 m/s, S wave 2532 m/s; its largest cells carry waves up to 6.4 Hz with 8 nodes per wavelength
 Damping: Maxwell, asked 5 %, achieved
       1 Hz 4.0 %  4 Hz 5.0 %  16 Hz 5.0 %
 """
@@ -174,6 +176,8 @@ def check_colours():
             np.abs(drawn - scale.colours(scale.norm(4.4))).max() < 0.05)
     pressure = charts.Scale([np.array([-5., -1.])], "stress")
     compare("a bar of pressure alone ends at zero", pressure.levels[-1], 0., 0.)
+    more = charts.Scale([np.concatenate([np.linspace(0., 4., 2000), [9.]])], "stress")
+    is_true("more than the bar has is said where there is more", more.above and not more.below and not scale.above)
     cracked = charts.Scale([np.concatenate([np.zeros(999), [3.]])], "opening [mm]", colours="inferno_r", low=0.)
     is_true("one cracked cell of a thousand is seen", cracked.levels[-1] >= 3. and "everywhere" not in cracked.label)
     noise = charts.Scale([np.array([0., 3e-14])], "opening [mm]", 0., "inferno_r", low=0.)
@@ -207,6 +211,8 @@ def check_verdicts(scratch):
             ("demand below strength",
              {**good, "engineering results": {"demand over tensile strength": line(0.7, True, **{"at most": 1.})}},
              ("good", "good"), {"demand over tensile strength": "met"}),
+            ("tension without a strength", {**good, "face stresses": {"largest principal stress [MPa]": 6.6}},
+             ("doubt", "open"), {"largest principal tension on the faces": "not assessed"}),  # no pictures of it
             ("slipped and at rest", {**good, "engineering results": {"slip at the end [mm]": line(12., None)}},
              ("good", "doubt"), {"slip at the end [mm]": "to be judged"}),
             ("sliding on", {**surface(**{"residual slip [mm]": 441., "slip rate at the end [mm/s]": 92.}), **good,
@@ -234,7 +240,8 @@ def check_verdicts(scratch):
             is_true("with its place and time", lines["demand over tensile strength"].place
                     == "upstream face, at 2.00 s, x = 59.0, y = 1.00, z = 20.0 m")
         if name == "a criterion":
-            is_true("with its limit and source", lines["crest, MCE: 4.2"].limit == "at most 0.150 (user's)")
+            is_true("with its limit, unit and source", lines["crest, MCE: 4.2"].limit == "at most 0.150 m (user's)"
+                    and lines["crest, MCE: 4.2"].found == "0.200 m")
 
 
 def check_study(scratch):
@@ -266,6 +273,9 @@ def check_input(run):
     table = structure.waves_table([run])
     is_true("what the mesh carries", table.rows[0][:4] == ["concrete", page.number(4015.), page.number(2532.), "6.4"])
     compare("cells through the thickness", grid.dam_of(run).cells_through(0.5), 1., 0.)
+    is_true("sizes of a generated dam as its log has them", case.dam_in_words(run).startswith(
+        "A dam 20.0 m high and 41.5 m long along its crest, at the crown 7.00 to 9.00 m thick, of 6\u202f400 m³"))
+    is_true("a strength of zero is none", "tensile strength [MPa]" not in case.materials_table(run).head)
     is_true("extent", structure.extents(run) == "−20.0 to 20.0; −4.00 to 4.00; 0 to 20.0")
 
 

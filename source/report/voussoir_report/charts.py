@@ -72,6 +72,12 @@ def place(figure, left, bottom, width, height):
     return figure.add_axes((left / across, bottom / upwards, width / across, height / upwards))
 
 
+def with_margin(values, share=0.03):
+    """Limits of an axis on which values lie."""
+    low, high = values.min(), values.max()
+    return low - share * (high - low), high + share * (high - low)
+
+
 def lines(axes, curves, title="", x="", y="", zero=False, limits=None, log=False):
     """Curves (label, x, y), with a line at zero, or with the axis between limits."""
     cycle_colours(axes, len(curves))
@@ -151,8 +157,10 @@ class Scale:
         elif high - low < 1e-3 * abs(high):
             high = low + 1e-3 * abs(high)
         self.label = label
-        self.is_cut = cut > 0.
         self.levels = ticker.MaxNLocator(8, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+        # whether there is more than the range has
+        self.below = cut > 0. and values.min() < self.levels[0]
+        self.above = cut > 0. and values.max() > self.levels[-1]
         largest = np.abs(self.levels).max()
         self.norm = Normalize(-largest if colours is None else self.levels[0],
                               largest if colours is None else self.levels[-1])
@@ -168,9 +176,9 @@ class Scale:
         axes.grid(False)
         ticks = self.levels[::2 if len(self.levels) > 9 else 1]
         texts = [f"{tick:g}".replace("-", "−") for tick in ticks]
-        if self.is_cut and last == ticks[-1] != 0.:
+        if self.above and last == ticks[-1]:
             texts[-1] = f"≥ {texts[-1]}"
-        if self.is_cut and first != 0.:
+        if self.below:
             texts[0] = f"≤ {texts[0]}"
         axes.set_xticks(ticks, texts)
         axes.tick_params(labelsize=8)
@@ -217,7 +225,7 @@ def mark_largest(axes, places, values, unit, largest):
     """Writes the extreme value beside its place."""
     at = np.argmax(values) if largest else np.argmin(values)
     x, y = places[at]
-    axes.plot(x, y, "o", color="black", markersize=3.5, markerfacecolor="none")
+    axes.plot(x, y, "o", color="black", markersize=3.5, markerfacecolor="none", clip_on=False)
     # the abscissa may run to the left
     across, upwards = axes.transAxes.inverted().transform(axes.transData.transform((x, y)))
     is_left, is_low = across < 0.5, upwards < 0.5

@@ -5,7 +5,7 @@ from .run import is_quantity
 
 # what the solver did, and what the table of the load cases has
 LEFT_OUT = ("names", "iterations", "load increments", "found by multigrid", "steps of dynamic relaxation",
-            "sum of loads so far [N]", "sum of reactions [N]")
+            "loads", "sum of loads so far [N]", "sum of reactions [N]")
 
 
 def stages_of(run):

@@ -284,6 +284,7 @@ def check_stages(scratch):
     def stage(name, size):
         return {"names": [name], "iterations": 12, "found by multigrid": True, "largest displacement [m]": 0.1 * size,
                 "sum of loads so far [N]": [0., 0., -1.], "sum of reactions [N]": [0., 0., 1.],
+                "interfaces": {"joint": {"normal force [MN]": 1e-12 if name == "weight" else 3.}},
                 "points": {"crest": {"position [m]": [0., 4., 20.], "displacement y [m]": -0.05 * size}},
                 "face stresses": {"upstream face": {"largest arch stress [MPa]": size,
                                                     "smallest": {"value [MPa]": None, "at [m]": [1e-15, 2., 3.]}}}}
@@ -297,6 +298,7 @@ def check_stages(scratch):
             == [["upstream face", "weight", "1.00"], ["upstream face", "water", "2.00"]])
     is_true("objects in objects, numbers that are none, round-off", tables["face stresses"].rows[2]
             == ["upstream face, smallest", "weight", "–", "–", "0; 2.00; 3.00"])
+    is_true("a joint that is not there yet has no line", tables["interfaces"].rows == [["joint", "water", "3.00"]])
     is_true("no stage, no section", stages.stages_section([make_wall(scratch / "no_stages")]) is None)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from . import grid as grids, verdict
 from .motion import GRAVITY, peak
-from .page import Block, Section, Table, Verdicts, comparison, number
+from .page import Block, Digest, Section, Table, Verdicts, comparison, number
 
 DIRECTIONS = {"x": "across the valley", "y": "along the river", "z": "vertical"}
 SIGNS = ("The axes: +x points to the left bank, +y upstream, +z up. Tension is positive, "
@@ -326,6 +326,12 @@ def input_entries_section(runs):
         parts.append(Block(f"{run.prefix}{len(run.own_entries)} entries", "\n".join(run.own_entries)))
         parts.append(Block(f"{run.prefix}all of parameters.prm", run.read("parameters.prm").strip(), folded=True))
     return Section("Complete input", parts)
+
+
+def files_section(runs):
+    """What the report was made of."""
+    return Section("Files of this report", [Table(["file", "SHA-256"], [
+        [f"{run.folder}/{name}", Digest(digest)] for run in runs for name, digest in run.digests])])
 
 
 def statistics_section(runs):

@@ -117,7 +117,7 @@ def legend_above(axes):
     forward, back = axes.yaxis.get_transform(), axes.yaxis.get_transform().inverted()
     low, high = forward.transform(axes.get_ylim())
     axes.set_ylim(top=back.transform(high + 0.09 * rows * (high - low)))
-    axes.legend(ncols=columns, frameon=False, loc="upper left", borderaxespad=0.1)
+    axes.legend(ncols=columns, edgecolor="none", loc="upper left", borderaxespad=0.1)
 
 
 def cycle_colours(axes, n):

@@ -143,7 +143,6 @@ def to_html(runs, sections):
         environment.tests[name] = lambda part, kind=kind: isinstance(part, kind)
     return environment.get_template("page.html").render(
         runs=runs, sections=sections, date=datetime.date.today().isoformat(),
-        sources=[(run.folder, name, digest) for run in runs for name, digest in run.digests],
         program=scene_program(sections))
 
 

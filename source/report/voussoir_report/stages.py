@@ -32,6 +32,7 @@ def amounts(value):
 def table_of(heads, rows):
     """A table of (words, quantities), the same quantities below each other."""
     keys = dict.fromkeys(key for _, quantities in rows for key in quantities)
+    places = [key for key in keys if key.startswith(("position", "at "))]
     # what is so small against the others is round-off
     noise = {key: max(1e-9 if key.endswith("[m]") else 1e-6, 1e-6 * max(
         (amount for _, quantities in rows for amount in amounts(quantities.get(key))), default=0.)) for key in keys}
@@ -41,8 +42,12 @@ def table_of(heads, rows):
             return "; ".join(text(key, part) for part in value)
         return number(0. if value is not None and abs(value) < noise[key] else value)
 
+    def acts(quantities):
+        return any(quantities[key] is None or any(amount >= noise[key] for amount in amounts(quantities[key]))
+                   for key in quantities if key not in places)
+
     return Table([*heads, *keys], [[*words, *(text(key, quantities[key]) if key in quantities else "–" for key in keys)]
-                                   for words, quantities in rows])
+                                   for words, quantities in rows if acts(quantities)])
 
 
 def stages_section(runs):
@@ -59,7 +64,9 @@ def stages_section(runs):
                     groups.setdefault(group, {}).setdefault(name, []).append(((name, stage), quantities))
     tables = [table_of([group, "after the stage"] if group else ["after the stage"],
                        [row for rows in of_names.values() for row in rows]) for group, of_names in groups.items()]
+    tables = [table for table in tables if table.rows]
     if not tables:
         return None
     return Section("Static stages", [
-        "After each stage, under all loads up to there. Displacements are those from the unloaded model.", *tables])
+        "After each stage, under all loads up to there. Displacements are those from the unloaded model. What has "
+        "nothing but zeros after a stage, as a joint that is grouted later, has no line for it.", *tables])

@@ -68,6 +68,7 @@ def section_picture(run):
         # the same lengths in all of them
         axes.set(xlim=across, ylim=along, ylabel="y [m]")
         axes.set_aspect("equal", anchor="W")
+        axes.tick_params(labelbottom=n == 2)
         axes.set_title(f"at z = {number(levels[n])} m{', upstream above' if n == 0 else ''}", loc="left")
     axes.set_xlabel("x [m]")
     return charts.picture(figure, f"{run.prefix}Sections through the dam with their cells", f"sections_{run.label}")
@@ -161,8 +162,8 @@ def modes_section(runs):
                          damping_at(run, mode["frequency [Hz]"]),
                          *(of_mass(share) for share in mode["effective mass [-]"]),
                          *(of_mass(share) for share in mode["cumulative effective mass [-]"])])
-        parts.append(Table(["mode", "frequency [Hz]", "period [s]", "damping achieved [%]", "effective mass x [%]",
-                            "y [%]", "z [%]", "up to here x [%]", "y [%]", "z [%]"], rows,
+        masses = [f"{of} {d} [%]" for of in ("effective mass", "sum up to here") for d in "xyz"]
+        parts.append(Table(["mode", "frequency [Hz]", "period [s]", "damping achieved [%]", *masses], rows,
                            run.label if len(runs) > 1 else ""))
         if run.has("modes.vtu"):
             pictures = mode_pictures(run)

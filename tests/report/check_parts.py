@@ -261,6 +261,7 @@ def check_study(scratch):
             and table.rows == [["1", "met: 0.100"], ["2", "not met: 0.200"]])
     is_true("in their colours", [row[1].colour for row in table.rows] == ["good", "bad"])
     text = make_page(folder, scratch / "study.html")
+    is_true("before the conclusions of its runs", "<h2>Study" in text.split("<h2>Conclusions")[0])
     is_true("and in the page", '<td class="judged bad" data-of="crest, MCE">not met: 0.200</td>' in text)
 
 

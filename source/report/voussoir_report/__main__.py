@@ -81,8 +81,8 @@ def main():
         # drawing takes nearly all of the time: one process for each core
         fork = multiprocessing.get_context("fork")
         with concurrent.futures.ProcessPoolExecutor(mp_context=fork) as pool:
-            pending = [pool.submit(section_of, make, runs) for make in makers]
-            pending.insert(2, pool.submit(section_of, study.study_section, runs, list(studies.values())))
+            pending = [pool.submit(section_of, study.study_section, runs, list(studies.values())),
+                       *(pool.submit(section_of, make, runs) for make in makers)]
             ended, _ = concurrent.futures.wait(pending, return_when=concurrent.futures.FIRST_EXCEPTION)
             for made in ended:
                 if problem := made.exception():

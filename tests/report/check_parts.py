@@ -300,6 +300,9 @@ def check_stages(scratch):
     is_true("objects in objects, numbers that are none, round-off", tables["face stresses"].rows[2]
             == ["upstream face, smallest", "weight", "–", "–", "0; 2.00; 3.00"])
     is_true("a joint that is not there yet has no line", tables["interfaces"].rows == [["joint", "water", "3.00"]])
+    again = stages.stages_section([run, run])
+    is_true("stages that all runs have are there once", again.parts[0] == "They are the same in all runs."
+            and [part.rows for part in again.parts[2:]] == [part.rows for part in stages.stages_section([run]).parts[1:]])
     is_true("no stage, no section", stages.stages_section([make_wall(scratch / "no_stages")]) is None)
 
 

@@ -4,6 +4,7 @@ import base64
 import dataclasses
 import io
 import re
+import textwrap
 
 import matplotlib
 import numpy as np
@@ -63,7 +64,7 @@ def new_figure(height=2.9):
     """A figure with room for a chart; margins in inches, as finding them takes matplotlib
     half of its time."""
     figure = Figure(figsize=(WIDTH, height))
-    return figure, place(figure, 0.76, 0.5, WIDTH - 0.88, height - 0.8)
+    return figure, place(figure, 0.78, 0.5, WIDTH - 0.98, height - 0.8)
 
 
 def place(figure, left, bottom, width, height):
@@ -95,7 +96,7 @@ def lines_of_runs(axes, curves, title="", x="", y="", zero=False):
 
 def finish(axes, title, x, y, zero, limits=None, log=False):
     """What stands around curves."""
-    axes.set(xlabel=x, ylabel=y)
+    axes.set(xlabel=x, ylabel=textwrap.fill(y, 34))
     axes.set_title(title, loc="left")
     axes.margins(x=0)
     if zero:

@@ -50,17 +50,28 @@ def table_of(heads, rows):
                                    for words, quantities in rows if acts(quantities)])
 
 
+def different(runs):
+    """The first run of those with the same stages."""
+    seen = []
+    for run in runs:
+        if stages_of(run) and not any(stages_of(run) == stages_of(other) for other in seen):
+            seen.append(run)
+    return seen
+
+
 def stages_section(runs):
     """Tables of what the stages have by themselves, and of each group of named objects."""
     groups = {}
-    for run in runs:
+    shown = different(runs)
+    for run in shown:
+        prefix = run.prefix if len(shown) > 1 else ""
         for stage, values in stages_of(run):
             own = {key: value for key, value in values.items() if is_quantity(value)}
             if own:
-                groups.setdefault("", {}).setdefault(run.prefix, []).append(((run.prefix + stage,), own))
+                groups.setdefault("", {}).setdefault(prefix, []).append(((prefix + stage,), own))
             for group in values:
                 for name, quantities in objects_in(values[group]) if isinstance(values[group], dict) else ():
-                    name = run.prefix + name
+                    name = prefix + name
                     groups.setdefault(group, {}).setdefault(name, []).append(((name, stage), quantities))
     tables = [table_of([group, "after the stage"] if group else ["after the stage"],
                        [row for rows in of_names.values() for row in rows]) for group, of_names in groups.items()]
@@ -68,5 +79,6 @@ def stages_section(runs):
     if not tables:
         return None
     return Section("Static stages", [
+        *(["They are the same in all runs."] if len(shown) == 1 < len(runs) else []),
         "After each stage, under all loads up to there. Displacements are those from the unloaded model. What has "
         "nothing but zeros after a stage, as a joint that is grouted later, has no line for it.", *tables])

@@ -265,6 +265,18 @@ def check_study(scratch):
     is_true("and in the page", '<td class="judged bad" data-of="crest, MCE">not met: 0.200</td>' in text)
 
 
+def check_blocks(scratch):
+    """Weight of a block and what acts on it when its safety is smallest."""
+    run = make_wall(scratch / "blocks", {**SUMMARY, "interfaces": {"surfaces": {}, "blocks": {"wedge": {
+        "mass [kg]": 1e6, "safety at the start": 2., "time at safety one or below [s]": 0.,
+        "forces at the smallest safety [N]": {"contact": {"bottom": [0., 4e6, 8e6]},
+                                              "driving, with inertia": [0., -4e6, -9.81e6]}}}}})
+    is_true("weight of a block", interfaces.blocks_table([run]).rows[0][:3] == ["wedge", "9.81", "2.00"])
+    is_true("forces on it", interfaces.forces_table([run]).rows
+            == [["wedge", "contact force of bottom", "0", "4.00", "8.00"],
+                ["wedge", "driving force, with its inertia", "0", "−4.00", "−9.81"]])
+
+
 def check_input(run):
     is_true("entries of what the case does not use are left out",
             run.own_entries == ["Interfaces/Names = joint", "Interfaces/joint/Key depth = 0",
@@ -402,6 +414,7 @@ def main():
         check_colours()
         check_input(run)
         check_stages(scratch)
+        check_blocks(scratch)
         check_records(scratch)
         check_verdicts(scratch)
         check_study(scratch)

@@ -39,9 +39,11 @@ SUMMARY = Group(
          {"effort": Group(optional={"unsolved clusters": NUMBER}),
           "blocks": Group(others=Group(
              {"time at safety one or below [s]": NUMBER},
-             dict.fromkeys(("safety at the start", "smallest safety", "time of the smallest safety [s]",
-                            "largest mobilised ratio", "slip at the end [mm]", "slip rate at the end [mm/s]"),
-                           NUMBER_OR_NONE)))}),
+             {"mass [kg]": NUMBER, "forces at the smallest safety [N]": Group(
+                 optional={"contact": Group(others=[NUMBER]), "driving, with inertia": [NUMBER]}),
+              **dict.fromkeys(("safety at the start", "smallest safety", "time of the smallest safety [s]",
+                               "largest mobilised ratio", "slip at the end [mm]", "slip rate at the end [mm/s]"),
+                              NUMBER_OR_NONE)}))}),
      "modes": Group(optional={"modes": [Group(
          {"frequency [Hz]": NUMBER, "period [s]": NUMBER, "effective mass [-]": [NUMBER],
           "cumulative effective mass [-]": [NUMBER]})]}),

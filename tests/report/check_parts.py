@@ -27,7 +27,8 @@ from vtkmodules.util.numpy_support import numpy_to_vtk  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray  # noqa: E402
 from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_QUAD, vtkUnstructuredGrid  # noqa: E402
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: E402
-from voussoir_report import charts, faces, grid, interfaces, page, records, structure, study_evaluations, verdict  # noqa: E402
+from voussoir_report import case, charts, faces, grid, interfaces, page, records, stages, structure, study  # noqa: E402
+from voussoir_report import study_evaluations, verdict  # noqa: E402
 from voussoir_report.run import Run  # noqa: E402
 
 compare = functools.partial(verdicts.compare, round_off=1e-9)
@@ -52,6 +53,7 @@ subsection Materials
   set Names = concrete # default:
   subsection concrete
     set Class = linear elastic
+    set Tensile strength = 0
   end
 end
 subsection Mesh
@@ -64,7 +66,8 @@ subsection Mesh
   end
 end
 """
-LOG = """Material concrete: mass 1.5e+07 kg, P wave 4015 m/s, S wave 2532 m/s; its largest cells carry waves up to 6.4 Hz with 8 nodes per wavelength
+LOG = """Dam: 20 m high, crest 41.5 m long; at the crown 7 to 9 m thick; volume 6400 m3; slenderness 15.2 (Lombardi: ...)
+Material concrete: mass 1.5e+07 kg, P wave 4015 m/s, S wave 2532 m/s; its largest cells carry waves up to 6.4 Hz with 8 nodes per wavelength
 Damping: Maxwell, asked 5 %, achieved
       1 Hz 4.0 %  4 Hz 5.0 %  16 Hz 5.0 %
 """
@@ -161,6 +164,23 @@ def check_colours():
         compare("tension and pressure of the same amount, distances from white", scale.norm(3.) - 0.5,
                 0.5 - scale.norm(-3.), 0.)
         compare("white is zero", scale.norm(0.), 0.5, 0.)
+        compare("the bar goes as far to both sides", scale.levels[-1], -scale.levels[0], 0.)
+    # all of a face at 4.4 MPa, where half a per cent is left out above 4 MPa
+    stress = np.concatenate([np.linspace(-10., 4., 2000), [4.4]])
+    face = charts.Panel("", np.array([[(0., 0.), (1., 0.), (1., 1.), (0., 1.)]]), np.full((1, 4), 4.4))
+    axes = charts.place(charts.Figure(), 0., 0., 4., 2.)
+    scale = charts.Scale([stress], "stress")
+    charts.draw_panel(axes, face, scale)
+    drawn = next(colour for bands in axes.collections
+                 for colour, path in zip(bands.get_facecolor(), bands.get_paths()) if len(path.vertices))
+    is_true("what the range leaves out is not drawn as more than it is",
+            np.abs(drawn - scale.colours(scale.norm(4.4))).max() < 0.05)
+    pressure = charts.Scale([np.array([-5., -1.])], "stress")
+    compare("a bar of pressure alone ends at zero", pressure.levels[-1], 0., 0.)
+    more = charts.Scale([np.concatenate([np.linspace(0., 4., 2000), [9.]])], "stress")
+    is_true("more than the bar has is said where there is more", more.above and not more.below and not scale.above)
+    cracked = charts.Scale([np.concatenate([np.zeros(999), [3.]])], "opening [mm]", colours="inferno_r", low=0.)
+    is_true("one cracked cell of a thousand is seen", cracked.levels[-1] >= 3. and "everywhere" not in cracked.label)
     noise = charts.Scale([np.array([0., 3e-14])], "opening [mm]", 0., "inferno_r", low=0.)
     compare("end of the bar of noise", noise.levels[-1], 1., 0.)
     is_true("noise is said to be zero", noise.label == "opening [mm]: 0 everywhere")
@@ -192,6 +212,8 @@ def check_verdicts(scratch):
             ("demand below strength",
              {**good, "engineering results": {"demand over tensile strength": line(0.7, True, **{"at most": 1.})}},
              ("good", "good"), {"demand over tensile strength": "met"}),
+            ("tension without a strength", {**good, "face stresses": {"largest principal stress [MPa]": 6.6}},
+             ("doubt", "open"), {"largest principal tension on the faces": "not assessed"}),  # no pictures of it
             ("slipped and at rest", {**good, "engineering results": {"slip at the end [mm]": line(12., None)}},
              ("good", "doubt"), {"slip at the end [mm]": "to be judged"}),
             ("sliding on", {**surface(**{"residual slip [mm]": 441., "slip rate at the end [mm/s]": 92.}), **good,
@@ -219,7 +241,41 @@ def check_verdicts(scratch):
             is_true("with its place and time", lines["demand over tensile strength"].place
                     == "upstream face, at 2.00 s, x = 59.0, y = 1.00, z = 20.0 m")
         if name == "a criterion":
-            is_true("with its limit and source", lines["crest, MCE: 4.2"].limit == "at most 0.150 (user's)")
+            is_true("with its limit, unit and source", lines["crest, MCE: 4.2"].limit == "at most 0.150 m (user's)"
+                    and lines["crest, MCE: 4.2"].found == "0.200 m")
+
+
+def check_study(scratch):
+    """The acceptance table of each run stands before the numbers of the study."""
+    folder = scratch / "study"
+    folder.mkdir()
+    for factor, demand in ((1, 0.1), (2, 0.2)):
+        made = make_wall(folder / f"run_{factor}", {**SUMMARY, "acceptance table": {"crest": {
+            "load case": "MCE", "source": "user's", "demand": demand, "at most": 0.15, "met": demand <= 0.15}}})
+        with open(made.folder / "parameters.prm", "a") as file:
+            file.write("subsection Acceptance\n  set Names = crest\nend\n")
+    (folder / "study.json").write_text(json.dumps({"runs": [
+        {"folder": f"run_{factor}", "verdict": "no objection", "values": {"Ground motion/Overload factor": str(factor)},
+         "quantities": {"largest displacement [m]": 0.1 * factor}} for factor in (1, 2)]}))
+    table = next(part for part in study.study_section([], [study.Study(folder)]).parts if isinstance(part, page.Table))
+    is_true("acceptance of the runs of a study", table.head == ["Overload factor", "crest, MCE"]
+            and table.rows == [["1", "met: 0.100"], ["2", "not met: 0.200"]])
+    is_true("in their colours", [row[1].colour for row in table.rows] == ["good", "bad"])
+    text = make_page(folder, scratch / "study.html")
+    is_true("before the conclusions of its runs", "<h2>Study" in text.split("<h2>Conclusions")[0])
+    is_true("and in the page", '<td class="judged bad" data-of="crest, MCE">not met: 0.200</td>' in text)
+
+
+def check_blocks(scratch):
+    """Weight of a block and what acts on it when its safety is smallest."""
+    run = make_wall(scratch / "blocks", {**SUMMARY, "interfaces": {"surfaces": {}, "blocks": {"wedge": {
+        "mass [kg]": 1e6, "safety at the start": 2., "time at safety one or below [s]": 0.,
+        "forces at the smallest safety [N]": {"contact": {"bottom": [0., 4e6, 8e6]},
+                                              "driving, with inertia": [0., -4e6, -9.81e6]}}}}})
+    is_true("weight of a block", interfaces.blocks_table([run]).rows[0][:3] == ["wedge", "9.81", "2.00"])
+    is_true("forces on it", interfaces.forces_table([run]).rows
+            == [["wedge", "contact force of bottom", "0", "4.00", "8.00"],
+                ["wedge", "driving force, with its inertia", "0", "−4.00", "−9.81"]])
 
 
 def check_input(run):
@@ -231,7 +287,36 @@ def check_input(run):
     table = structure.waves_table([run])
     is_true("what the mesh carries", table.rows[0][:4] == ["concrete", page.number(4015.), page.number(2532.), "6.4"])
     compare("cells through the thickness", grid.dam_of(run).cells_through(0.5), 1., 0.)
+    is_true("sizes of a generated dam as its log has them", case.dam_in_words(run).startswith(
+        "A dam 20.0 m high and 41.5 m long along its crest, at the crown 7.00 to 9.00 m thick, of 6\u202f400 m³"))
+    is_true("a strength of zero is none", "tensile strength [MPa]" not in case.materials_table(run).head)
     is_true("extent", structure.extents(run) == "−20.0 to 20.0; −4.00 to 4.00; 0 to 20.0")
+
+
+def check_stages(scratch):
+    """Whatever a stage names is in a table, with the stage, and round-off is zero."""
+    def stage(name, size):
+        return {"names": [name], "iterations": 12, "found by multigrid": True, "largest displacement [m]": 0.1 * size,
+                "sum of loads so far [N]": [0., 0., -1.], "sum of reactions [N]": [0., 0., 1.],
+                "interfaces": {"joint": {"normal force [MN]": 1e-12 if name == "weight" else 3.}},
+                "points": {"crest": {"position [m]": [0., 4., 20.], "displacement y [m]": -0.05 * size}},
+                "face stresses": {"upstream face": {"largest arch stress [MPa]": size,
+                                                    "smallest": {"value [MPa]": None, "at [m]": [1e-15, 2., 3.]}}}}
+    run = make_wall(scratch / "stages", {**SUMMARY, "static state": {"stages": [stage("weight", 1.), stage("water", 2.)]}})
+    tables = {part.head[0]: part for part in stages.stages_section([run]).parts if isinstance(part, page.Table)}
+    is_true("stages by themselves, without what the solver did", tables["after the stage"].rows
+            == [["weight", "0.100"], ["water", "0.200"]] and len(tables["after the stage"].head) == 2)
+    is_true("points over the stages", tables["points"].rows
+            == [["crest", "weight", "0; 4.00; 20.0", "−0.0500"], ["crest", "water", "0; 4.00; 20.0", "−0.100"]])
+    is_true("stresses over the stages", [row[:3] for row in tables["face stresses"].rows[:2]]
+            == [["upstream face", "weight", "1.00"], ["upstream face", "water", "2.00"]])
+    is_true("objects in objects, numbers that are none, round-off", tables["face stresses"].rows[2]
+            == ["upstream face, smallest", "weight", "–", "–", "0; 2.00; 3.00"])
+    is_true("a joint that is not there yet has no line", tables["interfaces"].rows == [["joint", "water", "3.00"]])
+    again = stages.stages_section([run, run])
+    is_true("stages that all runs have are there once", again.parts[0] == "They are the same in all runs."
+            and [part.rows for part in again.parts[2:]] == [part.rows for part in stages.stages_section([run]).parts[1:]])
+    is_true("no stage, no section", stages.stages_section([make_wall(scratch / "no_stages")]) is None)
 
 
 def check_records(scratch):
@@ -291,8 +376,15 @@ def check_page(scratch):
     is_true("all of the input", "all of parameters.prm" in text and "subsection Interfaces" in text)
     library = page.vtk_js()
     browser = shutil.which("chromium")
-    if library is None or browser is None:
-        print("the scene is not tried, as there is no " + ("chromium" if library else "vtk.js"))
+    if browser is None:
+        print("neither phone nor scene are tried, as there is no chromium")
+        return
+    phone = scratch / "phone.html"
+    phone.write_text(text.replace("</body>", TOO_WIDE + "</body>"))
+    is_true("no table is wider than a phone", 'data-too-wide="0"'
+            in browse(browser, scratch, "--dump-dom", phone, size="390,3000"))
+    if library is None:
+        print("the scene is not tried, as there is no vtk.js")
         return
     file = scratch / "with.html"
     text = make_page(folder, file)
@@ -322,12 +414,19 @@ window.addEventListener("load", () => setTimeout(() => {
 </script>"""
 
 
-def browse(browser, scratch, what, file):
+# how many tables have to be pushed aside to be read
+TOO_WIDE = """<script>
+document.body.dataset.tooWide = [...document.querySelectorAll(".scroll")].filter(
+  (place) => place.scrollWidth > place.clientWidth).length;
+</script>"""
+
+
+def browse(browser, scratch, what, file, size="1280,3000"):
     with tempfile.TemporaryDirectory(dir=scratch) as profile:
         return subprocess.run(
             [browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
              "--disable-background-networking", "--disable-component-update", "--disable-sync",
-             f"--user-data-dir={profile}", "--window-size=1280,3000", "--virtual-time-budget=15000", what,
+             f"--user-data-dir={profile}", f"--window-size={size}", "--virtual-time-budget=15000", what,
              f"file://{file}"], text=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False,
             timeout=300).stdout
 
@@ -340,9 +439,12 @@ def main():
         check_abscissa(run)
         check_colours()
         check_input(run)
+        check_stages(scratch)
+        check_blocks(scratch)
         check_records(scratch)
         check_study_evaluations()
         check_verdicts(scratch)
+        check_study(scratch)
         check_page(scratch)
     verdicts.end()
 

@@ -42,7 +42,7 @@ sys.path.insert(0, str(options.report))
 import needed  # noqa: E402, F401
 from voussoir_report import __main__ as command, charts, scenes  # noqa: E402
 from voussoir_report import (damage, faces, interfaces, motions, over_stress, page, records,  # noqa: E402, F401
-                             structure, study, verdict)
+                             stages, structure, study, verdict)
 
 # what reports are made of, and must not be damaged without being refused
 TABLES = ("histories.csv", "energy.csv", "ground_motion.csv", "interfaces.csv", "over_stress.csv")

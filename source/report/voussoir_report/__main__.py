@@ -58,7 +58,7 @@ def main():
     try:
         # takes a second, and --help shall not
         from . import (case, damage, faces, interfaces, motions, over_stress, page, records, scenes,
-                       structure, study)
+                       stages, structure, study)
         from .files import ReportError
         from .run import read_runs
     except ImportError as error:
@@ -73,16 +73,16 @@ def main():
         scenes.open_display()
         records.CASE_FOLDERS += options.case_folder
         makers = (case.conclusions_section, case.headline_section, structure.scene_section, case.case_section,
-                  structure.mesh_section, structure.modes_section, motions.input_section, motions.motion_section,
-                  faces.face_stress_section, over_stress.over_stress_section,
+                  structure.mesh_section, stages.stages_section, structure.modes_section, motions.input_section,
+                  motions.motion_section, faces.face_stress_section, over_stress.over_stress_section,
                   interfaces.joints_section, structure.opened_section, interfaces.planes_section,
-                  damage.damage_section, motions.energy_section, case.statistics_section,
+                  damage.damage_section, motions.energy_section, case.statistics_section, case.files_section,
                   case.input_entries_section)
         # drawing takes nearly all of the time: one process for each core
         fork = multiprocessing.get_context("fork")
         with concurrent.futures.ProcessPoolExecutor(mp_context=fork) as pool:
-            pending = [pool.submit(section_of, make, runs) for make in makers]
-            pending.insert(2, pool.submit(section_of, study.study_section, runs, list(studies.values())))
+            pending = [pool.submit(section_of, study.study_section, runs, list(studies.values())),
+                       *(pool.submit(section_of, make, runs) for make in makers)]
             ended, _ = concurrent.futures.wait(pending, return_when=concurrent.futures.FIRST_EXCEPTION)
             for made in ended:
                 if problem := made.exception():

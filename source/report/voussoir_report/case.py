@@ -6,12 +6,17 @@ import numpy as np
 
 from . import grid as grids, verdict
 from .motion import GRAVITY, peak
-from .page import Block, Section, Table, Verdicts, comparison, number
+from .page import Block, Digest, Section, Table, Verdicts, comparison, number
 
 DIRECTIONS = {"x": "across the valley", "y": "along the river", "z": "vertical"}
 SIGNS = ("The axes: +x points to the left bank, +y upstream, +z up. Tension is positive, "
          "pressure negative; an opening is positive where a joint opens. All units stand "
          "beside their numbers; g is 9.81 m/s².")
+
+
+# what the log says of a generated dam by its drawings, which the mesh has with chords
+DRAWN = re.compile(r"^Dam: (\S+) m high, crest (\S+) m long; at the crown (\S+) to (\S+) m thick; "
+                   r"volume (\S+) m3; slenderness (\S+)", re.MULTILINE)
 
 
 def listed(words):
@@ -24,6 +29,12 @@ def dam_in_words(run):
     dam = grids.dam_of(run)
     if dam is None:
         return None
+    drawn = DRAWN.search(run.log)
+    if drawn:
+        height, crest, top, bottom, volume, slenderness = map(float, drawn.groups())
+        return (f"A dam {number(height)} m high and {number(crest)} m long along its crest, at the crown {number(top)} to "
+                f"{number(bottom)} m thick, of {number(volume)} m³: {number(crest / height)} times as long as high, "
+                f"Lombardi's slenderness F²/(V·H) = {number(slenderness)}, with F the area of the middle surface.")
     volume = f"{number(dam.volume)} m³"
     if dam.is_slice:
         thickness = np.ptp(dam.points[:, 0])
@@ -49,6 +60,9 @@ def materials_table(run):
     for values in materials.values():
         if values.get("Tension law") == "table":
             values.pop("Fracture energy", None)  # that of the table counts
+        for strength in ("Tensile strength", "Compressive strength"):
+            if values.get(strength) == "0":
+                values.pop(strength)  # none is given
     used = [entry for entry in shown if any(entry in values for values in materials.values())]
 
     def cell(entry, value):
@@ -97,7 +111,7 @@ def loads_table(run):
         rows.append([f"{'static ' + str(len(stages)) + ' + ' if stages else ''}earthquake",
                      earthquake_in_words(run), "–", "–", "–"])
     heads = ["load case", "loads", "sum of loads so far x; y; z [MN]", "sum of reactions x; y; z [MN]",
-             "largest displacement in the stage [cm]"]
+             "largest displacement so far [cm]"]
     if not stages:
         heads, rows = heads[:2], [row[:2] for row in rows]
     return Table(heads, rows, "Load cases.") if rows else None
@@ -282,7 +296,7 @@ def headline_section(runs):
         ("dam open from face to face at one moment [mm]",
          of_summary("through cracks/largest opening from face to face at one moment [mm]")),
         ("largest demand over strength on the faces [-]", demand_over_strength),
-        ("smallest ratio of a block's resistance over its contact forces [-]",
+        ("smallest safety of a block, resistance over driving forces [-]",
          lambda run: largest_of(run, "blocks", "smallest safety", smallest=True)),
         ("longest time of a block at one or below [s]",
          lambda run: largest_of(run, "blocks", "time at safety one or below [s]")),
@@ -312,6 +326,12 @@ def input_entries_section(runs):
         parts.append(Block(f"{run.prefix}{len(run.own_entries)} entries", "\n".join(run.own_entries)))
         parts.append(Block(f"{run.prefix}all of parameters.prm", run.read("parameters.prm").strip(), folded=True))
     return Section("Complete input", parts)
+
+
+def files_section(runs):
+    """What the report was made of."""
+    return Section("Files of this report", [Table(["file", "SHA-256"], [
+        [f"{run.folder}/{name}", Digest(digest)] for run in runs for name, digest in run.digests])])
 
 
 def statistics_section(runs):

@@ -4,6 +4,7 @@ import base64
 import dataclasses
 import io
 import re
+import textwrap
 
 import matplotlib
 import numpy as np
@@ -63,13 +64,19 @@ def new_figure(height=2.9):
     """A figure with room for a chart; margins in inches, as finding them takes matplotlib
     half of its time."""
     figure = Figure(figsize=(WIDTH, height))
-    return figure, place(figure, 0.76, 0.5, WIDTH - 0.88, height - 0.8)
+    return figure, place(figure, 0.78, 0.5, WIDTH - 0.98, height - 0.8)
 
 
 def place(figure, left, bottom, width, height):
     """Axes at a place in inches."""
     across, upwards = figure.get_size_inches()
     return figure.add_axes((left / across, bottom / upwards, width / across, height / upwards))
+
+
+def with_margin(values, share=0.03):
+    """Limits of an axis on which values lie."""
+    low, high = values.min(), values.max()
+    return low - share * (high - low), high + share * (high - low)
 
 
 def lines(axes, curves, title="", x="", y="", zero=False, limits=None, log=False):
@@ -89,7 +96,7 @@ def lines_of_runs(axes, curves, title="", x="", y="", zero=False):
 
 def finish(axes, title, x, y, zero, limits=None, log=False):
     """What stands around curves."""
-    axes.set(xlabel=x, ylabel=y)
+    axes.set(xlabel=x, ylabel=textwrap.fill(y, 34))
     axes.set_title(title, loc="left")
     axes.margins(x=0)
     if zero:
@@ -111,7 +118,7 @@ def legend_above(axes):
     forward, back = axes.yaxis.get_transform(), axes.yaxis.get_transform().inverted()
     low, high = forward.transform(axes.get_ylim())
     axes.set_ylim(top=back.transform(high + 0.09 * rows * (high - low)))
-    axes.legend(ncols=columns, frameon=False, loc="upper left", borderaxespad=0.1)
+    axes.legend(ncols=columns, edgecolor="none", loc="upper left", borderaxespad=0.1)
 
 
 def cycle_colours(axes, n):
@@ -126,28 +133,35 @@ NOISE = 1e-6  # below it a stress [MPa], an opening [mm] or a time [s] is zero
 class Scale:
     """Colours of a quantity, the same in all pictures that are compared.
 
-    Tension is red and pressure blue, and both grow as deep at the same amount. The
-    range leaves out the outermost @p cut of the values, as at the ends of joints and
-    abutments, where they depend on the mesh.
+    Tension is red and pressure blue, both as deep at the same amount, and where there
+    are both the range goes as far on either side of zero. It leaves out the outermost
+    @p cut of the values, as at the ends of joints and abutments, where they depend on
+    the mesh; these have the colours of its ends.
     """
 
     def __init__(self, values, label, cut=0.005, colours=None, low=None, high=None):
+        has_both = False
         if low is None or high is None:
             values = np.concatenate([np.ravel(v) for v in values])
             values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
-            low = np.quantile(values, cut) if low is None else low
-            high = np.quantile(values, 1. - cut) if high is None else high
+            has_both = values.min() < -NOISE and values.max() > NOISE
+            ends = np.quantile(values, (cut, 1. - cut))
+            if np.ptp(ends) <= NOISE:  # so few values differ that all of them count
+                ends, cut = (values.min(), values.max()), 0.
+            low, high = ends[0] if low is None else low, ends[1] if high is None else high
         low, high = (0. if abs(end) < NOISE else end for end in (low, high))
         if colours is None:
-            low, high = min(low, 0.), max(high, 0.)
+            largest = max(abs(low), abs(high))
+            low, high = (-largest, largest) if has_both else (min(low, 0.), max(high, 0.))
         if high - low <= NOISE:
             high, label = low + 1., f"{label}: {number(low)} everywhere"
         elif high - low < 1e-3 * abs(high):
             high = low + 1e-3 * abs(high)
         self.label = label
-        # what the range leaves out has the colours of its ends
-        self.is_cut = cut > 0.
         self.levels = ticker.MaxNLocator(8, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+        # whether there is more than the range has
+        self.below = cut > 0. and values.min() < self.levels[0]
+        self.above = cut > 0. and values.max() > self.levels[-1]
         largest = np.abs(self.levels).max()
         self.norm = Normalize(-largest if colours is None else self.levels[0],
                               largest if colours is None else self.levels[-1])
@@ -163,9 +177,9 @@ class Scale:
         axes.grid(False)
         ticks = self.levels[::2 if len(self.levels) > 9 else 1]
         texts = [f"{tick:g}".replace("-", "−") for tick in ticks]
-        if self.is_cut and last == ticks[-1]:
+        if self.above and last == ticks[-1]:
             texts[-1] = f"≥ {texts[-1]}"
-        if self.is_cut and first != 0.:
+        if self.below:
             texts[0] = f"≤ {texts[0]}"
         axes.set_xticks(ticks, texts)
         axes.tick_params(labelsize=8)
@@ -212,7 +226,7 @@ def mark_largest(axes, places, values, unit, largest):
     """Writes the extreme value beside its place."""
     at = np.argmax(values) if largest else np.argmin(values)
     x, y = places[at]
-    axes.plot(x, y, "o", color="black", markersize=3.5, markerfacecolor="none")
+    axes.plot(x, y, "o", color="black", markersize=3.5, markerfacecolor="none", clip_on=False)
     # the abscissa may run to the left
     across, upwards = axes.transAxes.inverted().transform(axes.transData.transform((x, y)))
     is_left, is_low = across < 0.5, upwards < 0.5
@@ -324,5 +338,7 @@ def scale_bar(axes, right, at, about):
 
 
 def fine(levels):
-    """Each interval in two."""
-    return np.sort(np.concatenate([levels, 0.5 * (levels[1:] + levels[:-1])]))
+    """Each interval in parts, about sixteen in all."""
+    n = len(levels) - 1
+    parts = -(-16 // n)
+    return np.interp(np.arange(n * parts + 1) / parts, np.arange(n + 1), levels)

@@ -65,7 +65,7 @@ def damage_section(runs):
     cracked = [run for run in runs if damaged(run)]
     if not cracked:
         return None
-    parts = ["A cell is coloured by its mean."]
+    parts = ["A cell is coloured by its mean; the headline figures have the largest of any point."]
     unhurt = [run.label for run in runs if run not in cracked]
     if unhurt:
         parts.append(f"No damage in {', '.join(unhurt)}.")

@@ -7,6 +7,7 @@ import numpy as np
 from . import charts, scenes
 from .faces import SIDES
 from .grid import centre_keys, dam_of, grid_of, point_keys
+from .motion import GRAVITY
 from .page import Pictures, Section, Table, number
 from .scenes import FROM_DOWNSTREAM
 
@@ -184,15 +185,30 @@ def blocks_table(runs):
     rows = []
     for run in runs:
         for name, values in run.summary["interfaces"].get("blocks", {}).items():
-            rows.append([f"{run.prefix}{name}",
+            mass = values.get("mass [kg]")
+            rows.append([f"{run.prefix}{name}", number(mass and 1e-6 * GRAVITY * mass),
                          number(values.get("safety at the start")), number(values.get("smallest safety")),
                          number(values.get("time of the smallest safety [s]")),
                          number(values.get("time at safety one or below [s]")),
                          number(values.get("slip at the end [mm]")), number(values.get("slip rate at the end [mm/s]")),
                          number(values.get("largest mobilised ratio"))])
-    return Table(["block: resistance over driving forces", "at the start [-]", "smallest [-]", "at the time [s]",
-                  "time at one or below [s]", "slip at the end [mm]", "slip rate at the end [mm/s]",
+    return Table(["block", "weight [MN]", "resistance over driving forces at the start [-]", "smallest [-]",
+                  "at the time [s]", "time at one or below [s]", "slip at the end [mm]", "slip rate at the end [mm/s]",
                   "largest mobilised ratio [-]"], rows) if rows else None
+
+
+def forces_table(runs):
+    """What acts on each block when its safety is smallest, by which it can be checked."""
+    rows = []
+    for run in runs:
+        for name, values in run.summary["interfaces"].get("blocks", {}).items():
+            forces = values.get("forces at the smallest safety [N]", {})
+            acting = {f"contact force of {plane}": force for plane, force in forces.get("contact", {}).items()}
+            if "driving, with inertia" in forces:
+                acting["driving force, with its inertia"] = forces["driving, with inertia"]
+            rows += [[f"{run.prefix}{name}", what, *(number(1e-6 * component) for component in force)]
+                     for what, force in acting.items()]
+    return Table(["block", "at its smallest safety", "x [MN]", "y [MN]", "z [MN]"], rows) if rows else None
 
 
 def planes_picture(runs):
@@ -245,6 +261,6 @@ def planes_section(runs):
             "the resistance of the planes: at most one, as friction caps them. Sliding safety of a plane: resistance "
             "by friction and cohesion over its shear force, point by point, which does not fall below one either. A "
             "gap in a curve means that the block has no driving force, or that other planes prevent its slip.")
-    parts = [text, planes_picture(runs), blocks_table(runs), surfaces_table(runs, planes_of),
+    parts = [text, planes_picture(runs), blocks_table(runs), forces_table(runs), surfaces_table(runs, planes_of),
              Pictures(pictures, 2)]
     return Section("Slip planes and blocks", [part for part in parts if part])

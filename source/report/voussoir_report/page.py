@@ -22,6 +22,15 @@ class Digest(str):
     """A hash, which is longer than a table is wide."""
 
 
+class Judged(str):
+    """A result with the colour of how it is judged."""
+
+    def __new__(cls, text, colour=""):
+        judged = super().__new__(cls, text)
+        judged.colour = colour
+        return judged
+
+
 @dataclasses.dataclass
 class Table:
     """Rows of texts under a heading; the first column says what stands in the others."""
@@ -130,11 +139,10 @@ def to_html(runs, sections):
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True)
     for name, kind in (("table", Table), ("pictures", Pictures), ("verdicts", Verdicts), ("block", Block),
-                       ("scene", Scene), ("digest", Digest)):
+                       ("scene", Scene), ("digest", Digest), ("judged", Judged)):
         environment.tests[name] = lambda part, kind=kind: isinstance(part, kind)
     return environment.get_template("page.html").render(
         runs=runs, sections=sections, date=datetime.date.today().isoformat(),
-        sources=[(run.folder, name, digest) for run in runs for name, digest in run.digests],
         program=scene_program(sections))
 
 

@@ -18,7 +18,7 @@ SUMMARY = Group(
                       "MDOF-steps/s", "peak memory of a rank [MB]"), NUMBER),
      "static state": Group(optional={"seconds": NUMBER, "stages": [Group(
          optional={"sum of loads so far [N]": [NUMBER], "sum of reactions [N]": [NUMBER],
-                   "largest displacement [m]": NUMBER})]}),
+                   "largest displacement [m]": NUMBER, "names": [TEXT]})]}),
      "damping": Group(optional={"moduli hold at [Hz]": NUMBER, "moduli at rest over given": NUMBER}),
      "through cracks": Group(optional=dict.fromkeys(
          ("largest opening from face to face at one moment [mm]", "at the time [s]",
@@ -39,9 +39,11 @@ SUMMARY = Group(
          {"effort": Group(optional={"unsolved clusters": NUMBER}),
           "blocks": Group(others=Group(
              {"time at safety one or below [s]": NUMBER},
-             dict.fromkeys(("safety at the start", "smallest safety", "time of the smallest safety [s]",
-                            "largest mobilised ratio", "slip at the end [mm]", "slip rate at the end [mm/s]"),
-                           NUMBER_OR_NONE)))}),
+             {"mass [kg]": NUMBER, "forces at the smallest safety [N]": Group(
+                 optional={"contact": Group(others=[NUMBER]), "driving, with inertia": [NUMBER]}),
+              **dict.fromkeys(("safety at the start", "smallest safety", "time of the smallest safety [s]",
+                               "largest mobilised ratio", "slip at the end [mm]", "slip rate at the end [mm/s]"),
+                              NUMBER_OR_NONE)}))}),
      "modes": Group(optional={"modes": [Group(
          {"frequency [Hz]": NUMBER, "period [s]": NUMBER, "effective mass [-]": [NUMBER],
           "cumulative effective mass [-]": [NUMBER]})]}),
@@ -70,6 +72,13 @@ FILES = {"histories": ("histories.csv",), "energy balance": ("energy.csv",), "en
 # tables over time, and the entries that say how often they have a line
 INTERVALS = {"histories.csv": "Output/histories/Interval", "interfaces.csv": "Output/interfaces/Interval",
              "energy.csv": "Output/Energy interval", "ground_motion.csv": ""}
+
+
+def is_quantity(value):
+    """Whether a value of the summary is a number, none, or a list of numbers."""
+    if isinstance(value, list):
+        return bool(value) and all(is_quantity(part) and not isinstance(part, list) for part in value)
+    return value is None or isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def read_parameters(text):

@@ -56,12 +56,24 @@
       rock.look.setColor(...scene.stone);
       renderer.addActor(rock.actor);
     }
+    // as the picture: from far away, the dam as large as fits
     const camera = renderer.getActiveCamera();
     camera.setFocalPoint(0, 0, 0);
     camera.setPosition(...scene.eye);
     camera.setViewUp(0, 0, 1);
+    camera.setParallelProjection(true);
     renderer.resetCamera(dam.data.getBounds());
-    camera.zoom(Math.min(1.3, canvas.clientWidth / canvas.clientHeight));
+    const toEye = camera.getViewMatrix();
+    const reach = [0, 4].map((row) => {
+      let low = Infinity, high = -Infinity;
+      for (let i = 0; i < start.length; i += 3) {
+        const at = toEye[row] * start[i] + toEye[row + 1] * start[i + 1] + toEye[row + 2] * start[i + 2] + toEye[row + 3];
+        low = Math.min(low, at);
+        high = Math.max(high, at);
+      }
+      return high - low;
+    });
+    camera.setParallelScale(0.6 * Math.max(reach[1], reach[0] * canvas.clientHeight / canvas.clientWidth));
     renderer.resetCameraClippingRange();
 
     const render = () => window3d.getRenderWindow().render();

@@ -51,23 +51,26 @@ def section_picture(run):
     level = [dam.section(at, axis=2)[0] for at in levels]
     if dam.is_slice or not dam.crown[0]:
         return None
-    figure = charts.Figure(figsize=(charts.WIDTH, 3.3))
-    axes = charts.place(figure, 0.6, 0.5, 1.5, 2.5)
+    figure = charts.Figure(figsize=(charts.WIDTH, 3.6))
+    axes = charts.place(figure, 0.6, 0.5, 1.6, 2.8)
     for polygon in dam.crown[0]:
         axes.fill(*polygon.T, facecolor="none", edgecolor="0.3", linewidth=0.5)
     axes.set_aspect("equal", adjustable="datalim")
     axes.invert_xaxis()
     axes.set(xlabel="y [m]", ylabel="elevation z [m]")
     axes.set_title("crown, upstream on the left", loc="left")
-    axes = charts.place(figure, 2.75, 0.5, 2.15, 2.5)
+    points = np.concatenate([polygon for polygons in level for polygon in polygons])
+    across, along = (charts.with_margin(points[:, axis]) for axis in (0, 1))
     for n, polygons in enumerate(level):
+        axes = charts.place(figure, 2.8, 2.55 - 1.02 * n, 2.1, 0.75)
         for polygon in polygons:
-            axes.fill(*polygon.T, facecolor="none", edgecolor=f"C{n}", linewidth=0.5)
-        axes.plot([], [], color=f"C{n}", label=f"z = {number(levels[n])} m")
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.set(xlabel="x [m]", ylabel="y [m]")
-    axes.set_title("level, upstream above", loc="left")
-    axes.legend(frameon=False, loc="best", fontsize=7.5)
+            axes.fill(*polygon.T, facecolor="none", edgecolor="0.3", linewidth=0.5)
+        # the same lengths in all of them
+        axes.set(xlim=across, ylim=along, ylabel="y [m]")
+        axes.set_aspect("equal", anchor="W")
+        axes.tick_params(labelbottom=n == 2)
+        axes.set_title(f"at z = {number(levels[n])} m{', upstream above' if n == 0 else ''}", loc="left")
+    axes.set_xlabel("x [m]")
     return charts.picture(figure, f"{run.prefix}Sections through the dam with their cells", f"sections_{run.label}")
 
 
@@ -159,8 +162,8 @@ def modes_section(runs):
                          damping_at(run, mode["frequency [Hz]"]),
                          *(of_mass(share) for share in mode["effective mass [-]"]),
                          *(of_mass(share) for share in mode["cumulative effective mass [-]"])])
-        parts.append(Table(["mode", "frequency [Hz]", "period [s]", "damping achieved [%]", "effective mass x [%]",
-                            "y [%]", "z [%]", "up to here x [%]", "y [%]", "z [%]"], rows,
+        masses = [f"{of} {d} [%]" for of in ("effective mass", "sum up to here") for d in "xyz"]
+        parts.append(Table(["mode", "frequency [Hz]", "period [s]", "damping achieved [%]", *masses], rows,
                            run.label if len(runs) > 1 else ""))
         if run.has("modes.vtu"):
             pictures = mode_pictures(run)
@@ -289,8 +292,8 @@ def deformed(run):
     since = "the start of the earthquake" if start_of(run) else "the unloaded model"
     when = (f"; joints and planes are open by up to {number(opening)} mm at that time, by {number(widest)} mm when "
             f"widest, at {number(widest_time)} s" if opening is not None else "")
-    return charts.framed(*image, f"{run.prefix}The dam at {number(time)} s, its motion from {since} drawn {factor:g} "
-                                 f"times{when}", f"opened_{run.label}", scale, dpi=charts.FULL_DPI)
+    return charts.framed(*image, f"{run.prefix}The dam from downstream and above at {number(time)} s, its motion from "
+                                 f"{since} drawn {factor:g} times{when}", f"opened_{run.label}", scale, dpi=charts.FULL_DPI)
 
 
 MOST_FACES = 40000  # of a scene that turns, so that the page stays small

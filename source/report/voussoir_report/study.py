@@ -2,9 +2,10 @@
 
 import pathlib
 
-from . import charts
+from . import charts, verdict
 from .files import NUMBER, TEXT, Group, csv_rows, is_number, read_json, refuse
-from .page import Pictures, Section, Table, number
+from .page import Judged, Pictures, Section, Table, number
+from .run import Run
 from .study_evaluations import CONVERGENCE, FRAGILITY, SENSITIVITY, evaluations
 
 MOST = 6  # runs of a study that are shown in detail
@@ -143,6 +144,18 @@ def curve_picture(study, over, quantity):
                           f"study_{quantity}")
 
 
+def judged_runs(study, table):
+    """How each run of a study is judged by a table of verdicts; None where no run has it."""
+    lines = [(run, {line.what: line for line in verdict.lines_of(Run(study.folder_of(run)), table)})
+             for run in study.runs if not study.lacks(run)]
+    heads = dict.fromkeys(what for _, found in lines for what in found)
+    rows = [[*(run["values"].get(entry, "–") for entry in study.entries),
+             *(Judged(f"{found[what].judged}: {found[what].found}", found[what].colour) if what in found else "–"
+               for what in heads)] for run, found in lines]
+    return Table([*map(short, study.entries), *heads], rows,
+                 f"{table[0].upper() + table[1:]} of the runs of {study.folder.name}.") if heads else None
+
+
 def study_section(_, studies):
     """Tables and curves of all studies; None without any."""
     parts = []
@@ -153,7 +166,10 @@ def study_section(_, studies):
                  *(number(run["quantities"][q]) if q in run.get("quantities", {}) else "–"
                    for q in study.quantities), *(run.get(key, "–") for key in met),
                  run["verdict"].split(". ")[0]] for run in study.runs]
-        parts.append(Table(head, rows, f"The runs of {study.folder.name}; each number as study.csv has it"))
+        tables = [judged_runs(study, verdict.ACCEPTANCE), Table(
+            head, rows, f"The runs of {study.folder.name}; each number as study.csv has it."),
+                  judged_runs(study, verdict.RESULTS)]
+        parts += [table for table in tables if table]
         for limit in study.limits:
             others = ", ".join(f"{short(entry)} {value}" for entry, value in limit["values"].items())
             parts.append(f"{others + ': ' if others else ''}the limit of {short(limit['of'])} lies between "

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 
 from . import grid as grids
 from .page import number
@@ -58,6 +59,11 @@ def at(time, place=None):
     return ", ".join(words)
 
 
+def unit_of(quantity):
+    found = re.search(r" \[([^\[\]]+)\]$", quantity)
+    return f" {found[1]}" if found else ""
+
+
 def lines_of(run, name):
     """The lines of a table of summary.json; those of the case in its order."""
     table = run.summary.get(name, {})
@@ -65,7 +71,8 @@ def lines_of(run, name):
     for entry in order:
         line = table[entry]
         value = line.get("demand", line.get("value"))
-        limit = next((f"{sense} {number(line[sense])}" for sense in ("at most", "at least") if sense in line),
+        unit = unit_of(line.get("quantity", ""))  # lines of other tables have it in their names
+        limit = next((f"{sense} {number(line[sense])}{unit}" for sense in ("at most", "at least") if sense in line),
                      "no limit in the case")
         if name == ACCEPTANCE:
             limit += f" ({line['source']})"
@@ -74,9 +81,9 @@ def lines_of(run, name):
             what = entry
         missing = NOT_ASSESSED if value is None else TO_JUDGE
         judged = {True: MET, False: NOT_MET, None: missing}.get(line.get("met"), NOT_MET)
-        place = ", ".join(part for part in (line.get("of", ""), at(line.get("at the time [s]"), line.get("at [m]")))
-                          if part)
-        yield Line(what, "no number" if value is None else number(clean(value)), limit, judged, place)
+        what_of = line.get("of", line.get("quantity", ""))
+        place = ", ".join(part for part in (what_of, at(line.get("at the time [s]"), line.get("at [m]"))) if part)
+        yield Line(what, "no number" if value is None else number(clean(value)) + unit, limit, judged, place)
 
 
 def numerical_checks(run):
@@ -118,19 +125,18 @@ def acceptance_table(run):
     return Verdict("Acceptance table", title, lines, [], judged)
 
 
-def is_linear(run):
-    """Whether the concrete of the dam has a law without strength."""
+def has_strength(run):
+    """Whether a tensile strength is given for the concrete of the dam."""
     dam = grids.dam_of(run)
     names = grids.dam_materials(run, dam.grid.names("material")) if dam else []
-    entries = dict(run.objects("Materials"))
-    return all("Tensile strength" not in entries.get(name, {}) for name in names)
+    return any(run.number(f"Materials/{name}/Tensile strength") for name in names)
 
 
 def tension_line(run):
     """Tension that nothing is compared with."""
     stresses = run.summary.get("face stresses", {})
     key = "largest principal stress [MPa]"
-    if "over-stress" in run.summary or key not in stresses or not is_linear(run):
+    if "over-stress" in run.summary or key not in stresses or has_strength(run):
         return None
     return Line("largest principal tension on the faces", f"{number(stresses[key])} MPa",
                 "no strength given (observer over-stress)", NOT_ASSESSED)

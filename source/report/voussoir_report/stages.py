@@ -1,0 +1,84 @@
+"""What the summary has of each static stage, whatever it names."""
+
+from .page import Section, Table, number
+from .run import is_quantity
+
+# what the solver did, and what the table of the load cases has
+LEFT_OUT = ("names", "iterations", "load increments", "found by multigrid", "steps of dynamic relaxation",
+            "loads", "sum of loads so far [N]", "sum of reactions [N]")
+
+
+def stages_of(run):
+    """Names and values of the static stages."""
+    stages = run.summary.get("static state", {}).get("stages", [])
+    return [(", ".join(stage.get("names", [])) or f"static {n}",
+             {key: value for key, value in stage.items() if key not in LEFT_OUT}) for n, stage in enumerate(stages, 1)]
+
+
+def objects_in(values, name=""):
+    """Names of the objects in an object of the summary, and their quantities."""
+    quantities = {key: value for key, value in values.items() if is_quantity(value)}
+    if quantities:
+        yield name, quantities
+    for key, value in values.items():
+        if isinstance(value, dict):
+            yield from objects_in(value, f"{name}, {key}" if name else key)
+
+
+def amounts(value):
+    return [abs(v) for v in (value if isinstance(value, list) else [value]) if v is not None and v == v]
+
+
+def table_of(heads, rows):
+    """A table of (words, quantities), the same quantities below each other."""
+    keys = dict.fromkeys(key for _, quantities in rows for key in quantities)
+    places = [key for key in keys if key.startswith(("position", "at "))]
+    # what is so small against the others is round-off
+    noise = {key: max(1e-9 if key.endswith("[m]") else 1e-6, 1e-6 * max(
+        (amount for _, quantities in rows for amount in amounts(quantities.get(key))), default=0.)) for key in keys}
+
+    def text(key, value):
+        if isinstance(value, list):
+            return "; ".join(text(key, part) for part in value)
+        return number(0. if value is not None and abs(value) < noise[key] else value)
+
+    def acts(quantities):
+        return any(quantities[key] is None or any(amount >= noise[key] for amount in amounts(quantities[key]))
+                   for key in quantities if key not in places)
+
+    return Table([*heads, *keys], [[*words, *(text(key, quantities[key]) if key in quantities else "–" for key in keys)]
+                                   for words, quantities in rows if acts(quantities)])
+
+
+def different(runs):
+    """The first run of those with the same stages."""
+    seen = []
+    for run in runs:
+        if stages_of(run) and not any(stages_of(run) == stages_of(other) for other in seen):
+            seen.append(run)
+    return seen
+
+
+def stages_section(runs):
+    """Tables of what the stages have by themselves, and of each group of named objects."""
+    groups = {}
+    shown = different(runs)
+    for run in shown:
+        prefix = run.prefix if len(shown) > 1 else ""
+        for stage, values in stages_of(run):
+            own = {key: value for key, value in values.items() if is_quantity(value)}
+            if own:
+                groups.setdefault("", {}).setdefault(prefix, []).append(((prefix + stage,), own))
+            for group in values:
+                for name, quantities in objects_in(values[group]) if isinstance(values[group], dict) else ():
+                    name = prefix + name
+                    groups.setdefault(group, {}).setdefault(name, []).append(((name, stage), quantities))
+    tables = [table_of([group, "after the stage"] if group else ["after the stage"],
+                       [row for rows in of_names.values() for row in rows]) for group, of_names in groups.items()]
+    tables = [table for table in tables if table.rows]
+    if not tables:
+        return None
+    return Section("Static stages", [
+        *(["They are the same in all runs."] if len(shown) == 1 < len(runs) else []),
+        "After each stage, under all loads up to there. Displacements are those from the unloaded model. What has "
+        "nothing but zeros after a stage, as a joint that is grouted later, has no line for it.", *tables])

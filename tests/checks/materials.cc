@@ -95,12 +95,14 @@ namespace Voussoir
       {
         for (const std::string &name : Registry<Material>::names())
           evaluate(name, {}, file, verdicts, communicator);
-        for (const char *name : {"concrete damage", "rock damage"})
-          evaluate(name,
-                   {"Materials/stuff/Crack direction=fixed"},
-                   file,
-                   verdicts,
-                   communicator);
+        const auto names = Registry<Material>::names();
+        for (const std::string name : {"concrete damage", "rock damage"})
+          if (std::find(names.begin(), names.end(), name) != names.end())
+            evaluate(name,
+                     {"Materials/stuff/Crack direction=fixed"},
+                     file,
+                     verdicts,
+                     communicator);
       }
 
     private:

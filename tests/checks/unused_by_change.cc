@@ -55,7 +55,8 @@ namespace Voussoir
       static std::string
       only_note(const ParameterFile &file)
       {
-        const auto &notes = make_case(file)->notes;
+        const auto  parameters = make_case(file);
+        const auto &notes      = parameters->notes;
         return notes.size() == 1 ? notes[0] :
                                    std::to_string(notes.size()) + " notes";
       }

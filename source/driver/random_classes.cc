@@ -98,9 +98,10 @@ namespace Voussoir
           continue;
         std::ostringstream text;
         prm.print_parameters(text, ParameterHandler::JSON);
+        const auto entries = nlohmann::json::parse(text.str());
         std::map<std::string, std::string> values;
         for (const auto &[entry, item] :
-             nlohmann::json::parse(text.str()).at("Materials").at(name).items())
+             entries.at("Materials").at(name).items())
           if (item.contains("value") && item.at("value").is_string() &&
               parse_number(item.at("value").get<std::string>()))
             values[entry] = item.at("value");

@@ -226,7 +226,7 @@ namespace Voussoir
 
     multigrid.emplace(
       [this](Vector &force, const Vector &displacement) {
-        multiply(force, displacement);
+        multiply(force, displacement, true);
         clear_constrained(force);
       },
       matrix,
@@ -260,15 +260,19 @@ namespace Voussoir
   ElasticSolver::apply(Vector &force, const Vector &displacement) const
   {
     stop_if_requested(discretization.grid.communicator());
-    multiply(force, displacement);
+    multiply(force, displacement, false);
   }
 
 
   void
-  ElasticSolver::multiply(Vector &force, const Vector &displacement) const
+  ElasticSolver::multiply(Vector       &force,
+                          const Vector &displacement,
+                          const bool    single_precision) const
   {
     const auto respond = [&](const Vector &moved) {
-      internal_force.apply(force, moved);
+      SweepInput input       = SweepInput::undamped(moved);
+      input.single_precision = single_precision;
+      internal_force.apply(force, input);
       if (springs != nullptr)
         springs->add_to(force, moved, 0.);
       if (static_contact)

@@ -8,8 +8,6 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 
-#include <map>
-#include <set>
 
 namespace Voussoir
 {
@@ -47,6 +45,19 @@ namespace Voussoir
       "round-off, which pounding of cracks and joints amplifies. "
       "Reproducible: results do not depend on the number of ranks, bit for "
       "bit, at a cost in time; doc/running.md says which results.");
+    add_option(
+      prm,
+      "Cell precision",
+      precision,
+      "Arithmetic of the internal forces of elastic cells of degree 1 in the "
+      "time loop, and of the smoother of the static solver. Single: strain, "
+      "stress and forces of a cell are computed in single precision, twice as "
+      "many cells at a time, from relative displacements of its nodes that are "
+      "formed in double precision; sums at the nodes, the motion, cells that "
+      "crack or yield and static equilibrium are in double precision. Faster by "
+      "a half to two thirds, with round-off of 1e-7 of the strain, that of the "
+      "static state included. Cells of higher degree and reproducible sums are "
+      "in double precision whatever is asked for.");
   }
 
 
@@ -82,16 +93,6 @@ namespace Voussoir
     }
 
 
-    // The library's geometry of the cells, to be changed.
-    internal::MatrixFreeFunctions::MappingInfo<3, double, Lanes> &
-    geometry_of(Discretization::MatrixFree &matrix_free)
-    {
-      return const_cast<
-        internal::MatrixFreeFunctions::MappingInfo<3, double, Lanes> &>(
-        matrix_free.get_mapping_info());
-    }
-
-
     // Corners of the cells of a batch; lanes without cell have those of the
     // last one.
     std::array<Point<3, Lanes>, 8>
@@ -119,6 +120,8 @@ namespace Voussoir
     : grid(grid)
     , degree(parameters.degree)
     , reproducible(parameters.sums == Sums::reproducible)
+    , single_precision(has_singles && degree == 1 && !reproducible &&
+                       parameters.precision == CellPrecision::single_precision)
     , fe(FE_Q<3>(parameters.degree), 3)
     , dof_handler(grid.triangulation())
     , parameters(parameters)
@@ -169,7 +172,6 @@ namespace Voussoir
                        data);
     if (reproducible)
       {
-        use_own_geometry();
         for (const auto &cell : dof_handler.active_cell_iterators())
           if (cell->is_locally_owned())
             longest_edge = std::max(longest_edge, Voussoir::longest_edge(cell));
@@ -187,8 +189,13 @@ namespace Voussoir
           places[grid.owned_cell(matrix_free.get_cell_iterator(batch, lane))] =
             {batch, lane};
       }
-    if (parameters.one_point(false))
-      keep_corners_only();
+    if (degree == 1)
+      {
+        keep_corners_only();
+        find_node_entries();
+      }
+    if (single_precision)
+      make_single_corners();
 
     node_positions.resize(n_owned_nodes());
     FEValues<3> nodes(mapping,
@@ -226,99 +233,72 @@ namespace Voussoir
 
 
   void
-  Discretization::use_own_geometry()
+  Discretization::keep_corners_only()
+  {
+    const unsigned int n_batches = matrix_free.n_cell_batches();
+    matrix_free.corners.resize(n_batches);
+    for (unsigned int batch = 0; batch < n_batches; ++batch)
+      matrix_free.corners[batch] = corners_of(matrix_free, batch);
+    auto &geometry =
+      const_cast<
+        internal::MatrixFreeFunctions::MappingInfo<3, double, Lanes> &>(
+        matrix_free.get_mapping_info())
+        .cell_data[0];
+    // FEEvaluation::reinit takes the address of the first
+    std::fill(geometry.data_index_offsets.begin(),
+              geometry.data_index_offsets.end(),
+              0);
+    geometry.JxW_values   = AlignedVector<Lanes>(1);
+    geometry.jacobians[0] = AlignedVector<Tensor<2, 3, Lanes>>(1);
+  }
+
+
+  void
+  Discretization::find_node_entries()
   {
     using namespace internal::MatrixFreeFunctions;
-    auto              &geometry  = geometry_of(matrix_free);
-    const unsigned int n_batches = matrix_free.n_cell_batches();
-    std::fill(geometry.cell_type.begin(), geometry.cell_type.end(), general);
-    for (auto &data : geometry.cell_data)
+    matrix_free.node_entries.assign(matrix_free.n_cell_batches(), nullptr);
+    const DoFInfo     &dof_info = matrix_free.get_dof_info();
+    const auto        &masks    = dof_info.hanging_node_constraint_masks;
+    const auto        &layout   = *matrix_free.get_vector_partitioner();
+    const unsigned int size =
+      layout.locally_owned_size() + layout.n_ghost_indices();
+    for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
       {
-        const Quadrature<3> &quadrature = data.descriptor[0].quadrature;
-        const unsigned int   n          = quadrature.size();
-        const bool has_points = !data.quadrature_point_offsets.empty();
-        data.JxW_values.resize(n * n_batches);
-        data.jacobians[0].resize(n * n_batches);
-        if (has_points)
-          data.quadrature_points.resize(n * n_batches);
-        for (unsigned int batch = 0; batch < n_batches; ++batch)
-          {
-            data.data_index_offsets[batch] = n * batch;
-            if (has_points)
-              data.quadrature_point_offsets[batch] = n * batch;
-            const std::array<Point<3, Lanes>, 8> corners =
-              corners_of(matrix_free, batch);
-            for (unsigned int q = 0; q < n; ++q)
-              {
-                const Point<3>     &unit = quadrature.point(q);
-                Tensor<2, 3, Lanes> jacobian;
-                Point<3, Lanes>     place;
-                for (unsigned int v = 0; v < 8; ++v)
-                  {
-                    const Tensor<1, 3> gradient =
-                      GeometryInfo<3>::d_linear_shape_function_gradient(unit,
-                                                                        v);
-                    const double value =
-                      GeometryInfo<3>::d_linear_shape_function(unit, v);
-                    for (unsigned int d = 0; d < 3; ++d)
-                      {
-                        place[d] += value * corners[v][d];
-                        for (unsigned int e = 0; e < 3; ++e)
-                          jacobian[d][e] += gradient[e] * corners[v][d];
-                      }
-                  }
-                data.JxW_values[n * batch + q] =
-                  determinant(jacobian) * quadrature.weight(q);
-                data.jacobians[0][n * batch + q] = transpose(invert(jacobian));
-                if (has_points)
-                  data.quadrature_points[n * batch + q] = place;
-              }
-          }
+        if (dof_info.index_storage_variants[DoFInfo::dof_access_cell][batch] !=
+            DoFInfo::IndexStorageVariants::interleaved)
+          continue;
+        bool hanging = false;
+        if (!masks.empty())
+          for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+            hanging = hanging || masks[batch * Lanes::size() + lane] !=
+                                   unconstrained_compressed_constraint_kind;
+        // the entries of the first component; those of the others follow them,
+        // of ghost nodes too
+        const unsigned int *entries =
+          dof_info.dof_indices_interleaved.data() +
+          dof_info.row_starts[3 * batch * Lanes::size()].first;
+        if (!hanging &&
+            *std::max_element(entries, entries + 8 * Lanes::size()) + 4 <= size)
+          matrix_free.node_entries[batch] = entries;
       }
   }
 
 
   void
-  Discretization::keep_corners_only()
+  Discretization::make_single_corners()
   {
-    const unsigned int n_batches = matrix_free.n_cell_batches();
-    matrix_free.corners.resize(n_batches);
-    auto &geometry = geometry_of(matrix_free).cell_data[0];
-    // blocks of the batches, which may share them, begin at these offsets
-    auto                  &offsets = geometry.data_index_offsets;
-    std::set<unsigned int> begins(offsets.begin(), offsets.end());
-    begins.insert(geometry.JxW_values.size());
-    std::map<unsigned int, unsigned int> kept;
-    AlignedVector<Lanes>                 weights;
-    AlignedVector<Tensor<2, 3, Lanes>>   jacobians;
-    for (unsigned int batch = 0; batch < n_batches; ++batch)
-      if (has_one_point(material_of_batch[batch]))
-        {
-          matrix_free.corners[batch] = corners_of(matrix_free, batch);
-          offsets[batch] = 0; // FEEvaluation::reinit takes the address
-        }
-      else
-        {
-          const auto [place, is_new] =
-            kept.emplace(offsets[batch], weights.size());
-          if (is_new)
-            for (unsigned int i = offsets[batch];
-                 i < *begins.upper_bound(offsets[batch]);
-                 ++i)
-              {
-                weights.push_back(geometry.JxW_values[i]);
-                jacobians.push_back(geometry.jacobians[0][i]);
-              }
-          offsets[batch] = place->second;
-        }
-    if (weights.empty())
+    matrix_free.single_corners.resize(matrix_free.n_cell_batches());
+    for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
       {
-        weights.resize(1);
-        jacobians.resize(1);
+        const std::array<Point<3, Lanes>, 8> corners =
+          corners_of(matrix_free, batch);
+        for (unsigned int v = 0; v < 8; ++v)
+          for (unsigned int d = 0; d < 3; ++d)
+            for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+              matrix_free.single_corners[batch][8 * d + v][lane] =
+                corners[v][d][lane] - corners[0][d][lane];
       }
-    // copies have no room to grow
-    geometry.JxW_values   = AlignedVector<Lanes>(weights);
-    geometry.jacobians[0] = AlignedVector<Tensor<2, 3, Lanes>>(jacobians);
   }
 
 

@@ -16,7 +16,8 @@ namespace Voussoir
                  const unsigned int         first,
                  const unsigned int         last,
                  const Run                 &run,
-                 Rounding                  *rounding = nullptr)
+                 Rounding                  *rounding         = nullptr,
+                 const bool                 single_precision = false)
     {
       const auto &material_of_batch = discretization.material_of_batch;
       for (unsigned int begin = first; begin < last;)
@@ -33,7 +34,8 @@ namespace Voussoir
                         discretization.has_one_point(material),
                         factors[material],
                         discretization.reproducible,
-                        rounding});
+                        rounding,
+                        single_precision});
           begin = end;
         }
     }
@@ -52,22 +54,27 @@ namespace Voussoir
     on_runs(const Discretization      &discretization,
             const std::vector<double> &factors,
             const Run                 &run,
-            Rounding                  *rounding = nullptr)
+            Rounding                  *rounding         = nullptr,
+            const bool                 single_precision = false)
     {
-      return [&, rounding](const dealii::MatrixFree<3, double, Lanes> &,
+      return
+        [&,
+         rounding,
+         single_precision](const dealii::MatrixFree<3, double, Lanes> &,
                            Vector                                      &dst,
                            const Vector                                &src,
                            const std::pair<unsigned int, unsigned int> &range) {
-        for_each_run(
-          discretization,
-          factors,
-          range.first,
-          range.second,
-          [&](const unsigned int material, const CellRange &cells) {
-            run(material, cells, dst, src);
-          },
-          rounding);
-      };
+          for_each_run(
+            discretization,
+            factors,
+            range.first,
+            range.second,
+            [&](const unsigned int material, const CellRange &cells) {
+              run(material, cells, dst, src);
+            },
+            rounding,
+            single_precision);
+        };
     }
   } // namespace
 
@@ -219,7 +226,8 @@ namespace Voussoir
       on_runs(discretization,
               factors,
               run,
-              discretization.reproducible ? &rounding : nullptr);
+              discretization.reproducible ? &rounding : nullptr,
+              input.single_precision && discretization.single_precision);
 
     // the initial value of a sum must be in quanta, too
     const auto begin_sums = [&](const unsigned int begin,
@@ -266,7 +274,11 @@ namespace Voussoir
     };
     const auto loop = [&](Rounding *rounding) {
       discretization.matrix_free.cell_loop(
-        on_runs(discretization, factors, run, rounding),
+        on_runs(discretization,
+                factors,
+                run,
+                rounding,
+                input.single_precision && discretization.single_precision),
         force,
         input.filtered,
         true);

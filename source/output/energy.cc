@@ -239,6 +239,8 @@ namespace Voussoir
     // one that stays; the balance cannot be more accurate than the round-off of
     // that and of the static energy
     const double net = terms.input - terms.boundary;
+    const double round_off =
+      equation.discretization.single_precision ? 5e-4 : 1e-12;
     // which grows with each step, as the last digits of exact sums do
     const double of_step =
       std::numeric_limits<double>::epsilon() * static_work +
@@ -248,7 +250,7 @@ namespace Voussoir
                               std::abs(net + terms.constraints),
                               1e-6 * terms.boundary,
                               initial,
-                              1e-12 * static_work,
+                              round_off * static_work,
                               100. * of_step * (state.step + 1.)});
     largest_error = std::max(largest_error, relative_error());
     if (!lines.due(state.step) && !end)

@@ -165,7 +165,8 @@ namespace Voussoir
        uniform ? SweepInput::Damping::common : SweepInput::Damping::by_material,
                    &memory,
                    point_step,
-       bound ? &*bound : nullptr},
+       bound ? &*bound : nullptr,
+                   true},
       state.material_memory,
       [&](const unsigned int begin, const unsigned int end) {
         update_memory(state, begin, end);

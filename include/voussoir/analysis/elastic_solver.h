@@ -99,7 +99,9 @@ namespace Voussoir
 
     /** `apply` without polling for a request to stop. */
     void
-    multiply(Vector &force, const Vector &displacement) const;
+    multiply(Vector       &force,
+             const Vector &displacement,
+             const bool    single_precision) const;
 
     /** Diagonal of the matrix, at owned entries. */
     Vector

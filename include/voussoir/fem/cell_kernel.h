@@ -18,6 +18,7 @@ namespace Voussoir
     double                            stress_factor;      // k of this stage [1]
     bool                              exact_sums = false; // of energies
     Rounding *rounding = nullptr; // of forces; null: they stay as they are
+    bool      single_precision = false; // of forces, where it can be
   };
 
   /** A time step, as passed to laws with internal variables. */
@@ -67,6 +68,7 @@ namespace Voussoir
     const Vector      *damping_memory = nullptr; // w [m], if `by_material`
     PointStep          step           = {}; // of laws with internal variables
     const MotionBound *bound          = nullptr; // null: none is known
+    bool single_precision = false; // of forces, where the discretization allows
 
     /** Strain of the displacement alone, which laws follow at once. */
     static SweepInput

@@ -55,12 +55,28 @@ namespace Voussoir
   }
 
 
+  /** Arithmetic of the internal forces of trilinear cells in the time loop. */
+  enum class CellPrecision
+  {
+    single_precision,
+    double_precision
+  };
+
+  inline OptionNames<CellPrecision>
+  option_names(const CellPrecision)
+  {
+    return {{CellPrecision::single_precision, "single"},
+            {CellPrecision::double_precision, "double"}};
+  }
+
+
   /** The entries of the section "Discretization". */
   struct DiscretizationParameters
   {
     unsigned int   degree     = 1;
     QuadratureRule quadrature = QuadratureRule::gauss;
     Sums           sums       = Sums::as_dealt;
+    CellPrecision  precision  = CellPrecision::double_precision;
 
     void
     declare(dealii::ParameterHandler &prm);
@@ -109,8 +125,18 @@ namespace Voussoir
     struct MatrixFree : dealii::MatrixFree<3, double, Lanes>
     {
       /** Corners of the cells of each batch, which are all the geometry that
-       *  cells with one point need; none if there are no such cells. */
+       *  trilinear cells need; none if cells are of higher degree. */
       dealii::AlignedVector<std::array<dealii::Point<3, Lanes>, 8>> corners;
+
+      /** The same in single precision, relative to the first corner, component
+       *  by component; none unless forces are computed so. */
+      dealii::AlignedVector<std::array<HalfSingles, 24>> single_corners;
+
+      /** Of each batch of trilinear cells the first vector entry of each node
+       *  in each lane, if the nodes can be read and written whole, four entries
+       *  of the vector at once; else null. That takes a third of the time that
+       *  the library needs entry by entry. */
+      std::vector<const unsigned int *> node_entries;
     };
 
     /**
@@ -126,6 +152,9 @@ namespace Voussoir
     const unsigned int degree;
     /** Whether results must not depend on the partition, bit for bit. */
     const bool reproducible;
+    /** Whether the time loop computes internal forces in single precision where
+     *  it can. */
+    const bool single_precision;
     /** Of all cells, where results are reproducible [m]. */
     double longest_edge = 0.;
     /** Share of the width of a cell that one crack takes. */
@@ -234,16 +263,18 @@ namespace Voussoir
     void
     number_by_nodes();
 
-    /** Computes the geometry of each cell from its own corners. The library
-     *  takes that of the first cell of a rank for all cells that differ by
-     *  round-off. */
-    void
-    use_own_geometry();
-
-    /** Keeps the corners of the cells with one point, and frees the geometry
-     *  that the library has computed for them. */
+    /** Keeps the corners of the cells, and frees the geometry that the library
+     *  has computed for them. */
     void
     keep_corners_only();
+
+    /** Sets MatrixFree::node_entries. */
+    void
+    find_node_entries();
+
+    /** Sets MatrixFree::single_corners. */
+    void
+    make_single_corners();
 
     std::vector<dealii::types::global_dof_index> first_dof_of_rank;
     std::vector<Place>                           places; // of owned cells

@@ -12,9 +12,78 @@ namespace Voussoir
   /** The SIMD type of all cell work: one cell per lane. */
   using Lanes = dealii::VectorizedArray<double>;
 
+  /** Two batches of cells at a time in single precision, unless a batch is one
+   *  cell. */
+  constexpr bool has_singles = Lanes::size() > 1;
+  using Singles =
+    std::conditional_t<has_singles,
+                       dealii::VectorizedArray<float, 2 * Lanes::size()>,
+                       dealii::VectorizedArray<float, 1>>;
+
   /** Strain or stress of one point, in each lane if Number is `Lanes`. */
   template <typename Number>
   using SymmetricTensor3 = dealii::SymmetricTensor<2, 3, Number>;
+
+  /** The numbers of one batch in single precision. */
+  typedef float HalfSingles
+    __attribute__((vector_size(sizeof(float) * Lanes::size())));
+
+  template <typename Double>
+  HalfSingles
+  rounded(const Double &numbers)
+  {
+    if constexpr (has_singles)
+      return __builtin_convertvector(numbers.data, HalfSingles);
+    else
+      return HalfSingles();
+  }
+
+  template <std::size_t... lanes>
+  Singles
+  joined(const HalfSingles &first,
+         const HalfSingles &second,
+         const std::index_sequence<lanes...>)
+  {
+    Singles result = 0.f;
+    if constexpr (sizeof...(lanes) > 2)
+      result.data = __builtin_shufflevector(first, second, lanes...);
+    return result;
+  }
+
+  /** The numbers of two batches. */
+  inline Singles
+  singles_of(const HalfSingles &first, const HalfSingles &second)
+  {
+    return joined(first, second, std::make_index_sequence<2 * Lanes::size()>());
+  }
+
+  inline Singles
+  singles_of(const Lanes &first, const Lanes &second)
+  {
+    return singles_of(rounded(first), rounded(second));
+  }
+
+  /** The numbers of the first batch (@p half 0) or of the second one. */
+  inline Lanes
+  half_of_singles(const Singles &numbers, const unsigned int half)
+  {
+    Lanes result = 0.;
+    if constexpr (has_singles)
+      for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+        result[lane] = numbers[half * Lanes::size() + lane];
+    return result;
+  }
+
+  inline SymmetricTensor3<Singles>
+  singles_of(const SymmetricTensor3<Lanes> &first,
+             const SymmetricTensor3<Lanes> &second)
+  {
+    SymmetricTensor3<Singles> result;
+    for (unsigned int i = 0; i < 6; ++i)
+      result.access_raw_entry(i) =
+        singles_of(first.access_raw_entry(i), second.access_raw_entry(i));
+    return result;
+  }
 
   /** The tensor whose six components (deal.II's order) are these numbers. */
   template <typename Number>
@@ -51,14 +120,18 @@ namespace Voussoir
     return number;
   }
 
-  inline double &
-  lane_of(Lanes &numbers, const unsigned int lane)
+  template <typename Number, std::size_t width>
+  Number &
+  lane_of(dealii::VectorizedArray<Number, width> &numbers,
+          const unsigned int                      lane)
   {
     return numbers[lane];
   }
 
-  inline const double &
-  lane_of(const Lanes &numbers, const unsigned int lane)
+  template <typename Number, std::size_t width>
+  const Number &
+  lane_of(const dealii::VectorizedArray<Number, width> &numbers,
+          const unsigned int                            lane)
   {
     return numbers[lane];
   }
@@ -69,9 +142,12 @@ namespace Voussoir
   any_above(const Number &numbers, const double limit)
   {
     // as wide as the numbers, so that one instruction compares all lanes
-    std::uint64_t any = 0;
+    using Real = std::decay_t<decltype(lane_of(std::declval<Number &>(), 0u))>;
+    using Bits =
+      std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
+    Bits any = 0;
     for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
-      any |= std::uint64_t(lane_of(numbers, lane) > limit);
+      any |= Bits(lane_of(numbers, lane) > Real(limit));
     return any != 0;
   }
 

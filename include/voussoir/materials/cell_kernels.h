@@ -2,7 +2,7 @@
 #define voussoir_materials_cell_kernels_h
 
 #include <voussoir/fem/cell_kernel.h>
-#include <voussoir/fem/one_point_cell.h>
+#include <voussoir/fem/trilinear_cells.h>
 #include <voussoir/materials/damped_response.h>
 
 namespace Voussoir
@@ -19,7 +19,15 @@ namespace Voussoir
 
     template <typename Cell>
     constexpr bool is_one_point =
-      std::is_same_v<std::decay_t<Cell>, OnePointCell>;
+      std::is_base_of_v<OnePointShape<Lanes>, std::decay_t<Cell>> ||
+      std::is_base_of_v<OnePointShape<Singles>, std::decay_t<Cell>>;
+
+    /** The cells of two batches in single precision. */
+    template <typename Cell>
+    using SingleCells =
+      std::conditional_t<is_one_point<Cell>,
+                         SingleTrilinearCells<OnePointShape>,
+                         SingleTrilinearCells<EightPointShape>>;
 
     /** Calls work(cell) with the kind of these cells. */
     template <typename Work>
@@ -27,7 +35,9 @@ namespace Voussoir
     with_cells(const CellRange &cells, const Work &work)
     {
       if (cells.one_point)
-        work(OnePointCell(cells.matrix_free));
+        work(TrilinearCells<OnePointShape>(cells.matrix_free));
+      else if (!cells.matrix_free.corners.empty())
+        work(TrilinearCells<EightPointShape>(cells.matrix_free));
       else
         work(Evaluation(cells.matrix_free));
     }
@@ -125,6 +135,44 @@ namespace Voussoir
     }
 
 
+    /** Evaluates the strain of x + s w. */
+    template <typename Cells>
+    void
+    evaluate_filtered(Cells            &cells,
+                      const SweepInput &input,
+                      const double      damping_factor)
+    {
+      if (input.damping == SweepInput::Damping::by_material)
+        cells.gather_evaluate(input.filtered,
+                              *input.damping_memory,
+                              damping_factor);
+      else
+        cells.gather_evaluate(input.filtered);
+    }
+
+
+    /**
+     * Takes two batches at a time, work_on_two(first), where single precision
+     * is asked for and possible, unless that returns false; else each by
+     * itself, work(batch).
+     */
+    template <typename WorkOnTwo, typename Work>
+    void
+    for_each_batch(const CellRange &cells,
+                   const WorkOnTwo &work_on_two,
+                   const Work      &work)
+    {
+      const auto &entries = cells.matrix_free.node_entries;
+      for (unsigned int batch = cells.begin; batch < cells.end;)
+        if (cells.single_precision && batch + 1 < cells.end && // of degree 1
+            entries[batch] != nullptr && entries[batch + 1] != nullptr &&
+            work_on_two(batch))
+          batch += 2;
+        else
+          work(batch++);
+    }
+
+
     /** CellKernel::add_force. */
     template <typename Law>
     void
@@ -135,20 +183,91 @@ namespace Voussoir
               Vector           &force)
     {
       const double stress_factor = cells.stress_factor;
+      const auto   submit_stress = [&](auto &cell) {
+        for (const unsigned int q : cell.quadrature_point_indices())
+          cell.submit_symmetric_gradient(
+            stress_factor * law.stress(cell.get_symmetric_gradient(q)), q);
+        stabilise(cell, law, stress_factor);
+      };
       with_cells(cells, [&](auto &&cell) {
-        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+        if (!cells.single_precision)
           {
-            cell.reinit(batch);
-            read_filtered(cell, input, damping_factor);
-            cell.evaluate(dealii::EvaluationFlags::gradients);
-            for (const unsigned int q : cell.quadrature_point_indices())
-              cell.submit_symmetric_gradient(
-                stress_factor * law.stress(cell.get_symmetric_gradient(q)), q);
-            stabilise(cell, law, stress_factor);
-            cell.integrate(dealii::EvaluationFlags::gradients);
-            add_to_nodes(cell, cells, force);
+            for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+              {
+                cell.reinit(batch);
+                read_filtered(cell, input, damping_factor);
+                cell.evaluate(dealii::EvaluationFlags::gradients);
+                submit_stress(cell);
+                cell.integrate(dealii::EvaluationFlags::gradients);
+                add_to_nodes(cell, cells, force);
+              }
+            return;
+          }
+        SingleCells<decltype(cell)> two(cells.matrix_free);
+        for (unsigned int batch = cells.begin; batch < cells.end; batch += 2)
+          {
+            two.reinit(batch, std::min(2U, cells.end - batch));
+            evaluate_filtered(two, input, damping_factor);
+            submit_stress(two);
+            two.integrate();
+            two.distribute_local_to_global(force);
           }
       });
+    }
+
+
+    /**
+     * Elastic forces of the cells of @p n batches from @p batch on, in single
+     * precision. Returns, for each, the largest yield ratio of the points of
+     * each cell; 2 for cells that have left the elastic range.
+     */
+    template <typename Cells, typename Law>
+    std::array<Lanes, 2>
+    find_elastic_forces(Cells                     &cells,
+                        const Law                 &law,
+                        const DampedResponse<Law> &response,
+                        const double               stress_factor,
+                        const double               damping_factor,
+                        const unsigned int         batch,
+                        const unsigned int         n,
+                        const SweepInput          &input,
+                        const PointHistory        &history)
+    {
+      const unsigned int last = batch + n - 1;
+      cells.reinit(batch, n);
+      evaluate_filtered(cells, input, damping_factor);
+      const Singles widest =
+        singles_of(history.bands(batch).widest, history.bands(last).widest);
+      Singles ratio = 0.f;
+      for (const unsigned int q : cells.quadrature_point_indices())
+        {
+          const SymmetricTensor3<Singles> stress =
+            stress_factor * law.stress(cells.get_symmetric_gradient(q));
+          cells.submit_symmetric_gradient(stress, q);
+          SymmetricTensor3<Singles> trial = stress;
+          if (history.has_static_strains())
+            trial +=
+              law.stress(singles_of(response.elastic_offset(batch, q, history),
+                                    response.elastic_offset(last, q, history)));
+          ratio = std::max(ratio, law.yield_ratio(trial, widest));
+        }
+      stabilise(cells, law, stress_factor);
+      cells.integrate();
+
+      std::array<Lanes, 2> ratios;
+      for (unsigned int half = 0; half < n; ++half)
+        {
+          ratios[half] = half_of_singles(ratio, half);
+          for (const unsigned int q : cells.quadrature_point_indices())
+            if (history.is_active(batch + half, q))
+              ratios[half] =
+                dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
+                  history.active_point(batch + half, q).band,
+                  Lanes(0.),
+                  ratios[half],
+                  Lanes(2.));
+        }
+      return ratios;
     }
 
 
@@ -173,51 +292,95 @@ namespace Voussoir
         // damping does not act in cracks
         std::decay_t<decltype(cell)> undamped_cell(matrix_free);
         auto                        &own = damped ? undamped_cell : cell;
-        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+        const auto find_forces           = [&](const unsigned int batch) {
+          const Lanes widest = history.bands(batch).widest;
+          cell.reinit(batch);
+          read_filtered(cell, input, damping_factor);
+          cell.evaluate(dealii::EvaluationFlags::gradients);
+          bool knows_own = !damped;
+          for (const unsigned int q : cell.quadrature_point_indices())
+            {
+              SymmetricTensor3<Lanes> stress =
+                stress_factor * law.stress(cell.get_symmetric_gradient(q));
+              SymmetricTensor3<Lanes> trial = stress;
+              if (history.has_static_strains())
+                trial += law.stress(response.elastic_offset(batch, q, history));
+              const bool is_active = history.is_active(batch, q);
+              Lanes      ratio     = 0.;
+              if (!is_active || history.lanes_are_alone())
+                ratio = law.yield_ratio(trial, widest);
+              if (is_active || any_above(ratio, 1.))
+                {
+                  if (!knows_own)
+                    {
+                      own.reinit(batch);
+                      own.gather_evaluate(input.displacement,
+                                          dealii::EvaluationFlags::gradients);
+                      knows_own = true;
+                    }
+                  stress = response.advance(
+                    stress,
+                    ratio,
+                    cell.get_symmetric_gradient(q),
+                    own.get_symmetric_gradient(q),
+                    batch,
+                    q,
+                    matrix_free.n_active_entries_per_cell_batch(batch),
+                    cell.JxW(q),
+                    step,
+                    history);
+                }
+              cell.submit_symmetric_gradient(stress, q);
+            }
+          stabilise(cell, law, stress_factor);
+          cell.integrate(dealii::EvaluationFlags::gradients);
+        };
+        if (!cells.single_precision)
           {
-            const Lanes widest = history.bands(batch).widest;
-            cell.reinit(batch);
-            read_filtered(cell, input, damping_factor);
-            cell.evaluate(dealii::EvaluationFlags::gradients);
-            bool knows_own = !damped;
-            for (const unsigned int q : cell.quadrature_point_indices())
+            for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
               {
-                SymmetricTensor3<Lanes> stress =
-                  stress_factor * law.stress(cell.get_symmetric_gradient(q));
-                SymmetricTensor3<Lanes> trial = stress;
-                if (history.has_static_strains())
-                  trial +=
-                    law.stress(response.elastic_offset(batch, q, history));
-                const bool is_active = history.is_active(batch, q);
-                Lanes      ratio     = 0.;
-                if (!is_active || history.lanes_are_alone())
-                  ratio = law.yield_ratio(trial, widest);
-                if (is_active || any_above(ratio, 1.))
-                  {
-                    if (!knows_own)
-                      {
-                        own.reinit(batch);
-                        own.gather_evaluate(input.displacement,
-                                            dealii::EvaluationFlags::gradients);
-                        knows_own = true;
-                      }
-                    stress = response.advance(
-                      stress,
-                      ratio,
-                      cell.get_symmetric_gradient(q),
-                      own.get_symmetric_gradient(q),
-                      batch,
-                      q,
-                      matrix_free.n_active_entries_per_cell_batch(batch),
-                      cell.JxW(q),
-                      step,
-                      history);
-                  }
-                cell.submit_symmetric_gradient(stress, q);
+                find_forces(batch);
+                add_to_nodes(cell, cells, force);
               }
-            stabilise(cell, law, stress_factor);
-            cell.integrate(dealii::EvaluationFlags::gradients);
-            add_to_nodes(cell, cells, force);
+            return;
+          }
+
+        // What a cell does must not depend on the others of its batch: cells
+        // that are elastic, and not at their limit but for round-off, are so
+        // in single precision beside others that are not.
+        const Lanes                 limit = 1. - 1e-5;
+        SingleCells<decltype(cell)> two(matrix_free);
+        for (unsigned int batch = cells.begin; batch < cells.end; batch += 2)
+          {
+            const unsigned int n          = std::min(2U, cells.end - batch);
+            const auto         ratios     = find_elastic_forces(two,
+                                                    law,
+                                                    response,
+                                                    stress_factor,
+                                                    damping_factor,
+                                                    batch,
+                                                    n,
+                                                    input,
+                                                    history);
+            const auto         is_elastic = [&](const unsigned int half) {
+              return !any_above(ratios[half], limit[0]);
+            };
+            if (n == 2 && is_elastic(0) && is_elastic(1))
+              two.distribute_local_to_global(force);
+            else
+              for (unsigned int half = 0; half < n; ++half)
+                if (is_elastic(half))
+                  two.distribute_half(force, half);
+                else
+                  {
+                    find_forces(batch + half);
+                    Lanes *forces = cell.begin_dof_values();
+                    for (unsigned int i = 0; i < cell.dofs_per_cell; ++i)
+                      forces[i] = dealii::compare_and_apply_mask<
+                        dealii::SIMDComparison::less_than_or_equal>(
+                        ratios[half], limit, two.force(i, half), forces[i]);
+                    cell.distribute_local_to_global(force);
+                  }
           }
       });
     }

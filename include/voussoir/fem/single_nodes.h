@@ -1,0 +1,81 @@
+#ifndef voussoir_fem_single_nodes_h
+#define voussoir_fem_single_nodes_h
+
+#include <voussoir/fem/discretization.h>
+
+#include <deal.II/matrix_free/fe_evaluation.h>
+
+#include <array>
+
+namespace Voussoir
+{
+  /**
+   * Nodes of one or two batches of trilinear cells, whose values are read and
+   * written in single precision: a cell gets the displacement of its nodes
+   * relative to its first one, and this difference is formed in double
+   * precision, so that round-off is relative to the strain and not to the
+   * displacement. Forces are summed at the nodes in double precision.
+   */
+  class SingleNodes
+  {
+  public:
+    using MatrixFree = Discretization::MatrixFree;
+
+    explicit SingleNodes(const MatrixFree &matrix_free)
+      : matrix_free(matrix_free)
+      , by_entries(matrix_free)
+    {}
+
+    /** Components one by one: of node v entry 8 d + v. */
+    using Values = std::array<Singles, 24>;
+
+    /** The nodes of @p n batches from @p batch on; of one, both halves of the
+     *  values are the same. */
+    void
+    reinit(const unsigned int batch, const unsigned int n);
+
+    /** Corners of the cells relative to their first one [m]. */
+    void
+    read_corners(Values &corners) const;
+
+    void
+    read(Values &values, const Vector &vector);
+
+    /** The values of vector + factor other. */
+    void
+    read(Values       &values,
+         const Vector &vector,
+         const Vector &other,
+         const double  factor);
+
+    /** Adds the values of the first batch (@p half 0) or of the second one. */
+    void
+    add_half(Vector &vector, const Values &values, const unsigned int half);
+
+    /** Adds the values of all batches. */
+    void
+    add_to(Vector &vector, const Values &values);
+
+  private:
+    using Half = std::array<Lanes, 24>;
+
+    /** load(i) are the four entries of a vector that begin at i, load_half(i)
+     *  the values of a batch by its entries. */
+    template <typename Load, typename LoadHalf>
+    void
+    read_relative(Values &values, const Load &load, const LoadHalf &load_half);
+
+    /** Values of a batch, entry by entry. */
+    Half
+    half_of(const Vector &vector, const unsigned int half);
+
+    const MatrixFree                         &matrix_free;
+    dealii::FEEvaluation<3, -1, 0, 3, double> by_entries;
+    unsigned int                              first_batch = 0, n_batches = 0;
+
+    // MatrixFree::node_entries of the batches
+    std::array<const unsigned int *, 2> entries{{nullptr, nullptr}};
+  };
+} // namespace Voussoir
+
+#endif

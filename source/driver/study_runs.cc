@@ -198,7 +198,7 @@ namespace Voussoir
         summary.end    = RunEnd::failed;
         summary.reason = error.what();
       }
-    // what the first rank knows
+    // results of the first rank
     return nlohmann::json::parse(
       Utilities::MPI::broadcast(group, nlohmann::json(summary).dump()));
   }

@@ -116,7 +116,7 @@ namespace Voussoir
         prm.add_parameter("Modes to all",
                           modes_to_all,
                           "Number of modes that have all of the mass; 0 if "
-                          "those asked for have less.");
+                          "the computed ones have less.");
       }
 
       void

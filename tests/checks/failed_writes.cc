@@ -198,7 +198,7 @@ namespace Voussoir
         growing.append("three\n");
         const std::string too_little = growing.flush();
         limit_files(RLIM_INFINITY);
-        report("with too little room", too_little, too_large);
+        report("with too little space", too_little, too_large);
         verdicts.is_true("no part of what does not fit",
                          text_of("files/growing") == "one\ntwo\n");
         report("with room again", growing.flush());

@@ -21,7 +21,7 @@ import sys
 import time
 
 STOPPED = 75
-# of what the run in one piece leaves: the same bit for bit, on any ranks
+# files of the run in one piece that must be equal bit for bit, on any number of ranks
 SAME = ["histories.csv"]
 # peak memory of a rank differs from run to run by pages of MPI and of the allocator
 MEMORY_PLAY = 8.0  # MB

@@ -206,7 +206,7 @@ class Dam:
         """Corners of the upstream or the downstream face."""
         normals = self._unit_normals()
         sign = 1. if name == "upstream" else -1.
-        # the sides of a slice of a dam look to the banks
+        # the sides of a slice of a dam face the banks
         along_river = (sign * normals[:, 1] > 0.1) & (np.abs(normals[:, 2]) < 0.99)
         return self.exposed[along_river]
 

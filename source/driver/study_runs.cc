@@ -148,7 +148,7 @@ namespace Voussoir
                             reason + ".");
         };
         write({{"identity", identity}});
-        // what failed has nothing to go on from
+        // a failed run has no state to continue from
         summary = do_run(run, run_folder, known.is_object() && !has_ended);
         write({{"identity", identity}, {"summary", summary}});
         ++n_done;

@@ -66,7 +66,7 @@ def names_of(source, field):
 
 
 def dam_materials(names):
-    """Numbers of those that are called so, not the rock, or else of the first."""
+    """Numbers of those called so, without the rock, or else of the first."""
     def is_called(name, *words):
         return any(word in name.lower() for word in words)
 

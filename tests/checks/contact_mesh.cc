@@ -41,7 +41,7 @@ namespace Voussoir
     for (const ContactCluster &cluster : mine)
       AssertThrow(discretization.owned_dofs.is_element(3 *
                                                        cluster.nodes.front()),
-                  ExcMessage("A cluster is not with its first node."));
+                  ExcMessage("A cluster is not on the rank of its first node."));
     auto all = join_over_ranks(mine, communicator);
     std::sort(all.begin(), all.end(), lies_before);
     return all;

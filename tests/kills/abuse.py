@@ -134,7 +134,7 @@ def full_disk(options, straight, reference, chance, folder):
             code, text = start(options, folder, ["--restart"] if on else [])
             wrong = complaint(code, text)
             if wrong:
-                wrong += " when there is room"
+                wrong += " when there is space"
     finally:
         subprocess.run(["umount", "-l", folder], check=False)
     return f"{size} of {whole} bytes", wrong, code

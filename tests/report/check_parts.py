@@ -372,7 +372,7 @@ def check_page(scratch):
     kinds = dict(re.findall(r'<div class="verdict (\w+)">\s*<span class="soft">([^<]*)<', text)[::-1])
     is_true("blocks of a page", kinds == {"good": "Numerical checks", "bad": "Engineering results"})
     is_true("no verdict of old", "But look" not in text and "but look" not in text)
-    is_true("a scene without vtk.js is said to stand still", "vtk.js was not found" in text and "vtk-js" not in text)
+    is_true("a scene without vtk.js is reported as a still picture", "vtk.js was not found" in text and "vtk-js" not in text)
     is_true("all of the input", "all of parameters.prm" in text and "subsection Interfaces" in text)
     library = page.vtk_js()
     browser = shutil.which("chromium")

@@ -300,8 +300,8 @@ def dam_of(run):
 
 
 def dam_materials(run, names):
-    """Names of the materials of the dam, not of the rock: those that they or their
-    cell sets are called so, or else the first."""
+    """Names of the materials of the dam, not of the rock: those called so, by themselves
+    or by their cell sets, or else the first."""
     entries = dict(run.objects("Materials"))
 
     def is_called(name, *words):

@@ -129,7 +129,7 @@ class Run:
     def _read_summary(self):
         if not self.has("summary.json"):
             raise ReportError(f'The run in "{self.folder}" has not ended, as there is no '
-                              "summary.json yet; wait for its end, or let it go on with --restart.")
+                              "summary.json yet; wait for its end, or continue it with --restart.")
         return read_json(self.folder / "summary.json", SUMMARY, "run the case again, which writes it anew")
 
     @property

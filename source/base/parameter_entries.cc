@@ -106,6 +106,16 @@ namespace Voussoir
   }
 
 
+  std::string
+  new_name_of(const std::string &path)
+  {
+    static const std::map<std::string, std::string> renamed{
+      {"Modes/Held materials", "Fixed materials"}};
+    const auto entry = renamed.find(path);
+    return entry == renamed.end() ? "" : entry->second;
+  }
+
+
   std::map<std::string, DeclaredEntry>
   declared_entries(const dealii::ParameterHandler &prm)
   {

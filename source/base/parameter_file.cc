@@ -386,6 +386,10 @@ namespace Voussoir
           const std::string section = section_of(path);
           if (declared_sections.count(section) == 0)
             refuse_section(section, value.place);
+          if (const std::string name = new_name_of(path); !name.empty())
+            throw UserError(value.place + ": \"" + entry_of(path) + "\" " +
+                            section_text(section) + " is now called \"" + name +
+                            "\"; rename it.");
           std::vector<std::string> siblings;
           for (const auto &other : declared)
             if (other.second.section == section)

@@ -21,6 +21,11 @@ namespace Voussoir
   std::string
   section_text(const std::string &section);
 
+  /** Name today of an entry that had another one in earlier versions; empty for
+   *  all others. */
+  std::string
+  new_name_of(const std::string &path);
+
 
   /** An entry that a ParameterHandler declares. */
   struct DeclaredEntry

@@ -194,10 +194,10 @@ namespace Voussoir
 
 
     /**
-     * A rod of n cells that moves along its axis is a chain: masses m, m/2 at its
-     * free end, and springs. Mode j goes as sin(i a), a = (2j-1) pi/2n, with
-     *   omega = 2 c/h sin(a/2), effective mass cot^2(a/2)/(2n) m
-     * of (n - 1/2) m that move; 8/pi^2 of n m for the first one of many cells.
+     * A rod of n cells that moves along its axis is a chain: masses m, m/2 at
+     * its free end, and springs. Mode j goes as sin(i a), a = (2j-1) pi/2n,
+     * with omega = 2 c/h sin(a/2), effective mass cot^2(a/2)/(2n) m of (n -
+     * 1/2) m that move; 8/pi^2 of n m for the first one of many cells.
      */
     class Chain : public Check
     {

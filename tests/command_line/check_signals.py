@@ -106,7 +106,7 @@ def check_stops(scratch):
     is_true("a run that nobody disturbs ends with 0", ends(start(straight, end=ending), 300.) == 0)
     expected = contents(straight)
     for name, folder in stopped.items():
-        is_true(f"{name}: it goes on", ends(start(folder, "--restart", end=ending), 300.) == 0)
+        is_true(f"{name}: it continues", ends(start(folder, "--restart", end=ending), 300.) == 0)
         is_true("  to the same files", contents(folder) == expected)
 
 

@@ -23,7 +23,7 @@ namespace Voussoir
   };
 
   /**
-   * Which parts move without end, as far as is known: the surfaces none of
+   * Which parts move without end, as far as can be told: the surfaces none of
    * whose points sticks, by how much they have slipped and opened, and where
    * the model has moved most. Called on all ranks.
    *

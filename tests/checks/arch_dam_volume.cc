@@ -303,7 +303,7 @@ namespace Voussoir
         verdicts.is_true(name + ": missing volume falls below 0.4 of it "
                                 "with half the cell size",
                          falls(of_volume));
-        verdicts.is_true(name + ": so does what the crest length lacks",
+        verdicts.is_true(name + ": so does the missing crest length",
                          falls(of_length));
         return mesh;
       }

@@ -58,8 +58,8 @@ def check_names(app, page, source):
 
 
 def look_around(app, environment):
-    """The pages tell where each of the shipped cases comes in, links of the README
-    lead somewhere, and messages that are explained are those of the program."""
+    """The pages name each of the shipped cases, links of the README
+    have a target, and messages that are explained are those of the program."""
     for target in re.findall(r"\]\(([^):#]+)[#)]", (ROOT / "README.md").read_text()):
         if not (ROOT / target).exists():
             warn("README.md has a link to %s, which is not there", target)

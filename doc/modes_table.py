@@ -31,7 +31,7 @@ def frequencies(program, ranks, case, held, massless, water, *changes):
         folder = os.path.join(scratch, "run")
         subprocess.run(
             ["mpirun", "-np", ranks, program, f"{ROOT}/prm/{case}.prm",
-             "--set", f"Modes/Held materials={held}",
+             "--set", f"Modes/Fixed materials={held}",
              "--set", f"Modes/Massless materials={massless}",
              "--set", f"Modes/Water={water}",
              "--set", f"Output/Folder={folder}"]

@@ -28,7 +28,7 @@ COUNTED = re.compile(r"Partition into (\d+) ranks: largest load ([\d.e+]+) of th
 
 
 def run(options, ranks, level, counts=()):
-    """Summary of the run, and what it counted of partitions."""
+    """Summary of the run, and its counts of partitions."""
     folder = options.folder / f"{ranks}_ranks_level_{level}"
     command = [str(options.program.parent / "voussoir-run"), "-n", str(ranks), str(CASE),
                "--overwrite", "--set", f"Output/Folder={folder}",

@@ -175,7 +175,7 @@ def page():
             "",
             "## Errors against bounds",
             "",
-            "Tests that look at differences only: to an exact solution, to another way "
+            "Tests of differences only: to an exact solution, to another way "
             "of computing the same, of a balance. Of each the narrowest bound. By "
             f"reference: {counts(kinds_bounded)}.",
             "",

@@ -59,7 +59,7 @@ namespace Voussoir
     }
 
 
-    /** The surfaces on which nothing sticks any more. */
+    /** The surfaces none of whose points sticks. */
     std::vector<std::string>
     non_sticking_surfaces(const Contact &contact, const MPI_Comm communicator)
     {

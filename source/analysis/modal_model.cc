@@ -17,7 +17,7 @@ namespace Voussoir
                       "none. Absorbing faces are fixed in them, and the moduli "
                       "are those given.",
                       Patterns::Integer(0, 1000));
-    prm.add_parameter("Held materials",
+    prm.add_parameter("Fixed materials",
                       fixed_materials,
                       "Materials that do not move in the modes, separated by "
                       "commas: rigid rock.");
@@ -78,12 +78,12 @@ namespace Voussoir
                           "\"Materials\"" +
                           known_names(name, materials) + ".");
     };
-    check_names("Held materials", fixed_materials);
+    check_names("Fixed materials", fixed_materials);
     check_names("Massless materials", massless_materials);
     if (split_list(fixed_materials).empty() && boundaries.empty())
       throw UserError(
         "Section \"Modes\" asks for modes of a model "
         "without supports; name faces in section \"Boundaries\", or "
-        "\"Held materials\" in section \"Modes\".");
+        "\"Fixed materials\" in section \"Modes\".");
   }
 } // namespace Voussoir

@@ -143,7 +143,7 @@ namespace Voussoir
     }
 
 
-    /** Room for a file of this size, so that it is clear before the ranks write
+    /** Space for a file of this size, so that it is clear before the ranks write
      *  their parts whether there is enough of it. */
     std::string
     make_room(const std::string &name, const std::uintmax_t size)

@@ -117,7 +117,7 @@ namespace Voussoir
     }
 
 
-    // " Pa" of a description with "[Pa]", nothing of one with "[-]".
+    // " Pa" of a description with "[Pa]", empty for one with "[-]".
     std::string
     unit_of(const std::string &description)
     {

@@ -27,7 +27,7 @@ namespace Voussoir
     // without reference to ranks.
     using NodeKey = std::pair<std::uint64_t, unsigned int>;
 
-    /** A node of a face on an interface, as the face's cell sees it. */
+    /** A node of a face on an interface, on the side of the face's cell. */
     struct Record
     {
       Point<3>                position, face_center;

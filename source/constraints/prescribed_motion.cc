@@ -46,19 +46,12 @@ namespace Voussoir
         mass       = &lumped_mass;
         exact_sums = discretization.reproducible;
         take_components(place);
-        const auto &scalar = discretization.fe.base_element(0);
-        std::set<types::global_dof_index> face_nodes;
-        for_each_face(discretization,
-                      split_list(face_sets),
-                      "\"Face sets\" in section \"" + place + "\"",
-                      [&](const auto &cell, const unsigned int face) {
-                        const auto cell_nodes = discretization.cell_nodes(
-                          discretization.dof_cell(cell));
-                        for (unsigned int j = 0; j < cell_nodes.size(); ++j)
-                          if (scalar.has_support_on_face(j, face))
-                            face_nodes.insert(cell_nodes[j]);
-                      });
-        moved_nodes = owned_carriers(discretization, face_nodes);
+        moved_nodes =
+          owned_carriers(discretization,
+                         nodes_of_faces(discretization,
+                                        split_list(face_sets),
+                                        "\"Face sets\" in section \"" + place +
+                                          "\""));
         refuse_fixed(discretization.grid.communicator(), place);
       }
 

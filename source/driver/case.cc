@@ -1,7 +1,7 @@
 #include <voussoir/base/active.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_section.h>
-#include <voussoir/base/parse_numbers.h>
+#include <voussoir/base/section_names.h>
 #include <voussoir/base/text.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/driver/case.h>
@@ -18,12 +18,6 @@ namespace Voussoir
 
   namespace
   {
-    std::string
-    choices(const std::vector<std::string> &names)
-    {
-      return join(names, "|");
-    }
-
     std::vector<std::string>
     mesh_types()
     {
@@ -32,137 +26,7 @@ namespace Voussoir
         names.push_back(name);
       return names;
     }
-
-    /** Whether the file has a value for any entry of a handler. */
-    bool
-    gives_any(const ParameterFile &file, const ParameterHandler &prm)
-    {
-      std::ostringstream text;
-      prm.print_parameters(text, ParameterHandler::JSON);
-      const std::string nothing(1, '\0');
-      const std::function<bool(const nlohmann::json &, const std::string &)>
-        any = [&](const nlohmann::json &node, const std::string &path) {
-          if (node.contains("value") && node["value"].is_string())
-            return file.given(path, nothing) != nothing;
-          for (const auto &[name, child] : node.items())
-            if (child.is_object() &&
-                any(child, path.empty() ? name : path + "/" + name))
-              return true;
-          return false;
-        };
-      return any(nlohmann::json::parse(text.str()), "");
-    }
-
-
-    // Each name becomes a section.
-    void
-    check_names(const std::vector<std::string> &names, const std::string &place)
-    {
-      constexpr std::size_t most_names = 1000;
-      if (names.size() > most_names)
-        throw UserError(place + " lists " + std::to_string(names.size()) +
-                        " names; at most " + std::to_string(most_names) +
-                        " are taken.");
-      for (auto name = names.begin(); name != names.end(); ++name)
-        {
-          if (std::find(names.begin(), name, *name) != name)
-            throw UserError(place + " lists \"" + *name +
-                            "\" twice; keep one of the two.");
-          if (name->find('/') != std::string::npos)
-            throw UserError(place + " lists \"" + *name +
-                            "\"; choose a name without \"/\".");
-        }
-    }
   } // namespace
-
-
-  template <typename Base>
-  void
-  NamedObjects<Base>::declare(ParameterHandler    &prm,
-                              const ParameterFile &file,
-                              const std::string   &section,
-                              const std::string   &what,
-                              const std::string   &default_class,
-                              const bool           can_rest)
-  {
-    in_section(prm, section, [&] {
-      prm.declare_entry("Names",
-                        "",
-                        Patterns::Anything(),
-                        "Names of the " + what +
-                          ", separated by commas; each has a section of that "
-                          "name here.");
-      const auto names = split_list(file.given(section + "/Names"));
-      check_names(names, "\"Names\" in section \"" + section + "\"");
-      for (const std::string &name : names)
-        in_section(prm, name, [&] {
-          const std::string path = section + "/" + name;
-          prm.declare_entry("Class",
-                            default_class,
-                            Patterns::Selection(
-                              choices(Registry<Base>::names())),
-                            "Class; the other entries depend on it.");
-          const bool active = !can_rest || declared_active(prm, file, path);
-          declare_one(prm,
-                      name,
-                      path,
-                      file.given(path + "/Class", default_class),
-                      "\"Class\" in section \"" + path + "\"",
-                      active);
-        });
-    });
-  }
-
-
-  template <typename Base>
-  void
-  NamedObjects<Base>::declare_one(ParameterHandler  &prm,
-                                  const std::string &name,
-                                  const std::string &place,
-                                  const std::string &class_name,
-                                  const std::string &place_of_class,
-                                  const bool         active)
-  {
-    auto object = Registry<Base>::create(class_name, place_of_class);
-    object->declare_parameters(prm);
-    (active ? objects : inactive).emplace_back(name, object.get());
-    (active ? origins : origins_of_inactive)
-      .push_back({place, class_name, std::move(object)});
-  }
-
-
-  template <typename Base>
-  void
-  NamedObjects<Base>::for_each(
-    const std::function<void(const std::string &, Base &)> &visit)
-  {
-    for (Origin &origin : origins)
-      visit(origin.place, *origin.object);
-  }
-
-
-  template <typename Base>
-  typename NamedObjects<Base>::List
-  NamedObjects<Base>::make(const ParameterFile &file) const
-  {
-    List list;
-    for (unsigned int i = 0; i < objects.size(); ++i)
-      {
-        const auto &[place, class_name, read] = origins[i];
-        auto             object = Registry<Base>::create(class_name, place);
-        ParameterHandler prm;
-        in_section(prm, place, [&] { object->declare_parameters(prm); });
-        file.parse_declared(prm);
-        list.emplace_back(objects[i].first, std::move(object));
-      }
-    return list;
-  }
-
-
-  template class NamedObjects<Material>;
-  template class NamedObjects<Load>;
-  template class NamedObjects<Projection>;
-  template class NamedObjects<Observer>;
 
 
   void
@@ -188,56 +52,6 @@ namespace Voussoir
       "Central difference: dashpots and mass damping act on the velocity at "
       "the step, at no cost in the time step. Paper: on the velocity of the "
       "half step before, as in PSDAP.");
-  }
-
-
-  void
-  OutputParameters::declare(ParameterHandler &prm)
-  {
-    prm.add_parameter(
-      "Folder",
-      folder,
-      "Folder of the results; empty for output/ and the name of "
-      "the parameter file. A number is added if the folder "
-      "exists.");
-    prm.add_parameter(
-      "Observers",
-      observers,
-      "Observers, which write results, in this order; each has a section here.",
-      Patterns::MultipleSelection(choices(Registry<Observer>::names())));
-    prm.add_parameter(
-      "Observers for the verdict",
-      for_verdict,
-      "Adds over-stress where a linear elastic material has a tensile "
-      "strength, and through cracks where a material cracks, if the observers "
-      "do not name them and the mesh has an upstream and a downstream face.");
-    prm.add_parameter(
-      "Energy interval",
-      energy_interval,
-      "Time between two lines of the energy balance [s]; 0 for every 50 steps. "
-      "The run is checked for growth and NaN, and the losses of damping are "
-      "summed up, at least so often.",
-      Patterns::Double(0.));
-    prm.add_parameter(
-      "Energy limit",
-      energy_limit,
-      "Energy-balance error at which the run stops, over the energy that came "
-      "in; from a hundredth on the run warns.",
-      Patterns::Double(0., 1.));
-    prm.add_parameter(
-      "Checkpoint interval",
-      checkpoint_interval,
-      "Minutes on the clock between two checkpoints, from which --restart "
-      "continues; 0 for none by the clock. SIGUSR1 asks for one more; SIGTERM "
-      "and the like, or a file named stop in the output folder, for one and "
-      "the end.",
-      Patterns::Double(0.));
-    prm.add_parameter(
-      "Checkpoint time",
-      checkpoint_time,
-      "Simulated time between two checkpoints [s]; 0 for none by simulated "
-      "time.",
-      Patterns::Double(0.));
   }
 
 
@@ -317,7 +131,7 @@ namespace Voussoir
                         mesh_type,
                         "A built-in generator, or a file of Gmsh, Abaqus, UCD "
                         "or VTK; its entries stand in a section of that name.",
-                        Patterns::Selection(choices(mesh_types())));
+                        Patterns::Selection(join(mesh_types(), "|")));
       grid.declare(prm);
       const std::string type = file.given("Mesh/Type", mesh_type);
       if (type == "file")
@@ -347,14 +161,14 @@ namespace Voussoir
     in_section(prm, "Damping", [&] { damping.declare(prm); });
     in_section(prm, "Time", [&] { time.declare(prm); });
     in_section(prm, "Study", [&] { study.declare(prm); });
-    check_names(split_list(file.given("Acceptance/Names")),
-                "\"Names\" in section \"Acceptance\"");
+    check_section_names(split_list(file.given("Acceptance/Names")),
+                        "\"Names\" in section \"Acceptance\"");
     in_section(prm, "Acceptance", [&] { acceptance.declare(prm, file); });
     in_section(prm, "Output", [&] {
       output.declare(prm);
       const auto names =
         split_list(file.given("Output/Observers", output.observers));
-      check_names(names, "\"Observers\" in section \"Output\"");
+      check_section_names(names, "\"Observers\" in section \"Output\"");
       declare_unused_observers(names);
       for (const std::string &name : names)
         if (Registry<Observer>::entries().count(name) > 0)
@@ -368,36 +182,6 @@ namespace Voussoir
             });
           }
     });
-  }
-
-
-  void
-  Case::declare_unused_observers(const std::vector<std::string> &used)
-  {
-    for (const std::string &name : Registry<Observer>::names())
-      {
-        if (std::find(used.begin(), used.end(), name) != used.end())
-          continue;
-        const std::string place = "Output/" + name;
-        ParameterHandler  own;
-        in_section(own, place, [&] {
-          Registry<Observer>::entries()[name].create()->declare_parameters(own);
-        });
-        // entries that are not given stay out of the file as it was run
-        if (!gives_any(file, own))
-          continue;
-        in_section(prm, name, [&] {
-          observers.declare_one(prm,
-                                name,
-                                place,
-                                name,
-                                "\"Observers\" in section \"Output\"",
-                                false);
-        });
-        notes.push_back("section \"" + place +
-                        "\" is not used, as \"Observers\" in section "
-                        "\"Output\" does not name it");
-      }
   }
 
 
@@ -472,55 +256,6 @@ namespace Voussoir
     if (!static_state.stage_names().empty() && static_state.kept.empty())
       refuse("a static state that is found again for each number of ranks",
              "name a folder in \"Keep in\" of section \"Static state\"");
-  }
-
-
-  void
-  Case::add_observers()
-  {
-    const std::string setting = file.given("Output/Observers for the verdict");
-    if (setting == "false" || setting == "no")
-      return;
-    std::string              strengths;
-    bool                     cracks = false;
-    std::vector<std::string> observers =
-      split_list(file.given("Output/Observers", output.observers));
-    for (const std::string &name : split_list(file.given("Materials/Names")))
-      {
-        const std::string place = "Materials/" + name,
-                          type = file.given(place + "/Class", "linear elastic"),
-                          strength = file.given(place + "/Tensile strength");
-        if (Registry<Material>::entries().count(type) == 0)
-          continue; // refused later
-        if (type == "linear elastic" &&
-            parse_number(strength).value_or(0.) > 0.)
-          strengths += (strengths.empty() ? "" : "; ") + name + ": " + strength;
-        cracks = cracks ||
-                 tells_of_cracks(*Registry<Material>::entries()[type].create());
-      }
-    std::vector<std::string> changes;
-    const auto               wants = [&](const std::string &name) {
-      return std::find(observers.begin(), observers.end(), name) !=
-             observers.end();
-    };
-    const auto add = [&](const std::string &name) {
-      if (wants(name))
-        return;
-      added_observers.push_back(name);
-      observers.push_back(name);
-    };
-    const std::string section = "Output/over-stress/";
-    if (!strengths.empty() || !file.given(section + "Tensile strength").empty())
-      add("over-stress");
-    if (wants("over-stress") && !strengths.empty() &&
-        file.given(section + "Tensile strength").empty() &&
-        file.given(section + "Strengths of materials").empty())
-      changes.push_back(section + "Strengths of materials=" + strengths);
-    if (cracks)
-      add("through cracks");
-    if (!added_observers.empty())
-      changes.push_back("Output/Observers=" + join(observers, ", "));
-    file = file.with(changes);
   }
 
 

@@ -27,8 +27,8 @@ namespace Voussoir
     }
 
 
-    /** The order with this ratio of changes, within zero and the largest one
-     *  that is looked for. */
+    /** The order with this ratio of changes, within zero and the largest
+     *  one considered. */
     double
     observed_order(const double log_changes,
                    const double coarse,

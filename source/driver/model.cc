@@ -1,13 +1,12 @@
 #include <voussoir/driver/mesh_against_case.h>
 #include <voussoir/driver/model.h>
+#include <voussoir/driver/model_checks.h>
 #include <voussoir/grid/partition_counts.h>
 #include <voussoir/loads/added_mass.h>
 #include <voussoir/loads/water_level.h>
 #include <voussoir/mesh/interfaces.h>
-#include <voussoir/mesh/mesh_parts.h>
 #include <voussoir/mesh/reservoir_mesh.h>
 
-#include <iomanip>
 #include <set>
 
 namespace Voussoir
@@ -37,80 +36,6 @@ namespace Voussoir
                                  sets,
                                  "\"Cell sets\" in section \"Reservoir\"",
                                  open_faces);
-    }
-
-
-    // A part that shares no node with the others was forgotten when nodes were
-    // merged; a body without any support may be meant to move freely.
-    void
-    check_parts(const Case              &parameters,
-                const CoarseMesh        &solid,
-                const InterfaceSurfaces &surfaces,
-                Log                     &log)
-    {
-      const BoundaryParameters &boundaries = parameters.boundaries;
-      std::vector<std::string>  fixed_sets;
-      for (const Support &support : boundaries.supports_with_absorbing(false))
-        fixed_sets.push_back(support.set);
-      const auto parts = find_parts(solid, fixed_sets, surfaces.names());
-      if (parts.size() == 1)
-        return;
-      std::vector<std::string> fixed, detached;
-      for (const MeshPart &part : parts)
-        (part.is_fixed ? fixed : detached).push_back(part.place);
-      if (!fixed.empty() && !detached.empty() &&
-          parameters.projections.objects.empty())
-        throw UserError(
-          "The part of the mesh around " + detached[0] +
-          " m has no support: it shares no node with the rest, "
-          "no interface joins it and no entry of section \"Boundaries\" "
-          "names its faces; merge the nodes between the parts, "
-          "or fix it.");
-      fixed.insert(fixed.end(), detached.begin(), detached.end());
-      fixed.resize(std::min<std::size_t>(fixed.size(), 10));
-      log.warn("The mesh falls into ",
-               parts.size(),
-               " parts that share neither nodes nor interfaces, around ",
-               join(fixed, ", "),
-               " m; waves and forces do not pass between them.");
-    }
-
-
-    // Loads and constraints on the faces of an interface act on one of its
-    // sides only.
-    void
-    report_sets_on_interfaces(const Case              &parameters,
-                              const CoarseMesh        &solid,
-                              const InterfaceSurfaces &surfaces,
-                              Log                     &log)
-    {
-      std::set<std::pair<unsigned int, unsigned int>> sides;
-      for (const std::string &surface : surfaces.names())
-        for (const std::string &side : {surface, surface + other_side})
-          for (const CoarseMesh::Face &face : solid.face_sets.at(side))
-            sides.emplace(face.cell, face.face);
-
-      std::vector<std::string> entries{"Boundaries/Fixed",
-                                       "Boundaries/Roller",
-                                       "Boundaries/Antisymmetric",
-                                       "Boundaries/Absorbing"};
-      for (const auto &load : parameters.loads.objects)
-        entries.push_back("Loads/" + load.first + "/Face sets");
-      for (const std::string &entry : entries)
-        for (const std::string &set : split_list(parameters.file.given(entry)))
-          if (const auto faces = solid.face_sets.find(set);
-              faces != solid.face_sets.end() &&
-              std::any_of(faces->second.begin(),
-                          faces->second.end(),
-                          [&](const CoarseMesh::Face &face) {
-                            return sides.count({face.cell, face.face}) > 0;
-                          }))
-            log.warn("\"",
-                     entry,
-                     "\" names the face set \"",
-                     set,
-                     "\", which lies on an interface: it acts there on one "
-                     "side only.");
     }
 
 
@@ -215,50 +140,6 @@ namespace Voussoir
       if (reservoir != nullptr)
         terms.add_nodes(reservoir->wet_nodes());
       return terms;
-    }
-
-
-    // The loads and the added mass of the same water are in separate sections.
-    void
-    check_levels(const Case &parameters, Log &log)
-    {
-      const AddedMassParameters &mass = parameters.reservoir.added_mass;
-      const std::string default_faces = AddedMassParameters().face_sets;
-      std::map<std::string, double> waters, silts; // by section
-      for (const auto &load : parameters.loads.objects)
-        {
-          const std::string section = "Loads/" + load.first;
-          const std::string type    = parameters.file.given(section + "/Class");
-          if (type != "water" && type != "silt")
-            continue;
-          const double level = Utilities::string_to_double(
-            parameters.file.given(section + "/Level"));
-          (type == "water" ? waters : silts)[section] = level;
-          if (type == "water" &&
-              parameters.reservoir.model == ReservoirModel::added_mass &&
-              split_list(
-                parameters.file.given(section + "/Face sets", default_faces)) ==
-                split_list(mass.face_sets) &&
-              level != mass.level)
-            log.warn("the water on the same faces stands at ",
-                     level,
-                     " m by \"Level\" in section \"",
-                     section,
-                     "\", but at ",
-                     mass.level,
-                     " m by \"Level\" in section \"Reservoir/added mass\"");
-        }
-      for (const auto &[silt, top] : silts)
-        if (!waters.empty() &&
-            std::all_of(waters.begin(), waters.end(), [&](const auto &water) {
-              return water.second < top;
-            }))
-          log.warn("\"Level\" in section \"",
-                   silt,
-                   "\" is ",
-                   top,
-                   " m, above all water, but the \"Buoyant unit weight\" is "
-                   "that of silt under water");
     }
 
 
@@ -447,30 +328,6 @@ namespace Voussoir
   }
 
 
-  void
-  Model::check_source_point(Log &log) const
-  {
-    const AbsorbingParameters &absorbing = parameters.boundaries.absorbing;
-    if (split_list(absorbing.face_sets).empty() ||
-        absorbing.type == AbsorbingType::viscous || absorbing.radius > 0.)
-      return;
-    const auto &[lower, upper] = boundary.extent();
-    Tensor<1, 3> outside;
-    for (unsigned int d = 0; d < 3; ++d)
-      outside[d] = std::max(
-        {0., lower[d] - absorbing.source[d], absorbing.source[d] - upper[d]});
-    if (outside.norm() > 3. * upper.distance(lower))
-      log.warn(
-        "\"Source point\" in section \"Boundaries\" is ",
-        outside.norm(),
-        " m outside the model, which reaches from (",
-        lower,
-        ") to (",
-        upper,
-        ") m; springs at this distance from it have hardly any stiffness");
-  }
-
-
   std::vector<double>
   Model::longest_edges() const
   {
@@ -522,32 +379,4 @@ namespace Voussoir
   }
 
 
-  void
-  Model::report_materials(Log &log) const
-  {
-    const std::vector<double> carried = carried_frequencies(),
-                              widest  = widest_crack_bands();
-    for (unsigned int m = 0; m < solid.materials.size(); ++m)
-      {
-        const ElasticConstants c = solid.materials[m]->elastic_constants();
-        std::ostringstream     text;
-        text << std::setprecision(4) << "Material "
-             << parameters.materials.objects[m].first << ": mass "
-             << solid.mass.total[m] << " kg, P wave " << c.p_wave_speed()
-             << " m/s, S wave " << c.s_wave_speed()
-             << " m/s; its largest cells carry waves up to "
-             << std::setprecision(2) << carried[m]
-             << " Hz with 8 nodes per wavelength";
-        log.line(text.str());
-        if (const std::string remark = solid.materials[m]->remark(widest[m]);
-            !remark.empty())
-          log.line("  note: ", remark);
-        if (solid.materials[m]->n_history() > 0 &&
-            solid.discretization.degree > 2)
-          log.line(
-            "  note: fracture energies hold in cells of degree 1 and 2; "
-            "in cells of a higher degree the energy of a crack deviates from "
-            "them.");
-      }
-  }
 } // namespace Voussoir

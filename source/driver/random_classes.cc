@@ -29,7 +29,7 @@ namespace Voussoir
 
     /** Entries that name materials, in a list. */
     constexpr std::array<const char *, 3> lists_of_materials{
-      {"Materials/Names", "Modes/Held materials", "Modes/Massless materials"}};
+      {"Materials/Names", "Modes/Fixed materials", "Modes/Massless materials"}};
 
 
     /** Entries of a material that are above zero if it has a field. */

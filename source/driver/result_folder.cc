@@ -271,7 +271,7 @@ namespace Voussoir
     for (unsigned int i = n; i > 0 && from.empty(); --i)
       {
         chosen = numbered(name, i);
-        // a study goes on with one that it has not noted
+        // a study continues with one that it has not noted
         if (!options.overwrite &&
             Utilities::MPI::broadcast(log.communicator(),
                                       is_finished(chosen,

@@ -36,9 +36,9 @@ namespace Voussoir
     }
 
 
-    /** The setup, unless it waits for the modes; then it is checked as far as
-     *  possible all the same, before time is spent or files are written. After
-     *  that the folder is claimed for this run. */
+    /** The setup, unless damping is fitted to modes that are not known yet;
+     * then it is checked as far as possible all the same, before time is spent
+     * or files are written. After that the folder is claimed for this run. */
     std::unique_ptr<RunSetup>
     early_setup(RunPlan          &plan,
                 ResultFolder     &folder,

@@ -148,7 +148,7 @@ namespace Voussoir
                             reason + ".");
         };
         write({{"identity", identity}});
-        // what failed has nothing to go on from
+        // a failed run has no state to continue from
         summary = do_run(run, run_folder, known.is_object() && !has_ended);
         write({{"identity", identity}, {"summary", summary}});
         ++n_done;
@@ -198,7 +198,7 @@ namespace Voussoir
         summary.end    = RunEnd::failed;
         summary.reason = error.what();
       }
-    // what the first rank knows
+    // results of the first rank
     return nlohmann::json::parse(
       Utilities::MPI::broadcast(group, nlohmann::json(summary).dump()));
   }

@@ -10,7 +10,7 @@ namespace Voussoir
 
   namespace
   {
-    /** "none" where no criterion is met, empty where nobody knows. */
+    /** "none" where no criterion is met, empty where it is unknown. */
     std::string
     text_of(const std::optional<std::vector<std::string>> &met)
     {

@@ -149,7 +149,7 @@ namespace Voussoir
     data.tasks_parallel_scheme = MatrixFree::AdditionalData::none;
     data.mapping_update_flags  = update_gradients | update_JxW_values;
     data.cell_vectorization_categories_strict = true;
-    data.cell_vectorization_category.resize( // as MatrixFree wants it
+    data.cell_vectorization_category.resize( // as MatrixFree requires it
       grid.triangulation().n_active_cells());
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())

@@ -76,6 +76,27 @@ namespace Voussoir
   }
 
 
+  std::set<types::global_dof_index>
+  nodes_of_faces(const Discretization           &discretization,
+                 const std::vector<std::string> &sets,
+                 const std::string              &place)
+  {
+    const auto &scalar = discretization.fe.base_element(0);
+    std::set<types::global_dof_index> nodes;
+    for_each_face(discretization,
+                  sets,
+                  place,
+                  [&](const auto &cell, const unsigned int face) {
+                    const auto cell_nodes =
+                      discretization.cell_nodes(discretization.dof_cell(cell));
+                    for (unsigned int j = 0; j < cell_nodes.size(); ++j)
+                      if (scalar.has_support_on_face(j, face))
+                        nodes.insert(cell_nodes[j]);
+                  });
+    return nodes;
+  }
+
+
   std::vector<unsigned int>
   owned_carriers(const Discretization                    &discretization,
                  const std::set<types::global_dof_index> &nodes)

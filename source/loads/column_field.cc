@@ -258,7 +258,7 @@ namespace Voussoir
                               component->end() + 4. * column.travel_time() :
                               longest);
 
-    // the column's response to a short pulse, until it has died out over a
+    // the column's response to a short pulse, until it has decayed over a
     // period (four travel times) of its slowest layer
     WaveColumn         trial = column;
     const double       width = 2. / maximum_frequency;

@@ -3,8 +3,7 @@
 #include <voussoir/base/usual_range.h>
 #include <voussoir/fem/lumped_mass.h>
 #include <voussoir/fem/named_sets.h>
-#include <voussoir/loads/load.h>
-#include <voussoir/loads/time_factor.h>
+#include <voussoir/loads/forces_over_time.h>
 
 namespace Voussoir
 {
@@ -13,9 +12,13 @@ namespace Voussoir
   namespace
   {
     /** rho g at the nodes, lumped like the mass. */
-    class Gravity : public Load
+    class Gravity : public ForcesOverTime
     {
     public:
+      Gravity()
+        : ForcesOverTime("")
+      {}
+
       void
       declare_parameters(ParameterHandler &prm) override
       {
@@ -86,26 +89,7 @@ namespace Voussoir
           return;
         for (unsigned int node = 0; node < mass.size(); ++node)
           if (mass[node] > 0.)
-            shares.emplace_back(node, mass[node]);
-      }
-
-      std::vector<unsigned int>
-      nodes() const override
-      {
-        std::vector<unsigned int> list;
-        for (const auto &share : shares)
-          list.push_back(share.first);
-        return list;
-      }
-
-      void
-      add_forces(const double time, NodalForces &forces) const override
-      {
-        if (!factor.given())
-          return;
-        const Tensor<1, 3> now = factor(time) * acceleration;
-        for (const auto &[node, node_mass] : shares)
-          forces.add(node, node_mass * now);
+            nodal_forces.emplace_back(node, mass[node] * acceleration);
       }
 
       void
@@ -149,12 +133,8 @@ namespace Voussoir
 
       std::string         cell_sets;
       Tensor<1, 3>        acceleration{{0., 0., -standard_gravity}};
-      TimeFactor          factor{""};
       Tensor<1, 3>        weight; // by volume [N]
       std::vector<double> mass;   // of each owned node [kg]
-
-      // for weight over time, nodes and their mass [kg]
-      std::vector<std::pair<unsigned int, double>> shares;
     };
 
     const Registry<Load>::Add<Gravity> registered("gravity",

@@ -1,8 +1,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/fem/point_weights.h>
-#include <voussoir/loads/load.h>
-#include <voussoir/loads/time_factor.h>
+#include <voussoir/loads/forces_over_time.h>
 
 namespace Voussoir
 {
@@ -10,7 +9,7 @@ namespace Voussoir
 
   namespace
   {
-    class PointLoad : public Load
+    class PointLoad : public ForcesOverTime
     {
     public:
       void
@@ -41,32 +40,12 @@ namespace Voussoir
                                    {{"load", point}},
                                    "\"Point\" in section \"" + place + "\"");
         for (const auto &item : weights.items)
-          shares.emplace_back(item.node, item.weight);
-      }
-
-      std::vector<unsigned int>
-      nodes() const override
-      {
-        std::vector<unsigned int> list;
-        for (const auto &share : shares)
-          list.push_back(share.first);
-        return list;
-      }
-
-      void
-      add_forces(const double time, NodalForces &forces) const override
-      {
-        const double now = factor(time);
-        for (const auto &[node, weight] : shares)
-          forces.add(node, now * weight * force);
+          nodal_forces.emplace_back(item.node, item.weight * force);
       }
 
     private:
       Point<3>     point;
       Tensor<1, 3> force;
-      TimeFactor   factor;
-
-      std::vector<std::pair<unsigned int, double>> shares; // of nodes
     };
 
     const Registry<Load>::Add<PointLoad>

@@ -1,8 +1,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/loads/face_forces.h>
-#include <voussoir/loads/load.h>
-#include <voussoir/loads/time_factor.h>
+#include <voussoir/loads/forces_over_time.h>
 
 namespace Voussoir
 {
@@ -10,7 +9,7 @@ namespace Voussoir
 
   namespace
   {
-    class SurfaceLoad : public Load
+    class SurfaceLoad : public ForcesOverTime
     {
     public:
       void
@@ -49,33 +48,13 @@ namespace Voussoir
                          [&](const Point<3> &, const Tensor<1, 3> &normal) {
                            return traction - pressure * normal;
                          }))
-          shares.emplace_back(node, force);
-      }
-
-      std::vector<unsigned int>
-      nodes() const override
-      {
-        std::vector<unsigned int> list;
-        for (const auto &share : shares)
-          list.push_back(share.first);
-        return list;
-      }
-
-      void
-      add_forces(const double time, NodalForces &forces) const override
-      {
-        const double now = factor(time);
-        for (const auto &[node, force] : shares)
-          forces.add(node, now * force);
+          nodal_forces.emplace_back(node, force);
       }
 
     private:
       std::string  face_sets;
       Tensor<1, 3> traction;
       double       pressure = 0.;
-      TimeFactor   factor;
-
-      std::vector<std::pair<unsigned int, Tensor<1, 3>>> shares; // of nodes
     };
 
     const Registry<Load>::Add<SurfaceLoad>

@@ -3,6 +3,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/option.h>
 #include <voussoir/base/usual_range.h>
+#include <voussoir/materials/lubliner_surface.h>
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/split_damage.h>
 
@@ -48,18 +49,17 @@ namespace Voussoir
      * A SplitDamage (after Faria, Oliver, Cervera 1998, with a split that has a
      * potential) of the effective stress s = C : (e - e_p). Each damage is
      * driven by the largest equivalent strain so far: in tension that of the
-     * largest principal stress, in compression that of the surface of Lubliner
-     * et al. (1989) at s-. A share of the inelastic strain may be irreversible,
+     * largest principal stress, in compression that of LublinerSurface
+     * at s-. A share of the inelastic strain may be irreversible,
      * which makes e_p.
      */
-    struct ConcreteDamage : SplitDamage
+    struct ConcreteDamage : SplitDamage, LublinerSurface
     {
       // e_p after the internal variables of a SplitDamage
       static constexpr unsigned int n_history = n_split_numbers + 6;
 
       double compressive_strength  = 25e6;
       double crushing_energy       = 30e3;
-      double biaxial_ratio         = 1.16;
       double strength_increase     = 1.;
       double relaxation_time       = 0.;
       double irreversible_tension  = 0.;
@@ -68,8 +68,6 @@ namespace Voussoir
       TensionLaw     tension_law     = TensionLaw::exponential;
       CompressionLaw compression_law = CompressionLaw::gb_50010;
       std::string    tension_table, compression_table;
-
-      double alpha = 0.; // of Lubliner's surface
 
       void
       declare_parameters(ParameterHandler &prm)
@@ -86,11 +84,7 @@ namespace Voussoir
           "Fracture energy in crushing, per area beyond the peak [N/m]." +
             usually(Usual::crushing_energy),
           Patterns::Double(1e-3));
-        prm.add_parameter("Biaxial ratio",
-                          biaxial_ratio,
-                          "Strength under equal compression in two directions "
-                          "over the uniaxial one.",
-                          Patterns::Double(1.01, 1.5));
+        LublinerSurface::declare_parameters(prm);
         prm.add_parameter(
           "Strength increase",
           strength_increase,
@@ -141,7 +135,7 @@ namespace Voussoir
       void
       check(const std::string &place)
       {
-        alpha       = lubliner_alpha(biaxial_ratio);
+        LublinerSurface::check();
         tension     = SofteningCurve(increased(tension_nodes(place)),
                                  young_modulus,
                                  irreversible_tension,
@@ -288,9 +282,10 @@ namespace Voussoir
             squares += difference * difference; // 6 J2
           }
         // gamma = 3: Kc = 2/3
-        return 1. / (1. - alpha) *
-               (alpha * first + std::sqrt(Number(0.5 * squares)) +
-                3. * pressed[0]);
+        return LublinerSurface::equivalent_compression(first,
+                                                       Number(std::sqrt(Number(
+                                                         0.5 * squares))),
+                                                       Number(3. * pressed[0]));
       }
 
       /** Share of the delayed growth of damage that takes place in this step.

@@ -4,6 +4,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/materials/isotropic_elasticity.h>
+#include <voussoir/materials/lubliner_surface.h>
 #include <voussoir/materials/material_of.h>
 #include <voussoir/materials/tension_split.h>
 
@@ -15,9 +16,8 @@ namespace Voussoir
   {
     /**
      * Lee and Fenves (1998). Plastic strain e_p develops in the effective
-     * stress s = C : (e - e_p) on the surface of Lubliner et al. (1989),
-     *   [alpha I1 + sqrt(3 J2) + beta <s_max>] / (1 - alpha) <= fc ,
-     *   beta = (1 - alpha) fc / ft - (1 + alpha) ,
+     * stress s = C : (e - e_p) where that of LublinerSurface reaches fc, with
+     *   beta = (1 - alpha) fc / ft - (1 + alpha) ,  gamma = 0 ,
      * along the gradient of |dev s| + a_p I1. With the weight r of tension
      * among the principal stresses, the plastic strains
      *   d k_t = r d e_p,max ,   d k_c = -(1 - r) d e_p,min
@@ -38,7 +38,7 @@ namespace Voussoir
      * return continues along the hydrostatic axis to zero stress, which is
      * always inside: the root is bracketed for every trial stress.
      */
-    struct LeeFenves : IsotropicElasticity
+    struct LeeFenves : IsotropicElasticity, LublinerSurface
     {
       // e_p, k_t, k_c
       static constexpr unsigned int n_history = 8;
@@ -50,13 +50,12 @@ namespace Voussoir
       double yield_strength   = 13e6;   // fc0 [Pa]
       double peak_strength    = 24.1e6; // [Pa]
       double crushing_energy  = 30e3;   // [N/m]
-      double biaxial_ratio    = 1.16;
-      double dilatancy        = 0.09; // a_p
-      double tension_ratio    = 1.2;  // q_t
-      double crushing_ratio   = 1.;   // q_c
-      double recovery         = 1.;   // w
+      double dilatancy        = 0.09;   // a_p
+      double tension_ratio    = 1.2;    // q_t
+      double crushing_ratio   = 1.;     // q_c
+      double recovery         = 1.;     // w
 
-      double alpha = 0., hardening = 0.; // a
+      double hardening = 0.; // a
 
       void
       declare_parameters(ParameterHandler &prm)
@@ -92,11 +91,7 @@ namespace Voussoir
                           "Plastic work of crushing per area [N/m]." +
                             usually(Usual::crushing_energy),
                           Patterns::Double(1e-3));
-        prm.add_parameter("Biaxial ratio",
-                          biaxial_ratio,
-                          "Yield strength under equal compression in two "
-                          "directions over the uniaxial one.",
-                          Patterns::Double(1.01, 1.5));
+        LublinerSurface::declare_parameters(prm);
         prm.add_parameter(
           "Dilatancy",
           dilatancy,
@@ -133,7 +128,7 @@ namespace Voussoir
                           ": the \"Compressive strength\" is below the \"Yield "
                           "strength in compression\"; it must be as large or "
                           "larger.");
-        alpha = lubliner_alpha(biaxial_ratio);
+        LublinerSurface::check();
         // the largest sigma_c is fc0 (1 + a)^2 / (4 a)
         const double ratio = peak_strength / yield_strength;
         hardening = 2. * ratio - 1. + 2. * std::sqrt(ratio * (ratio - 1.));
@@ -179,20 +174,22 @@ namespace Voussoir
         return all > 0. ? positive / all : 0.;
       }
 
-      /** The uniaxial compression as severe as this stress. */
+      /** Uniaxial compression as severe as a stress, given strengths in tension
+       *  and crushing. */
       template <typename Number>
       Number
-      severity(const Number &first,
-               const Number &second,
-               const Number &largest,
-               const double  tension,
-               const double  crushing) const
+      equivalent_compression(const Number &first,
+                             const Number &second,
+                             const Number &largest,
+                             const double  tension,
+                             const double  crushing) const
       {
         const double beta =
           std::max(0., (1. - alpha) * crushing / tension - (1. + alpha));
-        return (alpha * first + std::sqrt(Number(3. * second)) +
-                beta * std::max(largest, Number(0.))) /
-               (1. - alpha);
+        return LublinerSurface::equivalent_compression(
+          first,
+          Number(std::sqrt(Number(3. * second))),
+          Number(beta * std::max(largest, Number(0.))));
       }
 
       template <typename Number>
@@ -200,12 +197,12 @@ namespace Voussoir
       yield_ratio(const SymmetricTensor3<Number> &stress, const Number &) const
       {
         const auto [first, second] = invariants(stress);
-        return severity(first,
-                        second,
-                        Number(first / 3. +
-                               2. * std::sqrt(Number(second / 3.))),
-                        tensile_strength,
-                        yield_strength) /
+        return equivalent_compression(first,
+                                      second,
+                                      Number(first / 3. + 2. * std::sqrt(Number(
+                                                                 second / 3.))),
+                                      tensile_strength,
+                                      yield_strength) /
                yield_strength;
       }
 
@@ -258,13 +255,14 @@ namespace Voussoir
         const Strengths now =
           strengths(iterate.opening, iterate.crushing, length);
         const double scale = 1. - first_leg;
-        iterate.excess     = severity(3. * new_mean,
-                                  0.5 * scale * scale * norm,
-                                  *std::max_element(iterate.stress.begin(),
-                                                    iterate.stress.end()),
-                                  now.tension,
-                                  now.crushing) -
-                         now.crushing;
+        iterate.excess =
+          equivalent_compression(3. * new_mean,
+                                 0.5 * scale * scale * norm,
+                                 *std::max_element(iterate.stress.begin(),
+                                                   iterate.stress.end()),
+                                 now.tension,
+                                 now.crushing) -
+          now.crushing;
         return iterate;
       }
 

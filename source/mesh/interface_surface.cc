@@ -102,7 +102,7 @@ namespace Voussoir
             const unsigned int g = numbers.at({end.cell, end.face});
             const unsigned int arrival =
               end.cell == interface.faces[g][0].cell ? 0 : 1;
-            // side of f that looks the way of the piece, carried over to g
+            // side of f in the direction of the piece, transferred to g
             const unsigned int same =
               side == result[f].first ? arrival : 1 - arrival;
             if (result[g].first == none)

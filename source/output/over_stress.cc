@@ -6,9 +6,8 @@
 #include <voussoir/base/usual_range.h>
 #include <voussoir/files/table.h>
 #include <voussoir/materials/principal_stress.h>
-#include <voussoir/output/face_mesh.h>
-
-#include <numeric>
+#include <voussoir/output/area_above.h>
+#include <voussoir/output/over_stress_limits.h>
 
 namespace Voussoir
 {
@@ -18,118 +17,6 @@ namespace Voussoir
   {
     const std::string section = "section \"Output/over-stress\"";
     const std::string place   = "\"Face sets\" in " + section;
-
-
-    /** Share of a triangle in which a linear function, given at its corners, is
-     *  positive. */
-    double
-    positive_share(std::array<double, 3> values)
-    {
-      std::sort(values.begin(), values.end());
-      const auto [low, middle, high] = values;
-      if (!(high > 0.))
-        return 0.;
-      if (low >= 0.)
-        return 1.;
-      if (middle <= 0.)
-        return high * high / ((high - low) * (high - middle));
-      return 1. - low * low / ((middle - low) * (high - low));
-    }
-
-
-    /** Areas of faces on which a quantity, linear between the nodes as pictures
-     *  show it, exceeds certain levels. */
-    class AreaAbove
-    {
-    public:
-      /** @param levels increasing */
-      AreaAbove(const FaceMesh &mesh, const std::vector<double> &levels)
-        : quadrilaterals(mesh.quadrilaterals())
-        , levels(levels)
-      {
-        for (const auto &quadrilateral : quadrilaterals)
-          {
-            std::array<Point<3>, 4> corners;
-            Point<3>                middle;
-            for (unsigned int v = 0; v < 4; ++v)
-              {
-                corners[v] = mesh.position(quadrilateral.nodes[v]);
-                middle += 0.25 * corners[v];
-              }
-            areas.emplace_back();
-            for (unsigned int e = 0; e < 4; ++e)
-              areas.back()[e] =
-                0.5 * cross_product_3d(corners[edges[e][0]] - middle,
-                                       corners[edges[e][1]] - middle)
-                        .norm();
-            whole_areas.push_back(
-              std::accumulate(areas.back().begin(), areas.back().end(), 0.));
-          }
-      }
-
-      /** Adds the area of this rank to @p sums, one for each set and level
-       *  [m2]. */
-      void
-      add(const std::vector<double> &value_of_node, double *sums) const
-      {
-        for (unsigned int q = 0; q < quadrilaterals.size(); ++q)
-          {
-            const auto &[set, nodes] = quadrilaterals[q];
-            std::array<double, 4> values;
-            for (unsigned int v = 0; v < 4; ++v)
-              values[v] = value_of_node[nodes[v]];
-            const double high = std::max(std::max(values[0], values[1]),
-                                         std::max(values[2], values[3]));
-            if (!(high > levels[0]))
-              continue;
-            const double low    = std::min(std::min(values[0], values[1]),
-                                        std::min(values[2], values[3])),
-                         middle = 0.25 * (values[0] + values[1] + values[2] +
-                                          values[3]);
-            for (unsigned int l = 0; l < levels.size() && high > levels[l]; ++l)
-              sums[set * levels.size() + l] +=
-                low > levels[l] ? whole_areas[q] :
-                                  part_above(q, values, middle, levels[l]);
-          }
-      }
-
-      /** Area of this rank in each set [m2]. */
-      std::vector<double>
-      total(const unsigned int n_sets) const
-      {
-        std::vector<double> sums(n_sets);
-        for (unsigned int q = 0; q < quadrilaterals.size(); ++q)
-          sums[quadrilaterals[q].set] += whole_areas[q];
-        return sums;
-      }
-
-    private:
-      double
-      part_above(const unsigned int           quadrilateral,
-                 const std::array<double, 4> &values,
-                 const double                 middle,
-                 const double                 level) const
-      {
-        double area = 0.;
-        for (unsigned int e = 0; e < 4; ++e)
-          area += areas[quadrilateral][e] *
-                  positive_share({{values[edges[e][0]] - level,
-                                   values[edges[e][1]] - level,
-                                   middle - level}});
-        return area;
-      }
-
-      // around the quadrilateral
-      static constexpr std::array<std::array<unsigned int, 2>, 4> edges{
-        {{{0, 1}}, {{1, 3}}, {{3, 2}}, {{2, 0}}}};
-
-      std::vector<FaceMesh::Quadrilateral> quadrilaterals;
-      std::vector<double>                  levels;
-
-      // of the triangles between the edges and the middle, and all four [m2]
-      std::vector<std::array<double, 4>> areas;
-      std::vector<double>                whole_areas;
-    };
 
 
     enum class ComparedStress
@@ -149,9 +36,7 @@ namespace Voussoir
     /**
      * Over-stress of the faces of a dam after a linear analysis: how far, how
      * long and on what area the tension exceeds the strength, and whether that
-     * calls for a non-linear analysis (Ghanaat, "Failure modes approach to
-     * safety evaluation of dams", 13th World Conference on Earthquake
-     * Engineering, 2004; USACE EM 1110-2-6053, 2007).
+     * calls for a non-linear analysis (see OverStressLimits).
      */
     class OverStress : public Observer
     {
@@ -180,34 +65,7 @@ namespace Voussoir
           "The same by material, \"concrete: 2e6; crest: 3e6\", where "
           "\"Tensile strength\" is 0. Without it the strengths of the linear "
           "elastic materials.");
-        prm.add_parameter("Ratios",
-                          ratios,
-                          "Demand-capacity ratios above which time and area "
-                          "are summed up, increasing from 1 [-]." +
-                            usually(Usual::demand_capacity_ratio),
-                          Patterns::List(Patterns::Double(0.), 1));
-        prm.add_parameter(
-          "Longest time",
-          longest_time,
-          "Accumulated time above the ratio 1 that is allowed in a linear "
-          "analysis [s]. It falls linearly to zero at the \"Largest ratio\". "
-          "The limits are those ascribed to USACE EM 1110-2-6053 for arch "
-          "dams, gravity dams have 0.3 s; compare them with the code that "
-          "applies." +
-            usually(Usual::accumulated_time),
-          Patterns::Double(0.));
-        prm.add_parameter(
-          "Largest ratio",
-          largest_ratio,
-          "Demand-capacity ratio that is allowed in a linear analysis [-]." +
-            usually(Usual::demand_capacity_ratio),
-          Patterns::Double(1.));
-        prm.add_parameter(
-          "Largest share",
-          largest_share,
-          "Share of a face above the ratio 1 at any time that is allowed in a "
-          "linear analysis [%]; gravity dams have 15 % of the section.",
-          Patterns::Double(0., 100.));
+        limits.declare_parameters(prm);
       }
 
       void
@@ -223,18 +81,7 @@ namespace Voussoir
                           std::to_string(face_sets.size()) +
                           " face sets; give one for all or one for each.");
         strengths_of_nodes(model, faces);
-        if (ratios[0] != 1. ||
-            std::adjacent_find(ratios.begin(),
-                               ratios.end(),
-                               std::greater_equal<double>()) != ratios.end())
-          throw UserError("\"Ratios\" in " + section +
-                          " must begin with 1 and increase from each to the "
-                          "next; sort them and remove repeated ones.");
-        if (longest_time > 0. && largest_ratio <= 1.)
-          throw UserError("\"Largest ratio\" in " + section +
-                          " must be above 1, so that the time allowed can fall "
-                          "to zero there; set \"Longest time = 0\" to allow "
-                          "none.");
+        limits.check(section);
         check_elastic(model, face_sets);
       }
 
@@ -256,9 +103,10 @@ namespace Voussoir
                 largest[2 * node]     = ratio;
                 largest[2 * node + 1] = state.time;
               }
-            const std::size_t n_below =
-              std::lower_bound(ratios.begin(), ratios.end(), ratio) -
-              ratios.begin();
+            const std::size_t n_below = std::lower_bound(limits.ratios.begin(),
+                                                         limits.ratios.end(),
+                                                         ratio) -
+                                        limits.ratios.begin();
             if (n_below > 0)
               times[n_ratios() * node + n_below - 1] += interval;
           }
@@ -277,7 +125,7 @@ namespace Voussoir
         names  = split_list(sets);
         mesh   = std::make_unique<FaceMesh>(make_mesh(run()));
         stress = std::make_unique<FaceStress>(run(), *mesh);
-        areas  = std::make_unique<AreaAbove>(*mesh, ratios);
+        areas  = std::make_unique<AreaAbove>(*mesh, limits.ratios);
         directions.clear();
         strength_of_node = strengths_of_nodes(run(), *mesh);
         for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
@@ -303,13 +151,13 @@ namespace Voussoir
       void
       conclude(const State &state, nlohmann::json &summary) override
       {
-        const std::vector<Face>  faces = find_faces();
-        std::vector<std::string> reasons;
-        nlohmann::json          &result = summary["over-stress"];
-        for (const Face &face : faces)
+        const std::vector<FaceOverStress> faces = find_faces();
+        std::vector<std::string>          reasons;
+        nlohmann::json                   &result = summary["over-stress"];
+        for (const FaceOverStress &face : faces)
           {
-            result[face.name] = json(face);
-            for (const std::string &reason : reasons_of(face))
+            result[face.name] = limits.json(face);
+            for (const std::string &reason : limits.reasons_of(face))
               reasons.push_back(reason);
           }
         std::string verdict = "linear analysis suffices";
@@ -324,26 +172,6 @@ namespace Voussoir
         write_curves(faces);
         write_fields(state.time);
       }
-
-      /** Results of a face set. */
-      struct Face
-      {
-        std::string name;
-        double      area; // [m2]
-
-        // largest demand-capacity ratio [-], when [s] and where [m]
-        double   largest, time;
-        Point<3> where;
-
-        double largest_at_rest; // ratio of the static state [-]
-
-        // of each ratio of the list: accumulated time of the point that has
-        // most [s], and of those that the static state has below the ratio,
-        // area of the static state, area ever above it and largest one at a
-        // moment [m2]
-        std::vector<double> accumulated, beyond_rest, resting, ever, at_once,
-          time_at_once;
-      };
 
       FaceMesh
       make_mesh(const ObservedModel &model) const
@@ -432,7 +260,7 @@ namespace Voussoir
       unsigned int
       n_ratios() const
       {
-        return ratios.size();
+        return limits.ratios.size();
       }
 
       /** Number of areas, one for each set and ratio. */
@@ -508,7 +336,7 @@ namespace Voussoir
         return above;
       }
 
-      std::vector<Face>
+      std::vector<FaceOverStress>
       find_faces() const
       {
         const auto          communicator = mesh->communicator();
@@ -535,7 +363,7 @@ namespace Voussoir
               {
                 const unsigned int i = set * n_ratios() + r;
                 accumulated[i]       = std::max(accumulated[i], above[r]);
-                if (at_rest[node] <= ratios[r])
+                if (at_rest[node] <= limits.ratios[r])
                   beyond_rest[i] = std::max(beyond_rest[i], above[r]);
               }
           }
@@ -552,11 +380,11 @@ namespace Voussoir
           for (unsigned int set = 0; set < names.size(); ++set)
             most[set] = std::max(most[set], other[set]);
 
-        std::vector<Face> faces;
+        std::vector<FaceOverStress> faces;
         for (unsigned int set = 0; set < names.size(); ++set)
           {
             const auto &[greatest, time, x, y, z] = most[set];
-            Face &face                            = faces.emplace_back();
+            FaceOverStress &face                  = faces.emplace_back();
             face.name                             = names[set];
             face.area                             = total[set];
             face.largest                          = greatest;
@@ -577,93 +405,16 @@ namespace Voussoir
         return faces;
       }
 
-      static std::string
-      number(const double value)
-      {
-        std::ostringstream text;
-        text << std::setprecision(3) << value;
-        return text.str();
-      }
-
-      nlohmann::json
-      json(const Face &face) const
-      {
-        nlohmann::json result{{"largest ratio", face.largest},
-                              {"at the time [s]", face.time},
-                              {"at [m]",
-                               {face.where[0], face.where[1], face.where[2]}},
-                              {"largest ratio at rest", face.largest_at_rest},
-                              {"area [m2]", face.area}};
-        for (unsigned int r = 0; r < ratios.size(); ++r)
-          result["above " + number(ratios[r])] = {
-            {"accumulated time [s]", face.accumulated[r]},
-            {"accumulated time of what is below at rest [s]",
-             face.beyond_rest[r]},
-            {"share at rest [%]", 100. * face.resting[r] / face.area},
-            {"area at any time [m2]", face.ever[r]},
-            {"share at any time [%]", 100. * face.ever[r] / face.area},
-            {"largest area at once [m2]", face.at_once[r]},
-            {"largest share at once [%]", 100. * face.at_once[r] / face.area},
-            {"time of the largest area at once [s]", face.time_at_once[r]}};
-        return result;
-      }
-
-      /** Accumulated time that a linear analysis allows above a ratio [s]. */
-      double
-      allowed_time(const double ratio) const
-      {
-        return ratio >= largest_ratio ?
-                 0. :
-                 longest_time * (largest_ratio - ratio) / (largest_ratio - 1.);
-      }
-
-      /** Why a face calls for a non-linear analysis; none if it does not. */
-      std::vector<std::string>
-      reasons_of(const Face &face) const
-      {
-        std::vector<std::string> reasons;
-        if (!(face.largest <= largest_ratio))
-          reasons.push_back("the demand-capacity ratio of the " + face.name +
-                            " reaches " + number(face.largest) +
-                            ", more than " + number(largest_ratio));
-        const double share = 100. * face.ever[0] / face.area;
-        if (!(share <= largest_share))
-          reasons.push_back(number(share) + " % of the " + face.name +
-                            " is above the ratio 1 at some time, more than " +
-                            number(largest_share) + " %");
-        if (face.largest_at_rest > 1.)
-          reasons.push_back("the demand-capacity ratio of the " + face.name +
-                            " is " + number(face.largest_at_rest) +
-                            " in the static state");
-        // where the curve is furthest above its limit; the
-        // duration of the static state does not count
-        unsigned int worst  = 0;
-        double       excess = 0.;
-        for (unsigned int r = 0; r < ratios.size(); ++r)
-          if (const double own = face.beyond_rest[r] - allowed_time(ratios[r]);
-              own > excess && ratios[r] < largest_ratio)
-            {
-              worst  = r;
-              excess = own;
-            }
-        if (excess > 0.)
-          reasons.push_back(
-            "the " + face.name + " is above the ratio " +
-            number(ratios[worst]) + " for " + number(face.beyond_rest[worst]) +
-            " s, longer than " + number(allowed_time(ratios[worst])) + " s");
-        return reasons;
-      }
-
       void
-      write_curves(const std::vector<Face> &faces) const
+      write_curves(const std::vector<FaceOverStress> &faces) const
       {
         if (Utilities::MPI::this_mpi_process(mesh->communicator()) != 0)
           return;
         std::vector<std::string>         titles{"ratio", "allowed time [s]"};
-        std::vector<std::vector<double>> columns{ratios, {}};
-        for (const double ratio : ratios)
-          columns[1].push_back(allowed_time(ratio));
-        for (const Face &face : faces)
+        std::vector<std::vector<double>> columns{limits.ratios, {}};
+        for (const double ratio : limits.ratios)
+          columns[1].push_back(limits.allowed_time(ratio));
+        for (const FaceOverStress &face : faces)
           {
             titles.push_back(face.name + " accumulated time [s]");
             titles.push_back(face.name + " area at any time [m2]");
@@ -682,8 +433,9 @@ namespace Voussoir
       {
         std::vector<std::string> fields{"largest_ratio",
                                         "time_of_largest_ratio_s"};
-        for (const double ratio : ratios)
-          fields.push_back("time_above_" + number(ratio) + "_s");
+        for (const double ratio : limits.ratios)
+          fields.push_back("time_above_" + OverStressLimits::text(ratio) +
+                           "_s");
         std::vector<double> fields_of_nodes;
         for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
           {
@@ -699,9 +451,7 @@ namespace Voussoir
       ComparedStress      compared = ComparedStress::principal;
       std::vector<double> strengths{0.};
       std::string         of_materials;
-      std::vector<double>
-             ratios{1., 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.};
-      double longest_time = 0.4, largest_ratio = 2., largest_share = 20.;
+      OverStressLimits    limits;
 
       std::vector<std::string>    names; // of the face sets
       std::unique_ptr<FaceMesh>   mesh;

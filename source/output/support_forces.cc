@@ -159,7 +159,6 @@ namespace Voussoir
       {
         const Discretization &discretization = model.solid.discretization;
         const MPI_Comm        communicator = discretization.grid.communicator();
-        const auto           &scalar       = discretization.fe.base_element(0);
         std::set<unsigned int> prescribed, of_interfaces, taken;
         for (const auto &[name, constraint] : model.constraints)
           prescribed.insert(constraint->nodes().begin(),
@@ -173,21 +172,11 @@ namespace Voussoir
           throw UserError(place + " is empty; name a face set.");
         for (const std::string &set : sets)
           {
-            std::set<types::global_dof_index> face_nodes;
-            for_each_face(discretization,
-                          {set},
-                          place,
-                          [&](const auto &cell, const unsigned int face) {
-                            const auto cell_nodes = discretization.cell_nodes(
-                              discretization.dof_cell(cell));
-                            for (unsigned int j = 0; j < cell_nodes.size(); ++j)
-                              if (scalar.has_support_on_face(j, face))
-                                face_nodes.insert(cell_nodes[j]);
-                          });
             bool                      is_free = false, meets_interface = false;
             std::vector<unsigned int> nodes;
             for (const unsigned int node :
-                 owned_carriers(discretization, face_nodes))
+                 owned_carriers(discretization,
+                                nodes_of_faces(discretization, {set}, place)))
               {
                 is_free = is_free || !(prescribed.count(node) > 0 ||
                                        is_fixed(discretization, node, 0) ||

@@ -66,7 +66,7 @@ def names_of(source, field):
 
 
 def dam_materials(names):
-    """Numbers of those that are called so, not the rock, or else of the first."""
+    """Numbers of those called so, without the rock, or else of the first."""
     def is_called(name, *words):
         return any(word in name.lower() for word in words)
 
@@ -187,7 +187,7 @@ def new_view(title, around, direction):
     view.CameraParallelProjection = 1
     size = sum((b - a)**2 for a, b in zip(low, high))**0.5
     middle = [0.5 * (a + b) for a, b in zip(low, high)]
-    middle[2] -= 0.1 * size  # room for the colours below
+    middle[2] -= 0.1 * size  # space for the colours below
     view.CameraFocalPoint = middle
     view.CameraPosition = [m + size * d for m, d in zip(middle, direction)]
     view.CameraViewUp = [0., 0., 1.]

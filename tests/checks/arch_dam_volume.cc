@@ -300,10 +300,10 @@ namespace Voussoir
                       "m");
         verdicts.near(
           name + ": height", MeasuredDam(mesh).height(), 100., 1e-12, "m");
-        verdicts.is_true(name + ": what the volume lacks falls below 0.4 of it "
+        verdicts.is_true(name + ": missing volume falls below 0.4 of it "
                                 "with half the cell size",
                          falls(of_volume));
-        verdicts.is_true(name + ": so does what the crest length lacks",
+        verdicts.is_true(name + ": so does the missing crest length",
                          falls(of_length));
         return mesh;
       }

@@ -127,8 +127,10 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Opening", way_apart, "Way of the base [m].");
-        prm.add_parameter("Slip", way_along, "Way of the base [m].");
+        prm.add_parameter("Opening",
+                          way_apart,
+                          "Displacement of the base [m].");
+        prm.add_parameter("Slip", way_along, "Displacement of the base [m].");
         prm.add_parameter("Turn", turn, "Time at which it turns back [s].");
         prm.add_parameter("Pressure", pressure, "In the shear test [Pa].");
         prm.add_parameter("Modulus over height",
@@ -207,7 +209,9 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Way", way, "Way of the base, away and along [m].");
+        prm.add_parameter("Way",
+                          way,
+                          "Displacement of the base, away and along [m].");
       }
 
       void
@@ -259,7 +263,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Way", way, "Way of the base [m].");
+        prm.add_parameter("Way", way, "Displacement of the base [m].");
         prm.add_parameter("Modulus over height",
                           stiffness,
                           "Modulus over height of the layer [Pa/m].");

@@ -372,7 +372,7 @@ namespace Voussoir
       void
       run(const ParameterFile &, Verdicts &verdicts, const MPI_Comm) override
       {
-        verdicts.is_true("no room between two walls: the cluster is counted",
+        verdicts.is_true("no gap between two walls: the cluster is counted",
                          squeeze() == 1);
         const char *names[] = {"any points",
                                "ring around an edge",

@@ -12,7 +12,7 @@ namespace Voussoir
     /**
      * Keys prevent a block from sliding on an incline: the interface
      * resists more shear than friction could, and has no sliding safety.
-     * Without keys it has one, on a slope on which it does not slide.
+     * Without keys it has one, on an incline on which it sticks.
      */
     class KeyedSafety : public Check
     {

@@ -39,9 +39,9 @@ namespace Voussoir
     const Discretization discretization(grid, space, {});
     const auto mine = find_contact_clusters(discretization, interfaces);
     for (const ContactCluster &cluster : mine)
-      AssertThrow(discretization.owned_dofs.is_element(3 *
-                                                       cluster.nodes.front()),
-                  ExcMessage("A cluster is not with its first node."));
+      AssertThrow(
+        discretization.owned_dofs.is_element(3 * cluster.nodes.front()),
+        ExcMessage("A cluster is not on the rank of its first node."));
     auto all = join_over_ranks(mine, communicator);
     std::sort(all.begin(), all.end(), lies_before);
     return all;

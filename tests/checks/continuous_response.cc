@@ -10,8 +10,8 @@ namespace Voussoir
      * A block that is pressed together in z and stretched in x, each time from
      * new: its forces change with the stretch without a jump, also where the
      * crack that would open no longer lies across x but across z. Half the step
-     * of the stretch makes half the largest change of the forces, unless they
-     * jump. Static equilibrium is searched for in such states.
+     * of the elongation gives half the largest change of the forces, unless
+     * they jump. Static equilibrium is searched for in such states.
      */
     class ContinuousResponse : public Check
     {

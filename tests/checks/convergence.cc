@@ -104,7 +104,7 @@ namespace Voussoir
               state.velocity.local_element(3 * node + 2) =
                 (1. - std::cos(discrete * dt)) / dt * u;
             }
-        // a bit more than one period
+        // slightly more than one period
         while (state.time < 7. / omega)
           simulation->run.scheme.step(state);
         exact.factor = std::cos(discrete * state.time);

@@ -10,7 +10,7 @@ namespace Voussoir
     /**
      * A wall with added mass that is let go in one of the natural modes to
      * which Rayleigh damping is fitted: with C = alpha (M + M_a) + beta K it
-     * decays with the ratio that was asked for, in this mode alone.
+     * decays with the given ratio, in this mode alone.
      */
     class DampingWithWater : public Check
     {

@@ -116,7 +116,7 @@ namespace Voussoir
         prm.add_parameter("Modes to all",
                           modes_to_all,
                           "Number of modes that have all of the mass; 0 if "
-                          "those asked for have less.");
+                          "the computed ones have less.");
       }
 
       void
@@ -194,10 +194,10 @@ namespace Voussoir
 
 
     /**
-     * A rod of n cells that moves along itself is a chain: masses m, m/2 at its
-     * free end, and springs. Mode j goes as sin(i a), a = (2j-1) pi/2n, with
-     *   omega = 2 c/h sin(a/2), effective mass cot^2(a/2)/(2n) m
-     * of (n - 1/2) m that move; 8/pi^2 of n m for the first one of many cells.
+     * A rod of n cells that moves along its axis is a chain: masses m, m/2 at
+     * its free end, and springs. Mode j goes as sin(i a), a = (2j-1) pi/2n,
+     * with omega = 2 c/h sin(a/2), effective mass cot^2(a/2)/(2n) m of (n -
+     * 1/2) m that move; 8/pi^2 of n m for the first one of many cells.
      */
     class Chain : public Check
     {

@@ -93,7 +93,7 @@ namespace Voussoir
         const std::string rest =
           std::string(" (see the warnings) could not be written because ") +
           too_large + "; remove the cause and run the case again.";
-        verdicts.same_text("with room", march("room", "9", "9"), "done");
+        verdicts.same_text("with space", march("room", "9", "9"), "done");
         verdicts.same_text(
           "full for a while",
           march("while", "0.0295", "0.0595"),
@@ -193,15 +193,15 @@ namespace Voussoir
                "the disk is full");
         fs::remove("files/growing");
         growing.append("two\n");
-        report("with room", growing.flush());
+        report("with space", growing.flush());
         limit_files(10);
         growing.append("three\n");
         const std::string too_little = growing.flush();
         limit_files(RLIM_INFINITY);
-        report("with too little room", too_little, too_large);
+        report("with too little space", too_little, too_large);
         verdicts.is_true("no part of what does not fit",
                          text_of("files/growing") == "one\ntwo\n");
-        report("with room again", growing.flush());
+        report("with space again", growing.flush());
         verdicts.is_true("all of it",
                          text_of("files/growing") == "one\ntwo\nthree\n");
         verdicts.is_true("nothing else is left", files_in("files") == 4);

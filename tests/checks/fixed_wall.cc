@@ -15,8 +15,8 @@ namespace Voussoir
      * where the ground rises with unit acceleration, the pressure of the water
      * between walls that all rise is p = rho (H - z), whatever their shape. The
      * modes take part by phi^T M r + int p phi . n dA , n out of the dam, as
-     * inertia and this pressure push it together. By the water the motion of
-     * the floor excites the modes, unlike any motion of the dam alone.
+     * inertia and this pressure push it together. Through the water the motion
+     * of the floor excites the modes, unlike a motion of the dam alone.
      */
     class FixedWall : public Check
     {

@@ -17,7 +17,7 @@ namespace Voussoir
      *   G* = G g(f) / Re g(f_0) ,
      * where g is that of the Maxwell branches,
      *   g = 1 + sum D_i i w t_i / (1 + i w t_i) ,
-     * or of the constant ratio that was asked for (Kjartansson 1979),
+     * or of the given constant ratio (Kjartansson 1979),
      *   g = f^((4/pi) xi) (1 + 2 i xi) .
      */
     class HarmonicLayer : public Check
@@ -33,7 +33,7 @@ namespace Voussoir
                           "Against the modulus of the branches.");
         prm.add_parameter("Tolerance of constant ratio",
                           of_constant,
-                          "Against the ratio that was asked for.");
+                          "Against the given ratio.");
       }
 
       void

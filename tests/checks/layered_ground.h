@@ -29,8 +29,8 @@ namespace Voussoir
                   dealii::ExcMessage("a thickness for each material"));
     }
 
-    /** Displacement of the surface over that of the wave's outcrop, which is
-     *  twice the wave as it comes in at the base. */
+    /** Displacement of the surface over that of the outcrop, which
+     *  is twice the incident wave at the base. */
     std::complex<double>
     surface_over_outcrop(const std::complex<double> s, const bool p_wave) const
     {

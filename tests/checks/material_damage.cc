@@ -165,7 +165,7 @@ namespace Voussoir
         const double modulus = material.elastic_constants().young_modulus;
 
         // an open crack is relieved of its lateral stress too, so that the
-        // effective stress is not uniaxial any more
+        // effective stress is no longer uniaxial
         check_plastic_work(material, 0.05, verdicts);
 
         // a crack that closes, is pressed and opens again
@@ -228,7 +228,7 @@ namespace Voussoir
                           2e-3,
                           "MPa");
             if (confinement != 0.5e6)
-              continue; // confinement stretches the fall
+              continue; // confinement prolongs the softening
             const PointTest::Control side{false, -confinement};
             PointTest                test(material, 1., 1e-3);
             advance(test, {{side, side, side}}, 5);

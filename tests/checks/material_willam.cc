@@ -150,9 +150,10 @@ namespace Voussoir
           verdicts.below("axes of the stress off those of the strain",
                          envelope.turned / strength,
                          1e-10);
-        verdicts.below("energy made in a step, over the energy of the crack",
-                       envelope.made * size / energy,
-                       1e-12);
+        verdicts.below(
+          "energy generated in a step, over the energy of the crack",
+          envelope.made * size / energy,
+          1e-12);
         verdicts.below("work less energy stored and lost, over the same",
                        envelope.missing * size / energy,
                        1e-3);

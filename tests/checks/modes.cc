@@ -242,7 +242,7 @@ namespace Voussoir
           return make_simulation(*parameters, communicator)->modes;
         };
         const Modes without  = with_rock({}),
-                    rigid    = with_rock({"Modes/Held materials=rock"}),
+                    rigid    = with_rock({"Modes/Fixed materials=rock"}),
                     massless = with_rock({"Modes/Massless materials=rock"});
         Case dam_alone(
           ParameterFile(file.resolve("../data/koyna_section.prm")));

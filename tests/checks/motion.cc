@@ -112,7 +112,8 @@ namespace Voussoir
     }
 
 
-    /** Velocity and acceleration are the derivatives; the peak is as asked. */
+    /** Velocity and acceleration are the derivatives; the peak is the given
+     * one. */
     void
     check_signal(const std::string &name,
                  const Signal      &signal,

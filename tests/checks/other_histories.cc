@@ -19,7 +19,7 @@ namespace Voussoir
       void
       declare_parameters(ParameterHandler &prm) override
       {
-        prm.add_parameter("Points", points, "Those of the table.");
+        prm.add_parameter("Points", points, "Named points of the table.");
         prm.add_parameter("Table", table, "Relative to the parameter file.");
         prm.add_parameter("Tolerance", tolerance, "Difference over peak.");
       }

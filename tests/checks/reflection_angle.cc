@@ -250,7 +250,7 @@ namespace Voussoir
           }
 
         const double before = energy(*simulation);
-        // until its slow parts, too, are back
+        // until its slow components have returned, too
         const double end = 2.5 * start * w / (c * c * q);
         while (state.time < end)
           simulation->run.scheme.step(state);

@@ -82,7 +82,7 @@ namespace Voussoir
         });
         const auto continued = make_case(folder(file, "together", false));
         Simulation going_on(*continued, options(true), communicator);
-        verdicts.is_true("it goes on from a time between start and end",
+        verdicts.is_true("it continues from a time between start and end",
                          going_on.run.state.time > 0. &&
                            going_on.run.state.time < continued->time.end_time);
         const auto is_there = [](const std::string &name) {
@@ -149,7 +149,7 @@ namespace Voussoir
         damage("older", communicator);
         const auto older = make_case(folder(file, "older", false));
         Simulation older_run(*older, options(true), communicator);
-        verdicts.is_true("with a damaged checkpoint it goes on from t = 0",
+        verdicts.is_true("with a damaged checkpoint it continues from t = 0",
                          older_run.run.state.step == 0);
         older_run.run.march();
         verdicts.is_true("same displacement, bit for bit",

@@ -37,7 +37,7 @@ namespace Voussoir
           make_case(with(file, "in_two", closing, 2.5 * closing));
         Simulation going_on(*second, options(true), communicator);
         verdicts.near(
-          "goes on from the time at which the crack closes, over it",
+          "continues from the time at which the crack closes, over it",
           going_on.run.state.time / closing,
           1.,
           0.01);

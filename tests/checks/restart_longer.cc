@@ -39,7 +39,7 @@ namespace Voussoir
         const auto longer = make_case(with(file, "in_two", end));
         {
           Simulation going_on(*longer, options(true), communicator);
-          verdicts.is_true("goes on from between start and end",
+          verdicts.is_true("continues from between start and end",
                            going_on.run.state.time > 0.3 * end &&
                              going_on.run.state.time < 0.6 * end);
           going_on.run.march();

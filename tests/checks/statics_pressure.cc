@@ -40,7 +40,7 @@ namespace Voussoir
               }
             force  = Utilities::MPI::sum(force, communicator);
             moment = Utilities::MPI::sum(moment, communicator);
-            // the face looks to x
+            // the face is normal to x
             const double thrust = -0.5 * gradient * level * level * width;
             keep_largest(worst_force, std::abs(force[0] / thrust - 1));
             keep_largest(worst_moment,

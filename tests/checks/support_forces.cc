@@ -117,7 +117,7 @@ namespace Voussoir
         verdicts.below("its error over time",
                        of_fixed / (2. * factor * velocity(end - 20. / speed)),
                        2. * tolerance);
-        // looked at between the lines of the table, too, not in every step
+        // sampled between the lines of the table, too, not in every step
         const auto   summary = read_summary("rod_waves");
         const double last    = double(summary.at("end time [s]")) -
                             double(summary.at("time step [s]"));

@@ -10,7 +10,7 @@ namespace Voussoir
   namespace
   {
     /**
-     * Amplitudes at points over that of the wave that comes in, by the Fourier
+     * Amplitudes at points over that of the incident wave, by the Fourier
      * sums of a pulse, against those of steady waves.
      */
     class SurfaceAmplitudes : public Check

@@ -69,6 +69,6 @@ namespace Voussoir
     // Reference: closed form
     const Registry<Check>::Add<TableGoesOn>
       registered("table goes on",
-                 "A table whose run goes on from a checkpoint.");
+                 "A table whose run continues from a checkpoint.");
   } // namespace
 } // namespace Voussoir

@@ -106,7 +106,7 @@ def check_stops(scratch):
     is_true("a run that nobody disturbs ends with 0", ends(start(straight, end=ending), 300.) == 0)
     expected = contents(straight)
     for name, folder in stopped.items():
-        is_true(f"{name}: it goes on", ends(start(folder, "--restart", end=ending), 300.) == 0)
+        is_true(f"{name}: it continues", ends(start(folder, "--restart", end=ending), 300.) == 0)
         is_true("  to the same files", contents(folder) == expected)
 
 
@@ -129,7 +129,7 @@ def check_errors(scratch):
     is_true(f"a wrong entry: exit code {code}", code == 1)
     # two without load, of which one to start
     is_true(f"  after {min(seconds):.1f} s", min(seconds) < 10.)
-    is_true("  said once each time", (folder / "terminal.txt").read_text().count('Error: --set "Time/Edn time') == 3)
+    is_true("  reported once each time", (folder / "terminal.txt").read_text().count('Error: --set "Time/Edn time') == 3)
 
 
 def check_kills(scratch):
@@ -190,7 +190,7 @@ def check_terminal(scratch):
             if select.select([master], [], [], 1.)[0]:
                 try:
                     shown += os.read(master, 4096)
-                except OSError:  # no process has the terminal any more
+                except OSError:  # no process holds the terminal
                     break
         return re.search(pattern, shown)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The job scripts of doc/running.md, with stand-ins for Slurm's commands: stopped by the signal, they
-put themselves into the queue again; started again, the run goes on and ends.
+put themselves into the queue again; started again, the run continues and ends.
 
 usage: check_slurm.py PROGRAM running.md CASE.prm
 """
@@ -65,9 +65,9 @@ def check(name, script, to_the_step):
         os.environ["END"] = str(end + 0.01)
         start(script, folder).wait(60)
         log = (result / "log.txt").read_text()
-        is_true("  it goes on in its folder and ends",
+        is_true("  it continues in its folder and ends",
                 log.startswith(stopped) and "Done:" in log[len(stopped):])
-        is_true("  and is not queued any more", requeued.read_text() == "requeue 7\n")
+        is_true("  and is no longer queued", requeued.read_text() == "requeue 7\n")
 
 
 check("srun", whole, True)

@@ -108,14 +108,14 @@ def damaged_checkpoints(options, straight, reference, chance, folder):
     code, text = start(options, folder, ["--restart"])
     wrong = complaint(code, text)
     if code == 0 and not wrong:
-        # it says what it found damaged, which the other did not
+        # it reports what it found damaged, the other did not
         names = [name for name in different(reference, folder) if name != "summary.json"]
         wrong = "other results: " + ", ".join(names) if names else ""
     return ", ".join(what), wrong, code
 
 
 def full_disk(options, straight, reference, chance, folder):
-    """A disk that is too small, and a restart when there is room."""
+    """A disk that is too small, and a restart when there is space."""
     folder.mkdir()
     whole = sum(path.stat().st_size for path in straight.rglob("*") if path.is_file())
     size = int(whole * chance.uniform(0.0, 1.1)) // 4096 * 4096 + 4096
@@ -134,7 +134,7 @@ def full_disk(options, straight, reference, chance, folder):
             code, text = start(options, folder, ["--restart"] if on else [])
             wrong = complaint(code, text)
             if wrong:
-                wrong += " when there is room"
+                wrong += " when there is space"
     finally:
         subprocess.run(["umount", "-l", folder], check=False)
     return f"{size} of {whole} bytes", wrong, code

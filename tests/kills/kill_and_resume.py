@@ -56,7 +56,7 @@ def lasting(value):
 
 
 def left_behind(folder):
-    """What only a run that goes on needs."""
+    """Files that only a restart needs."""
     return [str(path) for path in (folder / "run").rglob("*")
             if path.suffix in (".part", ".unfinished", ".lock")]
 

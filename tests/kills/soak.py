@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Lets a run of many earthquakes go on for hours of motion in pieces, each of which
-is stopped at a random moment and goes on with --restart on another number of ranks:
+"""Runs hours of motion with many earthquakes in pieces, each of which is stopped
+at a random moment and continued with --restart on another number of ranks:
 neither memory nor files may grow beyond what histories explain, and in the end the
 histories are those of a run in one piece on one rank, bit for bit.
 
@@ -21,7 +21,7 @@ import sys
 import time
 
 STOPPED = 75
-# of what the run in one piece leaves: the same bit for bit, on any ranks
+# files of the run in one piece that must be equal bit for bit, on any number of ranks
 SAME = ["histories.csv"]
 # peak memory of a rank differs from run to run by pages of MPI and of the allocator
 MEMORY_PLAY = 8.0  # MB

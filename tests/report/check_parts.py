@@ -138,8 +138,8 @@ def check_profiles(run):
 
 
 def check_abscissa(run):
-    """What stands below a face is the x of the model, and +x is on the left bank: on the
-    left for those who look downstream."""
+    """Below a face is the x of the model, and +x is on the left bank: on the
+    left as seen looking downstream."""
     dam = grid.dam_of(run)
     for side, sign in (("upstream", -1.), ("downstream", 1.)):
         corners = dam.grid.points[dam.side(side)]
@@ -178,12 +178,12 @@ def check_colours():
     pressure = charts.Scale([np.array([-5., -1.])], "stress")
     compare("a bar of pressure alone ends at zero", pressure.levels[-1], 0., 0.)
     more = charts.Scale([np.concatenate([np.linspace(0., 4., 2000), [9.]])], "stress")
-    is_true("more than the bar has is said where there is more", more.above and not more.below and not scale.above)
+    is_true("values beyond the colour bar are reported where there are some", more.above and not more.below and not scale.above)
     cracked = charts.Scale([np.concatenate([np.zeros(999), [3.]])], "opening [mm]", colours="inferno_r", low=0.)
     is_true("one cracked cell of a thousand is seen", cracked.levels[-1] >= 3. and "everywhere" not in cracked.label)
     noise = charts.Scale([np.array([0., 3e-14])], "opening [mm]", 0., "inferno_r", low=0.)
     compare("end of the bar of noise", noise.levels[-1], 1., 0.)
-    is_true("noise is said to be zero", noise.label == "opening [mm]: 0 everywhere")
+    is_true("noise is reported as zero", noise.label == "opening [mm]: 0 everywhere")
 
 
 def surface(**changed):
@@ -294,7 +294,7 @@ def check_input(run):
 
 
 def check_stages(scratch):
-    """Whatever a stage names is in a table, with the stage, and round-off is zero."""
+    """All results of a stage are in a table, with the stage, and round-off is zero."""
     def stage(name, size):
         return {"names": [name], "iterations": 12, "found by multigrid": True, "largest displacement [m]": 0.1 * size,
                 "sum of loads so far [N]": [0., 0., -1.], "sum of reactions [N]": [0., 0., 1.],
@@ -314,7 +314,7 @@ def check_stages(scratch):
             == ["upstream face, smallest", "weight", "–", "–", "0; 2.00; 3.00"])
     is_true("a joint that is not there yet has no line", tables["interfaces"].rows == [["joint", "water", "3.00"]])
     again = stages.stages_section([run, run])
-    is_true("stages that all runs have are there once", again.parts[0] == "They are the same in all runs."
+    is_true("stages common to all runs are there once", again.parts[0] == "They are the same in all runs."
             and [part.rows for part in again.parts[2:]] == [part.rows for part in stages.stages_section([run]).parts[1:]])
     is_true("no stage, no section", stages.stages_section([make_wall(scratch / "no_stages")]) is None)
 
@@ -372,7 +372,7 @@ def check_page(scratch):
     kinds = dict(re.findall(r'<div class="verdict (\w+)">\s*<span class="soft">([^<]*)<', text)[::-1])
     is_true("blocks of a page", kinds == {"good": "Numerical checks", "bad": "Engineering results"})
     is_true("no verdict of old", "But look" not in text and "but look" not in text)
-    is_true("a scene without vtk.js is said to stand still", "vtk.js was not found" in text and "vtk-js" not in text)
+    is_true("a scene without vtk.js is reported as a still picture", "vtk.js was not found" in text and "vtk-js" not in text)
     is_true("all of the input", "all of parameters.prm" in text and "subsection Interfaces" in text)
     library = page.vtk_js()
     browser = shutil.which("chromium")

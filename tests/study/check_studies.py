@@ -29,7 +29,7 @@ def started(case, folder, *entries, options=()):
 
 
 def study(*arguments, **named):
-    """Exit code and what is said."""
+    """Exit code and messages."""
     process = started(*arguments, **named)
     said = process.communicate(timeout=300)[0].strip()
     return process.returncode, said
@@ -129,7 +129,7 @@ def check_two_at_once(scratch):
     still = first.poll() is None
     first.terminate()
     first.communicate(timeout=300)
-    is_true("a second study in the folder of one that goes on: refused", still and code == 1
+    is_true("a second study in the folder of a running one: refused", still and code == 1
             and f'"{folder}" is that of a study which is still going on' in said, said)
     is_true("  and the first one is asked to stop: exit code 75", first.returncode == 75,
             str(first.returncode))

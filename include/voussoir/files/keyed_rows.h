@@ -17,7 +17,7 @@ namespace Voussoir
       : width(width)
     {}
 
-    /** The rows of some values but those of zeros. */
+    /** The rows of some values, without those of zeros. */
     explicit KeyedRows(const KeyedValues &values);
 
     const double *

@@ -1,6 +1,7 @@
 #ifndef voussoir_materials_material_of_h
 #define voussoir_materials_material_of_h
 
+#include <voussoir/materials/cell_energies.h>
 #include <voussoir/materials/cell_kernels.h>
 #include <voussoir/materials/material.h>
 

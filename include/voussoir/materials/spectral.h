@@ -158,14 +158,6 @@ namespace Voussoir
     return {mean - radius, mean + radius};
   }
 
-
-  /** Coefficient alpha of the surface of Lubliner et al. (1989) for a ratio of
-   *  biaxial to uniaxial compressive strength. */
-  inline double
-  lubliner_alpha(const double biaxial_ratio)
-  {
-    return (biaxial_ratio - 1.) / (2. * biaxial_ratio - 1.);
-  }
 } // namespace Voussoir
 
 #endif

@@ -11,7 +11,7 @@ namespace Voussoir
    * sets "material 3", those of quadrilaterals face sets "boundary 3". Throws
    * UserError. (deal.II's GridIn::read_ucd() refuses quadrilaterals inside the
    * mesh, which name interfaces here, and of a damaged file tells neither line
-   * nor remedy.)
+   * nor remedy; VTK's own reader: see doc/architecture.md.)
    */
   FileMesh
   read_ucd(MeshFile &file);

@@ -38,8 +38,8 @@ def with_runs_of_studies(folders, studies):
 
 
 def section_of(make, *arguments):
-    """What a function makes of the runs. A report says what it cannot read; whatever
-    else a damaged file leads to becomes a sentence, too."""
+    """What a function makes of the runs. A report names what it cannot read; any
+    other consequence of a damaged file becomes a sentence, too."""
     from .files import ReportError
     try:
         return make(*arguments)

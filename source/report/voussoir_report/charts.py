@@ -61,7 +61,7 @@ def picture(figure, caption, name="", vector=True, dpi=None, shaded=False):
 
 
 def new_figure(height=2.9):
-    """A figure with room for a chart; margins in inches, as finding them takes matplotlib
+    """A figure with space for a chart; margins in inches, as finding them takes matplotlib
     half of its time."""
     figure = Figure(figsize=(WIDTH, height))
     return figure, place(figure, 0.78, 0.5, WIDTH - 0.98, height - 0.8)

@@ -15,7 +15,7 @@ STRESSES = {"arch_stress": "arch stress", "cantilever_stress": "cantilever stres
 AT_REST = {"arch_stress": "arch stress", "cantilever_stress": "cantilever stress",
            "largest_principal_stress": "largest principal stress",
            "smallest_principal_stress": "smallest principal stress"}
-# +x is the left bank, which is on the left for those who look downstream
+# +x is the left bank, on the left as seen looking downstream
 SIDES = {"upstream": ("upstream face, seen from upstream (left bank on the left)", True),
          "downstream": ("downstream face, seen from downstream (left bank on the right)", False)}
 
@@ -37,7 +37,7 @@ def face_panels(run, field, file=FILE):
     for side in SIDES:
         if f"{side} face" in grid.names("face_set"):
             quads = grid.cells[grid.of("face_set", f"{side} face")]
-            if len(quads):  # all face sets have names, those not looked at no quadrilaterals
+            if len(quads):  # all face sets have names, those not evaluated no quadrilaterals
                 panels.append(panel_of(dam, side, grid.points[quads], grid.values[field][quads]))
     return panels
 

@@ -104,7 +104,7 @@ class Table:
 @dataclasses.dataclass
 class Group:
     """What an object of a JSON file holds: the kinds of its entries, by name, and
-    the kind of all others, None for those that a report does not look at."""
+    the kind of all others, None for those that a report does not read."""
 
     required: dict = dataclasses.field(default_factory=dict)
     optional: dict = dataclasses.field(default_factory=dict)

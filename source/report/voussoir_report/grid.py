@@ -206,7 +206,7 @@ class Dam:
         """Corners of the upstream or the downstream face."""
         normals = self._unit_normals()
         sign = 1. if name == "upstream" else -1.
-        # the sides of a slice of a dam look to the banks
+        # the sides of a slice of a dam face the banks
         along_river = (sign * normals[:, 1] > 0.1) & (np.abs(normals[:, 2]) < 0.99)
         return self.exposed[along_river]
 
@@ -300,8 +300,8 @@ def dam_of(run):
 
 
 def dam_materials(run, names):
-    """Names of the materials of the dam, not of the rock: those that they or their
-    cell sets are called so, or else the first."""
+    """Names of the materials of the dam, not of the rock: those called so, by themselves
+    or by their cell sets, or else the first."""
     entries = dict(run.objects("Materials"))
 
     def is_called(name, *words):

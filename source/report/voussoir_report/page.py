@@ -125,7 +125,7 @@ def number(value, digits=3):
 
 def comparison(runs, rows, caption=""):
     """A table with a column for each run of rows (what, function of the run), where a
-    function that has no answer returns None; rows without any answer are left out."""
+    function that has no value returns None; rows without any value are left out."""
     table = Table(["", *(run.label for run in runs if len(runs) > 1)], [], caption)
     for what, function in rows:
         answers = [function(run) for run in runs]

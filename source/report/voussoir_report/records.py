@@ -10,7 +10,7 @@ from .files import is_number
 from .motion import significant_duration
 from .page import Digest, Table, number
 
-CASE_FOLDERS = []  # where files that a parameter file names are looked for, besides the usual places
+CASE_FOLDERS = []  # where files that a parameter file names may be, besides the usual places
 
 
 def sha256(file):

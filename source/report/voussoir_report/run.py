@@ -129,7 +129,7 @@ class Run:
     def _read_summary(self):
         if not self.has("summary.json"):
             raise ReportError(f'The run in "{self.folder}" has not ended, as there is no '
-                              "summary.json yet; wait for its end, or let it go on with --restart.")
+                              "summary.json yet; wait for its end, or continue it with --restart.")
         return read_json(self.folder / "summary.json", SUMMARY, "run the case again, which writes it anew")
 
     @property
@@ -216,7 +216,7 @@ class Run:
         # a run that was stopped has been given a longer motion
         planned = self.number("Time/End time")
         if last > 1.01 * max(end, planned) + between:
-            refuse(table.file, f"goes on to {last:g} s, but the run ended at {end:g} s")
+            refuse(table.file, f"continues to {last:g} s, but the run ended at {end:g} s")
         if name in INTERVALS and last < min(end, planned) - 1.01 * max(between, self.number(INTERVALS[name])):
             refuse(table.file, f"is cut, as it ends at {last:g} s and the run at {end:g} s")
 

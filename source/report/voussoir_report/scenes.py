@@ -1,4 +1,4 @@
-"""Pictures in space: VTK, on a display of its own that nobody sees."""
+"""Pictures in space: VTK, on a virtual display."""
 
 import atexit
 import base64

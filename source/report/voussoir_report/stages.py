@@ -1,4 +1,4 @@
-"""What the summary has of each static stage, whatever it names."""
+"""Results of each static stage in the summary, by their names."""
 
 from .page import Section, Table, number
 from .run import is_quantity

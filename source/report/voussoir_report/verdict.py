@@ -87,7 +87,7 @@ def lines_of(run, name):
 
 
 def numerical_checks(run):
-    """Whether equations, contact and files are as they should be."""
+    """Whether equations were solved, contact constraints met and files written."""
     lines = list(lines_of(run, CHECKS))
     judged = worst(lines)
     if run.summary.get("verdict", "").startswith(("stopped: ", "failed: ")):

@@ -9,9 +9,9 @@ namespace Voussoir
   namespace
   {
     /** Cells too long for the fracture energy of their concrete: the refinement
-     *  that the check asks for is enough, one level less is not, and it has the
-     *  number of cells that is said. */
-    class LongCells : public Check
+     *  that the numerical check requires suffices, one level less does not, and
+     *  the number of cells is the one reported. */
+    class RequiredRefinement : public Check
     {
     public:
       void
@@ -30,10 +30,10 @@ namespace Voussoir
                                      std::to_string(by)}),
                           communicator);
         };
-        verdicts.is_true("one level less than asked for: not met",
+        verdicts.is_true("one level less than required: not met",
                          refined(levels - 1).line.at("met") == false);
         const Found better = refined(levels);
-        verdicts.is_true("as many as asked for: met",
+        verdicts.is_true("required levels: met",
                          better.line.at("met") == true &&
                            !better.line.contains("remedy"));
         // beside them, cells of the rock are refined on the way to large ones
@@ -70,7 +70,8 @@ namespace Voussoir
     };
 
     // Reference: ourselves
-    const Registry<Check>::Add<LongCells>
-      registered("long cells", "Cells that the fracture energy needs.");
+    const Registry<Check>::Add<RequiredRefinement>
+      registered("required refinement",
+                 "Cells whose length the fracture energy allows.");
   } // namespace
 } // namespace Voussoir

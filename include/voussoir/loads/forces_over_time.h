@@ -1,0 +1,32 @@
+#ifndef voussoir_loads_forces_over_time_h
+#define voussoir_loads_forces_over_time_h
+
+#include <voussoir/loads/load.h>
+#include <voussoir/loads/time_factor.h>
+
+namespace Voussoir
+{
+  /** Common part of loads with forces on nodes that a factor over time
+   *  multiplies. */
+  class ForcesOverTime : public Load
+  {
+  public:
+    std::vector<unsigned int>
+    nodes() const override;
+
+    void
+    add_forces(const double time, NodalForces &forces) const override;
+
+  protected:
+    /** @param expression default of the factor; empty: there need be none */
+    explicit ForcesOverTime(const std::string &expression = "1");
+
+    TimeFactor factor;
+
+    /** Owned nodes and the force on each at a factor of one [N]; empty without
+     *  a factor. */
+    std::vector<std::pair<unsigned int, dealii::Tensor<1, 3>>> nodal_forces;
+  };
+} // namespace Voussoir
+
+#endif

@@ -1,0 +1,276 @@
+#ifndef voussoir_materials_cell_energies_h
+#define voussoir_materials_cell_energies_h
+
+#include <voussoir/materials/cell_loops.h>
+#include <voussoir/materials/damped_response.h>
+
+namespace Voussoir
+{
+  /** The loops of CellKernel that sum up energies. */
+  namespace CellKernels
+  {
+    /** Zero where the point is not elastic. */
+    inline Lanes
+    where_elastic(const PointHistory *history,
+                  const unsigned int  batch,
+                  const unsigned int  q,
+                  const Lanes        &value)
+    {
+      if (history == nullptr || !history->is_active(batch, q))
+        return value;
+      return dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
+        history->active_point(batch, q).band, Lanes(0.), value, Lanes(0.));
+    }
+
+
+    /** x^T K x and x^T K v of the elastic points of each cell, with x and v of
+     *  @p field and @p moving. */
+    template <typename Law, typename Cell>
+    std::array<Lanes, 2>
+    elastic_products(const Law          &law,
+                     const double        stress_factor,
+                     Cell               &field,
+                     Cell               &moving,
+                     const PointHistory *history,
+                     const unsigned int  batch)
+    {
+      std::array<Lanes, 2> sums{{Lanes(0.), Lanes(0.)}};
+      for (const unsigned int q : field.quadrature_point_indices())
+        {
+          const auto  strain = field.get_symmetric_gradient(q);
+          const auto  stress = stress_factor * law.stress(strain);
+          const Lanes weight = where_elastic(history, batch, q, field.JxW(q));
+          sums[0] += weight * (stress * strain);
+          sums[1] += weight * (stress * moving.get_symmetric_gradient(q));
+        }
+      if constexpr (is_one_point<Cell>)
+        {
+          stabilise(field, law, stress_factor);
+          sums[0] += field.stabilisation_work(field);
+          sums[1] += field.stabilisation_work(moving);
+        }
+      return sums;
+    }
+
+
+    /** Adds the share of a Maxwell branch to the energy of damping,
+     *   k/2 s (sum w_i : D : w_i / D_i - w : D : w / sum D_i) ,
+     *  and its strain w_i to w. */
+    template <typename Law, typename Cell>
+    void
+    add_branch(const Law                            &law,
+               const double                          factor,
+               const Cell                           &cell,
+               const unsigned int                    batch,
+               PointHistory                         &history,
+               std::vector<SymmetricTensor3<Lanes>> &filter)
+    {
+      for (const unsigned int q : cell.quadrature_point_indices())
+        {
+          const auto strain = cell.get_symmetric_gradient(q);
+          history.imbalance(batch, q) += factor * (law.stress(strain) * strain);
+          filter[q] += strain;
+        }
+    }
+
+
+    /** CellKernel::elastic_energy. */
+    template <typename Law>
+    ElasticEnergy
+    elastic_energy(const Law          &law,
+                   const CellRange    &cells,
+                   const double        damping_factor,
+                   const DampedMotion &motion,
+                   PointHistory       *history)
+    {
+      const auto       &matrix_free   = cells.matrix_free;
+      const double      stress_factor = cells.stress_factor;
+      const double      dt            = motion.time_step;
+      const Damping    &damping       = motion.damping;
+      const MaxwellStep maxwell(damping, dt);
+      const double      branches = damping.branch_stiffness();
+      const double      viscosity =
+        damping_factor * damping.stiffness_coefficient + damping.mesh_viscosity;
+      ElasticEnergy total(cells.exact_sums);
+      const auto    add_up = [&](auto &cell, const auto &reduce) {
+        std::decay_t<decltype(cell)> moving(matrix_free); // at v+
+        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+          {
+            cell.reinit(batch);
+            moving.reinit(batch);
+            const auto products = [&](auto &field) {
+              const auto sums = elastic_products(
+                law, stress_factor, field, moving, history, batch);
+              return std::array<decltype(reduce(batch, sums[0])), 2>{
+                {reduce(batch, sums[0]), reduce(batch, sums[1])}};
+            };
+            const auto products_of = [&](const Vector &vector) {
+              cell.read_dof_values(vector);
+              cell.evaluate(dealii::EvaluationFlags::gradients);
+              return products(cell);
+            };
+
+            std::vector<SymmetricTensor3<Lanes>> filter(
+              history == nullptr ? 0 : cell.quadrature_point_indices().size());
+
+            moving.read_dof_values(motion.velocity);
+            moving.evaluate(dealii::EvaluationFlags::gradients);
+            using Number        = decltype(reduce(batch, Lanes()));
+            const auto [uu, uv] = products_of(motion.displacement);
+            add_cells(total.strain, cells, batch, Number(0.5 * (uu - dt * uv)));
+            if (viscosity > 0.)
+              {
+                const auto [bb, bv] = products_of(motion.velocity_before);
+                add_cells(total.last_loss,
+                          cells,
+                          batch,
+                          Number(0.5 * dt * viscosity * (bb + bv)));
+              }
+            const Number vv =
+              maxwell.gain.empty() ? Number(0.) : products(moving)[0];
+            for (unsigned int q = 0; q < filter.size(); ++q)
+              history->imbalance(batch, q) = 0.;
+            for (unsigned int i = 0; i < maxwell.gain.size(); ++i)
+              if (const double a = maxwell.decay[i], b = maxwell.gain[i];
+                  b > 0.)
+                {
+                  const auto [ww, wv] = products_of(motion.memory[i]);
+                  const double factor = damping_factor * dt / (2. * b);
+                  const Number across = a * ww + b * wv, // w_i^T K w_i+
+                    next              = a * across + b * (a * wv + b * vv);
+                  if (history != nullptr)
+                    add_branch(law,
+                               0.5 * stress_factor * damping_factor /
+                                 damping.coefficients[i],
+                               cell,
+                               batch,
+                               *history,
+                               filter);
+                  add_cells(total.memory,
+                            cells,
+                            batch,
+                            Number(factor * across));
+                  add_cells(total.next_loss,
+                            cells,
+                            batch,
+                            Number(factor * (1. - a) * (next + across)));
+                }
+            if (branches > 0.)
+              for (unsigned int q = 0; q < filter.size(); ++q)
+                history->imbalance(batch, q) -=
+                  0.5 * stress_factor * damping_factor / branches *
+                  (law.stress(filter[q]) * filter[q]);
+          }
+      };
+      with_cells(cells, [&](auto &&cell) {
+        with_reduction(cells,
+                       [&](const auto &reduce) { add_up(cell, reduce); });
+      });
+      return total;
+    }
+
+
+    /** CellKernel::inelastic_energy. */
+    template <typename Law>
+    InelasticEnergy
+    inelastic_energy(const Law             &law,
+                     const CellRange       &cells,
+                     const double           damping_factor,
+                     const InelasticMotion &motion,
+                     const PointHistory    &history)
+    {
+      const DampedResponse<Law> response(law,
+                                         cells.stress_factor,
+                                         damping_factor * motion.branches);
+      InelasticEnergy           total(cells.exact_sums);
+      with_cells(cells, [&](auto &&cell) {
+        std::decay_t<decltype(cell)> cell_static(cells.matrix_free);
+        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+          {
+            const auto points = cell.quadrature_point_indices();
+            if (std::none_of(points.begin(),
+                             points.end(),
+                             [&](const unsigned int q) {
+                               return history.is_active(batch, q);
+                             }))
+              continue;
+            cell.reinit(batch);
+            cell.gather_evaluate(motion.displacement,
+                                 dealii::EvaluationFlags::gradients);
+            if (motion.has_static_state)
+              {
+                cell_static.reinit(batch);
+                cell_static.gather_evaluate(motion.static_displacement,
+                                            dealii::EvaluationFlags::gradients);
+              }
+            Lanes stored = 0., of_damping = 0.;
+            for (const unsigned int q : points)
+              if (history.is_active(batch, q))
+                {
+                  SymmetricTensor3<Lanes> static_strain;
+                  if (motion.has_static_state)
+                    static_strain = cell_static.get_symmetric_gradient(q);
+                  const auto energy =
+                    response.energy(cell.get_symmetric_gradient(q),
+                                    static_strain,
+                                    batch,
+                                    q,
+                                    history,
+                                    motion.static_history);
+                  stored += energy.stored * cell.JxW(q);
+                  of_damping += energy.of_damping * cell.JxW(q);
+                }
+            with_reduction(cells, [&](const auto &reduce) {
+              add_cells(total.stored, cells, batch, reduce(batch, stored));
+              add_cells(total.damping, cells, batch, reduce(batch, of_damping));
+            });
+          }
+      });
+      return total;
+    }
+
+
+    /** CellKernel::work. */
+    template <typename Law>
+    double
+    work(const Law          &law,
+         const CellRange    &cells,
+         const Vector       &u,
+         const Vector       &v,
+         const PointHistory *history)
+    {
+      const auto  &matrix_free   = cells.matrix_free;
+      const double stress_factor = cells.stress_factor;
+      double       total         = 0.;
+      with_cells(cells, [&](auto &&cell_u) {
+        std::decay_t<decltype(cell_u)> cell_v(matrix_free);
+        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+          {
+            cell_u.reinit(batch);
+            cell_u.read_dof_values(u);
+            cell_u.evaluate(dealii::EvaluationFlags::gradients);
+            cell_v.reinit(batch);
+            cell_v.read_dof_values(v);
+            cell_v.evaluate(dealii::EvaluationFlags::gradients);
+            Lanes sum = 0.;
+            for (const unsigned int q : cell_u.quadrature_point_indices())
+              {
+                const Lanes part =
+                  stress_factor * law.stress(cell_u.get_symmetric_gradient(q)) *
+                  cell_v.get_symmetric_gradient(q) * cell_u.JxW(q);
+                sum += where_elastic(history, batch, q, part);
+              }
+            if constexpr (is_one_point<decltype(cell_u)>)
+              {
+                stabilise(cell_u, law, stress_factor);
+                sum += cell_u.stabilisation_work(cell_v);
+              }
+            total += sum_of_cells(matrix_free, batch, sum);
+          }
+      });
+      return total;
+    }
+  } // namespace CellKernels
+} // namespace Voussoir
+
+#endif

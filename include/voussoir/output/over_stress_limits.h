@@ -1,0 +1,70 @@
+#ifndef voussoir_output_over_stress_limits_h
+#define voussoir_output_over_stress_limits_h
+
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/point.h>
+
+#include <nlohmann/json.hpp>
+
+namespace Voussoir
+{
+  /** Over-stress of a face set over the run. */
+  struct FaceOverStress
+  {
+    std::string name;
+    double      area; // [m2]
+
+    // largest demand-capacity ratio [-], when [s] and where [m]
+    double           largest, time;
+    dealii::Point<3> where;
+
+    double largest_at_rest; // ratio of the static state [-]
+
+    // of each ratio of the list: accumulated time of the point that has most
+    // [s], and of those that the static state has below the ratio, area of the
+    // static state, area ever above it and largest one at a moment [m2]
+    std::vector<double> accumulated, beyond_rest, resting, ever, at_once,
+      time_at_once;
+  };
+
+
+  /**
+   * Limits up to which a linear analysis suffices (Ghanaat, "Failure modes
+   * approach to safety evaluation of dams", 13th World Conference on Earthquake
+   * Engineering, 2004; USACE EM 1110-2-6053, 2007).
+   */
+  struct OverStressLimits
+  {
+    std::vector<double>
+      ratios{1., 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.};
+
+    double longest_time  = 0.4; // [s]
+    double largest_ratio = 2.;
+    double largest_share = 20.; // [%]
+
+    void
+    declare_parameters(dealii::ParameterHandler &prm);
+
+    /** @param section of these entries, for messages */
+    void
+    check(const std::string &section) const;
+
+    /** Accumulated time that a linear analysis allows above a ratio [s]. */
+    double
+    allowed_time(const double ratio) const;
+
+    /** Why a face calls for a non-linear analysis; none if it does not. */
+    std::vector<std::string>
+    reasons_of(const FaceOverStress &face) const;
+
+    /** Results of a face for the summary. */
+    nlohmann::json
+    json(const FaceOverStress &face) const;
+
+    /** A ratio, time or share with three digits. */
+    static std::string
+    text(const double value);
+  };
+} // namespace Voussoir
+
+#endif

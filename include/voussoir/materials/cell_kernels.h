@@ -364,7 +364,9 @@ namespace Voussoir
 
             // k/2 s (sum w_i : D : w_i / D_i - w : D : w / sum D_i)
             std::vector<SymmetricTensor3<Lanes>> filter(
-              history == nullptr ? 0 : cell.quadrature_point_indices().size());
+              history == nullptr || maxwell.gain.empty() ?
+                0 :
+                cell.quadrature_point_indices().size());
             const auto add_branch = [&](const unsigned int i) {
               for (const unsigned int q : cell.quadrature_point_indices())
                 {

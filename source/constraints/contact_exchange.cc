@@ -37,13 +37,14 @@ namespace Voussoir
     std::sort(owned.begin(), owned.end());
     owned.erase(std::unique(owned.begin(), owned.end()), owned.end());
 
-    // a vector of the nodes lent alone
-    const types::global_dof_index n_lent = 3 * nodes_lent.size();
-    types::global_dof_index       first  = 0;
+    // a vector of the nodes lent alone, with one entry more, since the library
+    // wants no vector without entries
+    const types::global_dof_index n_entries = 3 * nodes_lent.size() + 1;
+    types::global_dof_index       first     = 0;
     MPI_Exscan(
-      &n_lent, &first, 1, DEAL_II_DOF_INDEX_MPI_TYPE, MPI_SUM, communicator);
-    IndexSet own(Utilities::MPI::sum(n_lent, communicator));
-    own.add_range(first, first + n_lent);
+      &n_entries, &first, 1, DEAL_II_DOF_INDEX_MPI_TYPE, MPI_SUM, communicator);
+    IndexSet own(Utilities::MPI::sum(n_entries, communicator));
+    own.add_range(first, first + n_entries);
     Vector numbers(all);
     for (unsigned int i = 0; i < nodes_lent.size(); ++i)
       numbers.local_element(3 * nodes_lent[i]) = first + 3 * i;

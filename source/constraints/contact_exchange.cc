@@ -10,26 +10,51 @@ namespace Voussoir
     const Discretization                       &discretization,
     const std::vector<types::global_dof_index> &cluster_nodes)
   {
-    const IndexSet &mine = discretization.owned_dofs;
-    IndexSet        ghosts(mine.size());
-    for (const auto node : cluster_nodes)
-      if (!mine.is_element(3 * node))
-        ghosts.add_range(3 * node, 3 * node + 3);
-    ghosts.compress();
-    const auto partitioner = std::make_shared<Utilities::MPI::Partitioner>(
-      mine, ghosts, discretization.grid.communicator());
-    shared.reinit(partitioner);
+    const IndexSet &mine         = discretization.owned_dofs;
+    const MPI_Comm  communicator = discretization.grid.communicator();
+    const auto      with_ghosts = [&](const IndexSet &own, const auto &number) {
+      IndexSet ghosts(own.size());
+      for (unsigned int i = 0; i < cluster_nodes.size(); ++i)
+        if (!mine.is_element(3 * cluster_nodes[i]))
+          ghosts.add_range(number(i), number(i) + 3);
+      ghosts.compress();
+      return std::make_shared<Utilities::MPI::Partitioner>(own,
+                                                           ghosts,
+                                                           communicator);
+    };
+    const auto all = with_ghosts(mine, [&](const unsigned int i) {
+      return 3 * cluster_nodes[i];
+    });
     std::vector<unsigned int> nodes_lent;
-    for (const auto &[begin, end] : partitioner->import_indices())
+    for (const auto &[begin, end] : all->import_indices())
       for (unsigned int i = begin; i < end; ++i)
         if (i % 3 == 0)
           nodes_lent.push_back(i / 3);
     owned = nodes_lent;
     for (const auto node : cluster_nodes)
       if (mine.is_element(3 * node))
-        owned.push_back(partitioner->global_to_local(3 * node) / 3);
+        owned.push_back(all->global_to_local(3 * node) / 3);
     std::sort(owned.begin(), owned.end());
     owned.erase(std::unique(owned.begin(), owned.end()), owned.end());
+
+    // a vector of the nodes lent alone, with one entry more, since the library
+    // wants no vector without entries
+    const types::global_dof_index n_entries = 3 * nodes_lent.size() + 1;
+    types::global_dof_index       first     = 0;
+    MPI_Exscan(
+      &n_entries, &first, 1, DEAL_II_DOF_INDEX_MPI_TYPE, MPI_SUM, communicator);
+    IndexSet own(Utilities::MPI::sum(n_entries, communicator));
+    own.add_range(first, first + n_entries);
+    Vector numbers(all);
+    for (unsigned int i = 0; i < nodes_lent.size(); ++i)
+      numbers.local_element(3 * nodes_lent[i]) = first + 3 * i;
+    numbers.update_ghost_values();
+    const auto number = [&](const unsigned int i) {
+      return static_cast<types::global_dof_index>(
+        numbers.local_element(all->global_to_local(3 * cluster_nodes[i])));
+    };
+    const auto partitioner = with_ghosts(own, number);
+    shared.reinit(partitioner);
 
     const auto place_of = [&](const unsigned int node) -> unsigned int {
       return std::lower_bound(owned.begin(), owned.end(), node) - owned.begin();
@@ -37,14 +62,11 @@ namespace Voussoir
     for (const unsigned int node : nodes_lent)
       lent.push_back(place_of(node));
     for (unsigned int i = 0; i < cluster_nodes.size(); ++i)
-      {
-        const unsigned int entry =
-          partitioner->global_to_local(3 * cluster_nodes[i]);
-        if (mine.is_element(3 * cluster_nodes[i]))
-          here.push_back({i, place_of(entry / 3)});
-        else
-          remote.push_back({i, entry});
-      }
+      if (mine.is_element(3 * cluster_nodes[i]))
+        here.push_back(
+          {i, place_of(all->global_to_local(3 * cluster_nodes[i]) / 3)});
+      else
+        remote.push_back({i, partitioner->global_to_local(number(i))});
   }
 
 
@@ -62,11 +84,11 @@ namespace Voussoir
   {
     for (const auto &[cluster_node, place] : here)
       at_cluster_nodes[cluster_node] = value_at_owned(place);
-    for (const unsigned int place : lent)
+    for (unsigned int i = 0; i < lent.size(); ++i)
       {
-        const Tensor<1, 3> value = value_at_owned(place);
+        const Tensor<1, 3> value = value_at_owned(lent[i]);
         for (unsigned int d = 0; d < 3; ++d)
-          shared.local_element(3 * owned[place] + d) = value[d];
+          shared.local_element(3 * i + d) = value[d];
       }
     shared.update_ghost_values();
     for (const auto &[cluster_node, entry] : remote)
@@ -105,17 +127,15 @@ namespace Voussoir
   {
     for (const auto &[cluster_node, place] : here)
       at_owned_nodes[place] = at_cluster_nodes[cluster_node];
-    for (const unsigned int place : lent)
-      for (unsigned int d = 0; d < 3; ++d)
-        shared.local_element(3 * owned[place] + d) = 0.;
+    shared = 0.;
     // each node is in one cluster
     for (const auto &[cluster_node, entry] : remote)
       for (unsigned int d = 0; d < 3; ++d)
         shared.local_element(entry + d) = at_cluster_nodes[cluster_node][d];
     shared.compress(VectorOperation::add);
-    for (const unsigned int place : lent)
+    for (unsigned int i = 0; i < lent.size(); ++i)
       for (unsigned int d = 0; d < 3; ++d)
-        at_owned_nodes[place][d] = shared.local_element(3 * owned[place] + d);
+        at_owned_nodes[lent[i]][d] = shared.local_element(3 * i + d);
   }
 
 

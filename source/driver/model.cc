@@ -1,3 +1,4 @@
+#include <voussoir/base/first_rank.h>
 #include <voussoir/driver/mesh_against_case.h>
 #include <voussoir/driver/model.h>
 #include <voussoir/driver/model_checks.h>
@@ -15,15 +16,23 @@ namespace Voussoir
 
   namespace
   {
+    bool
+    wants_water(const Case &parameters)
+    {
+      const ReservoirParameters &reservoir = parameters.reservoir;
+      return reservoir.model == ReservoirModel::compressible ||
+             parameters.modes.want_cells_of_water(reservoir);
+    }
+
+
     // Water of a mesh becomes a mesh of its own, whether the case uses it or
     // not.
     CoarseMesh
     take_water(const Case &parameters, CoarseMesh &mesh)
     {
       const ReservoirParameters &reservoir = parameters.reservoir;
-      const bool wanted = reservoir.model == ReservoirModel::compressible ||
-                          parameters.modes.want_cells_of_water(reservoir);
-      std::vector<std::string> sets;
+      const bool                 wanted    = wants_water(parameters);
+      std::vector<std::string>   sets;
       for (const std::string &set : split_list(reservoir.cell_sets))
         if (wanted || mesh.cell_sets.count(set) > 0)
           sets.push_back(set);
@@ -61,6 +70,62 @@ namespace Voussoir
             parameters.discretization.degree));
         }
       return result;
+    }
+
+
+    /** The ranks on the machine of this one. */
+    struct RanksOfMachine
+    {
+      explicit RanksOfMachine(const MPI_Comm all)
+        : all(all)
+      {
+        MPI_Comm_split_type(
+          all, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &communicator);
+      }
+
+      ~RanksOfMachine()
+      {
+        MPI_Comm_free(&communicator);
+      }
+
+      /** Whether the machines have equally many ranks, one machine after the
+       *  other. */
+      bool
+      is_group() const
+      {
+        const unsigned int size =
+          Utilities::MPI::max(Utilities::MPI::n_mpi_processes(communicator),
+                              all);
+        const bool fits = Utilities::MPI::this_mpi_process(all) % size ==
+                          Utilities::MPI::this_mpi_process(communicator);
+        return Utilities::MPI::min(fits ? 1 : 0, all) == 1;
+      }
+
+      const MPI_Comm all;
+      MPI_Comm       communicator;
+    };
+
+
+    // The mesh is not needed any more.
+    Grid
+    make_grid(const Case               &parameters,
+              CoarseMesh              &&mesh,
+              std::vector<unsigned int> materials,
+              const MPI_Comm            communicator)
+    {
+      const CoarseMesh   coarse = std::move(mesh);
+      Grid               grid(coarse,
+                parameters.grid,
+                materials_of_grid(parameters, std::move(materials)),
+                communicator);
+      const auto         n_cells = grid.triangulation().n_global_active_cells();
+      const unsigned int n_ranks =
+        Utilities::MPI::n_mpi_processes(communicator);
+      if (n_cells < n_ranks)
+        throw UserError("The mesh has " + counted(n_cells, "cell", "cells") +
+                        ", fewer than the " + std::to_string(n_ranks) +
+                        " ranks; take fewer ranks, or smaller cells.");
+      return grid;
     }
 
 
@@ -183,6 +248,23 @@ namespace Voussoir
 
   Model::Meshes::Meshes(const Case &parameters, Log &log)
   {
+    const RanksOfMachine machine(log.communicator());
+    if (!machine.is_group() || parameters.generator ||
+        parameters.grid.partition == Partition::p4est ||
+        wants_water(parameters))
+      make(parameters, log);
+    else
+      {
+        // its first rank deals the cells
+        on_first_rank(machine.communicator, [&] { make(parameters, log); });
+        share_sets(machine.communicator);
+      }
+  }
+
+
+  void
+  Model::Meshes::make(const Case &parameters, Log &log)
+  {
     std::ostringstream report;
     solid    = parameters.make_mesh(report);
     surfaces = parameters.interfaces.split(solid);
@@ -195,17 +277,44 @@ namespace Voussoir
   }
 
 
+  void
+  Model::Meshes::share_sets(const MPI_Comm communicator)
+  {
+    using Utilities::MPI::broadcast;
+    std::vector<std::string>                           names;
+    std::vector<std::pair<unsigned int, unsigned int>> faces;
+    for (const auto &set : solid.cell_sets)
+      names.push_back(set.first);
+    for (const std::string &name : broadcast(communicator, names))
+      solid.cell_sets[name];
+    names.clear();
+    for (const auto &set : solid.face_sets)
+      names.push_back(set.first);
+    for (const std::string &name : broadcast(communicator, names))
+      {
+        auto &set = solid.face_sets[name];
+        faces.clear();
+        for (const auto &[cell, face] : set)
+          faces.emplace_back(cell, face);
+        set.clear();
+        for (const auto &[cell, face] : broadcast(communicator, faces))
+          set.push_back({cell, face});
+      }
+    surfaces.of_interface = broadcast(communicator, surfaces.of_interface);
+  }
+
+
   Model::Model(const Case &parameters, Log &log)
     : Model(parameters, Meshes(parameters, log), log)
   {}
 
 
-  Model::Model(const Case &parameters, const Meshes &meshes, Log &log)
+  Model::Model(const Case &parameters, Meshes &&meshes, Log &log)
     : parameters(parameters)
-    , grid(meshes.solid,
-           parameters.grid,
-           materials_of_grid(parameters, meshes.materials),
-           log.communicator())
+    , grid(make_grid(parameters,
+                     std::move(meshes.solid),
+                     std::move(meshes.materials),
+                     log.communicator()))
     , solid(grid,
             parameters.discretization,
             checked_supports(parameters, grid),

@@ -1,4 +1,4 @@
-#include <voussoir/base/error.h>
+#include <voussoir/base/first_rank.h>
 #include <voussoir/base/text.h>
 #include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/result_folder.h>
@@ -21,27 +21,6 @@ namespace Voussoir
 
   namespace
   {
-    /** Runs an action on the first rank; its exceptions are thrown on all. */
-    template <typename Action>
-    void
-    on_first_rank(const MPI_Comm communicator, const Action &action)
-    {
-      std::string problem;
-      if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        try
-          {
-            action();
-          }
-        catch (const UserError &error)
-          {
-            problem = error.what();
-          }
-      problem = Utilities::MPI::broadcast(communicator, problem);
-      if (!problem.empty())
-        throw UserError(problem);
-    }
-
-
     [[noreturn]] void
     refuse(const std::string &folder, const std::string &why)
     {

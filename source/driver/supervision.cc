@@ -59,11 +59,17 @@ namespace Voussoir
   void
   Supervision::keep(const State &state)
   {
-    last_good.displacement = state.displacement;
-    last_good.velocity     = state.velocity;
-    last_good.time         = state.time;
-    if (!has_memory)
-      last_good.memory = state.memory; // for the stress
+    const auto keep = [](const Vector &vector, Motion::Values &values) {
+      values.assign(vector.begin(), vector.end());
+    };
+    keep(state.displacement, last_good.displacement);
+    keep(state.velocity, last_good.velocity);
+    last_good.time = state.time;
+    if (has_memory) // cracks would have grown since
+      return;
+    last_good.memory.resize(state.memory.size());
+    for (unsigned int i = 0; i < state.memory.size(); ++i)
+      keep(state.memory[i], last_good.memory[i]);
   }
 
 
@@ -152,11 +158,20 @@ namespace Voussoir
   std::string
   Supervision::draw_last_good() const
   {
+    const auto vector_of = [&](const Motion::Values &values) {
+      Vector vector = run.solid.discretization.create_vector();
+      std::copy(values.begin(), values.end(), vector.begin());
+      return vector;
+    };
+    State state;
+    state.displacement = vector_of(last_good.displacement);
+    state.velocity     = vector_of(last_good.velocity);
+    for (const Motion::Values &values : last_good.memory)
+      state.memory.push_back(vector_of(values));
     return write_fields(run,
-                        {{&last_good.displacement, {"displacement"}},
-                         {&last_good.velocity, {"velocity"}}},
-                        // cracks have grown since
-                        has_memory ? nullptr : &last_good,
+                        {{&state.displacement, {"displacement"}},
+                         {&state.velocity, {"velocity"}}},
+                        has_memory ? nullptr : &state,
                         "last_good",
                         last_good.time);
   }

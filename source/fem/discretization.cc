@@ -130,7 +130,7 @@ namespace Voussoir
     check_size(grid.triangulation().n_global_active_cells(),
                degree,
                "\"Degree\" in section \"Discretization\"",
-               grid.communicator());
+               n_machines(grid.communicator()));
     dof_handler.distribute_dofs(fe);
     number_by_nodes();
     owned_dofs = dof_handler.locally_owned_dofs();

@@ -52,7 +52,7 @@ namespace Voussoir
                          const std::vector<double> &driven_density)
     : mass(discretization.create_vector())
     , inverse(mass)
-    , driven(mass)
+    , part(driven_density == density ? Vector() : mass)
     , total(density.size())
   {
     const MPI_Comm communicator = discretization.grid.communicator();
@@ -120,7 +120,8 @@ namespace Voussoir
         {
           mass.local_element(i)    = full.local_element(i);
           inverse.local_element(i) = 1. / full.local_element(i);
-          driven.local_element(i)  = full_driven.local_element(i);
+          if (part.size() > 0)
+            part.local_element(i) = full_driven.local_element(i);
         }
   }
 } // namespace Voussoir

@@ -73,13 +73,17 @@ namespace Voussoir
 
   Sum
   NodalTerms::spring_energy(const Vector &displacement,
-                            const Vector &previous,
+                            const Vector &velocity,
+                            const double  time_step,
                             const bool    exact) const
   {
     Sum sum(exact);
     for (unsigned int slot = 0; slot < nodes.size(); ++slot)
-      sum += 0.5 * (node_value(displacement, nodes[slot]) *
-                    (springs[slot] * node_value(previous, nodes[slot])));
+      {
+        const Tensor<1, 3> u = node_value(displacement, nodes[slot]),
+                           v = node_value(velocity, nodes[slot]);
+        sum += 0.5 * (u * (springs[slot] * (u - time_step * v)));
+      }
     return sum;
   }
 

@@ -35,10 +35,8 @@ namespace Voussoir
           }
         found.bands.push_back(bands);
       }
-    const std::size_t n_points = std::size_t(n_slots) * found.per_cell;
-    numbers.resize(n_points * width);
-    imbalances.resize(n_points);
-    active.resize(n_points, 0);
+    active.resize(std::size_t(n_slots) * found.per_cell, 0);
+    numbers.resize(width);
     points = std::make_shared<const Points>(std::move(found));
   }
 
@@ -50,6 +48,11 @@ namespace Voussoir
   {
     active_points.push_back(point);
     active[index(batch, q)] = active_points.size();
+    for (unsigned int i = 0; i < n_numbers; ++i)
+      {
+        numbers.push_back(numbers[i]);
+        numbers[i] = 0.;
+      }
   }
 
 
@@ -204,7 +207,7 @@ namespace Voussoir
       {
         for (unsigned int i = 0; i < n_numbers; ++i)
           *row++ = values(batch, q)[i][lane];
-        *row++ = imbalances[index(batch, q)][lane];
+        *row++ = imbalances.empty() ? 0. : imbalances[index(batch, q)][lane];
         // points of batches that are elastic leave zeros
         if (is_active(batch, q) &&
             (!lanes_are_alone() || active_point(batch, q).band[lane] > 0.))
@@ -229,14 +232,18 @@ namespace Voussoir
     const unsigned int batch = place.batch, lane = place.lane;
     for (unsigned int q = 0; q < n_points(); ++q)
       {
-        for (unsigned int i = 0; i < n_numbers; ++i)
-          values(batch, q)[i][lane] = *row++;
-        imbalance(batch, q)[lane] = *row++;
-        const double *end         = row + n_of_active_point();
+        const double *numbers_of_law = row;
+        row += n_numbers;
+        if (*row != 0. || !imbalances.empty())
+          imbalance(batch, q)[lane] = *row;
+        ++row;
+        const double *end = row + n_of_active_point();
         if (std::any_of(row, end, [](const double x) { return x != 0.; }))
           {
             if (!is_active(batch, q))
               activate(batch, q, ActivePoint());
+            for (unsigned int i = 0; i < n_numbers; ++i)
+              values(batch, q)[i][lane] = numbers_of_law[i];
             for_each_number(active_point(batch, q),
                             [&](Lanes &number) { number[lane] = *row++; });
           }

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <unordered_map>
 
 namespace Voussoir
 {
@@ -63,6 +64,18 @@ namespace Voussoir
         return ((child >> (face / 2)) & 1) == face % 2;
       });
     }
+
+
+    // A serial triangulation is on one rank.
+    unsigned int
+    sum_of_ranks(const Triangulation<3> &triangulation, const unsigned int mine)
+    {
+      const auto *distributed =
+        dynamic_cast<const Grid::Triangulation *>(&triangulation);
+      return distributed == nullptr ?
+               mine :
+               Utilities::MPI::sum(mine, distributed->get_communicator());
+    }
   } // namespace
 
 
@@ -85,11 +98,16 @@ namespace Voussoir
   {
     for (const auto &set : coarse.face_sets)
       face_sets.push_back(set.first);
-    const auto cells = tagged_cells(coarse, materials.of_cell);
+    for (const auto &set : coarse.cell_sets)
+      cell_sets.push_back(set.first);
+    for (const LocalRefinement &item : parameters.local_refinements())
+      if (!item.set.empty())
+        check_cell_set(item.set, "\"Local refinement\" in section \"Mesh\"");
+    const auto tags = make_tags(coarse, materials.of_cell);
     if (parameters.partition == Partition::metis)
-      create_metis(coarse, cells, parameters, materials);
+      create_metis(coarse, tags, parameters, materials);
     else
-      create_p4est(coarse, cells, parameters, materials);
+      create_p4est(coarse, tags, parameters, materials);
     find_faces(coarse);
   }
 
@@ -106,21 +124,22 @@ namespace Voussoir
   {}
 
 
-  std::vector<CellData<3>>
-  Grid::tagged_cells(const CoarseMesh                &coarse,
-                     const std::vector<unsigned int> &materials)
+  std::vector<types::material_id>
+  Grid::make_tags(const CoarseMesh                &coarse,
+                  const std::vector<unsigned int> &materials)
   {
     std::vector<std::vector<unsigned int>> sets_of_cell(coarse.cells.size());
-    for (const auto &[name, cells] : coarse.cell_sets)
+    unsigned int                           number = 0;
+    for (const auto &set : coarse.cell_sets)
       {
-        for (const unsigned int cell : cells)
-          sets_of_cell[cell].push_back(cell_sets.size());
-        cell_sets.push_back(name);
+        for (const unsigned int cell : set.second)
+          sets_of_cell[cell].push_back(number);
+        ++number;
       }
 
     std::map<std::pair<unsigned int, std::vector<unsigned int>>, unsigned int>
-                             number_of_tag;
-    std::vector<CellData<3>> result(coarse.cells.size());
+                                    number_of_tag;
+    std::vector<types::material_id> result(coarse.cells.size());
     for (std::size_t c = 0; c < result.size(); ++c)
       {
         const auto [tag, is_new] =
@@ -128,19 +147,24 @@ namespace Voussoir
                                 all_tags.size());
         if (is_new)
           all_tags.push_back({materials[c], sets_of_cell[c]});
-        result[c].vertices.assign(coarse.cells[c].begin(),
-                                  coarse.cells[c].end());
-        result[c].material_id = tag->second;
+        result[c] = tag->second;
       }
     return result;
   }
 
 
   void
-  Grid::create_coarse(const CoarseMesh               &coarse,
-                      const std::vector<CellData<3>> &cells,
-                      dealii::Triangulation<3>       &triangulation) const
+  Grid::create_coarse(const CoarseMesh                      &coarse,
+                      const std::vector<types::material_id> &tags,
+                      dealii::Triangulation<3> &triangulation) const
   {
+    std::vector<CellData<3>> cells(coarse.cells.size());
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      {
+        cells[c].vertices.assign(coarse.cells[c].begin(),
+                                 coarse.cells[c].end());
+        cells[c].material_id = tags[c];
+      }
     const auto &chart = coarse.chart;
     triangulation.create_triangulation(chart.vertices.empty() ?
                                          coarse.vertices :
@@ -158,10 +182,10 @@ namespace Voussoir
 
 
   void
-  Grid::create_p4est(const CoarseMesh               &coarse,
-                     const std::vector<CellData<3>> &cells,
-                     const GridParameters           &parameters,
-                     const Materials                &materials)
+  Grid::create_p4est(const CoarseMesh                      &coarse,
+                     const std::vector<types::material_id> &tags,
+                     const GridParameters                  &parameters,
+                     const Materials                       &materials)
   {
     using Distributed = parallel::distributed::Triangulation<3>;
     auto triangulation =
@@ -172,8 +196,13 @@ namespace Voussoir
                                               const auto) -> unsigned int {
       return static_cast<unsigned int>(1000. * materials.costs[material(cell)]);
     });
-    create_coarse(coarse, cells, *triangulation);
-    refine(*triangulation, coarse.chart, parameters, materials);
+    check_copies(coarse.cells.size(), mpi_communicator);
+    create_coarse(coarse, tags, *triangulation);
+    refine(*triangulation,
+           coarse.chart,
+           parameters,
+           materials,
+           n_machines(mpi_communicator));
     triangulation->repartition();
     triangulation->signals.weight.disconnect_all_slots();
     place_vertices(coarse.chart, *triangulation);
@@ -182,27 +211,53 @@ namespace Voussoir
 
 
   void
-  Grid::create_metis(const CoarseMesh               &coarse,
-                     const std::vector<CellData<3>> &cells,
-                     const GridParameters           &parameters,
-                     const Materials                &materials)
+  Grid::share_tags()
   {
-    dealii::Triangulation<3> serial(
-      dealii::Triangulation<3>::limit_level_difference_at_vertices);
-    create_coarse(coarse, cells, serial);
-    refine(serial, coarse.chart, parameters, materials);
+    std::vector<std::pair<unsigned int, std::vector<unsigned int>>> tags;
+    for (const CellTag &tag : all_tags)
+      tags.emplace_back(tag.material, tag.sets);
+    all_tags.clear();
+    for (const auto &[material, sets] :
+         Utilities::MPI::broadcast(mpi_communicator, tags))
+      all_tags.push_back({material, sets});
+  }
 
-    std::vector<unsigned int> weights;
-    for (const auto &cell : serial.active_cell_iterators())
-      weights.push_back(
-        static_cast<unsigned int>(100. * materials.costs[material(cell)]));
-    GridTools::partition_triangulation(Utilities::MPI::n_mpi_processes(
-                                         mpi_communicator),
-                                       weights,
-                                       serial,
-                                       SparsityTools::Partitioner::metis);
+
+  void
+  Grid::create_metis(const CoarseMesh                      &coarse,
+                     const std::vector<types::material_id> &tags,
+                     const GridParameters                  &parameters,
+                     const Materials                       &materials)
+  {
+    share_tags();
+    const double machines  = n_machines(mpi_communicator);
+    const auto   make_mesh = [&](dealii::Triangulation<3> &serial) {
+      create_coarse(coarse, tags, serial);
+      refine(serial, coarse.chart, parameters, materials, machines);
+    };
+    const auto deal_cells = [&](dealii::Triangulation<3> &serial,
+                                const MPI_Comm           &communicator,
+                                const unsigned int) {
+      std::vector<unsigned int> weights;
+      for (const auto &cell : serial.active_cell_iterators())
+        weights.push_back(
+          static_cast<unsigned int>(100. * materials.costs[material(cell)]));
+      GridTools::partition_triangulation(Utilities::MPI::n_mpi_processes(
+                                           communicator),
+                                         weights,
+                                         serial,
+                                         SparsityTools::Partitioner::metis);
+    };
+    // one rank of a machine makes the whole mesh, and sends the others theirs
+    const unsigned int n_ranks =
+      Utilities::MPI::n_mpi_processes(mpi_communicator);
     const auto description = TriangulationDescription::Utilities::
-      create_description_from_triangulation(serial, mpi_communicator);
+      create_description_from_triangulation_in_groups<3, 3>(
+        make_mesh,
+        deal_cells,
+        mpi_communicator,
+        std::ceil(n_ranks / machines),
+        dealii::Triangulation<3>::limit_level_difference_at_vertices);
 
     auto triangulation =
       std::make_unique<parallel::fullydistributed::Triangulation<3>>(
@@ -217,27 +272,34 @@ namespace Voussoir
   void
   Grid::find_faces(const CoarseMesh &coarse)
   {
-    // by coarse cell and face, the sets
-    std::vector<std::array<std::vector<unsigned int>, 6>> sets(
-      coarse.cells.size());
-    unsigned int number = 0;
+    struct FaceInSet
+    {
+      unsigned int face, set;
+    };
+    std::unordered_map<unsigned int, std::vector<FaceInSet>> sets_of_cell;
+    unsigned int                                             number = 0;
     for (const auto &set : coarse.face_sets)
       {
         for (const CoarseMesh::Face &face : set.second)
-          if (auto &list = sets[face.cell][face.face];
-              list.empty() || list.back() != number)
-            list.push_back(number);
+          if (auto &list = sets_of_cell[face.cell];
+              std::none_of(list.begin(), list.end(), [&](const auto &known) {
+                return known.face == face.face && known.set == number;
+              }))
+            list.push_back({face.face, number});
         ++number;
       }
     for (const auto &cell : mesh->active_cell_iterators())
       if (!cell->is_artificial())
         {
-          const auto &sets_of_faces = sets[coarse_cell(cell)];
-          const auto  path          = children_upwards(cell);
+          const auto sets = sets_of_cell.find(coarse_cell(cell));
+          if (sets == sets_of_cell.end())
+            continue;
+          const auto path = children_upwards(cell);
           for (const unsigned int face : cell->face_indices())
-            if (!sets_of_faces[face].empty() && lies_on_coarse_face(path, face))
-              for (const unsigned int set : sets_of_faces[face])
-                faces_of_set[set].push_back({cell, face});
+            if (lies_on_coarse_face(path, face))
+              for (const FaceInSet &item : sets->second)
+                if (item.face == face)
+                  faces_of_set[item.set].push_back({cell, face});
         }
   }
 
@@ -246,24 +308,24 @@ namespace Voussoir
   Grid::refine(dealii::Triangulation<3> &triangulation,
                const CoarseMesh::Chart  &chart,
                const GridParameters     &parameters,
-               const Materials          &materials) const
+               const Materials          &materials,
+               const double              machines) const
   {
     check_size(triangulation.n_cells(0) *
                  std::pow(8., parameters.global_refinement),
                1,
                "\"Global refinement\" in section \"Mesh\"",
-               mpi_communicator);
+               machines);
     triangulation.refine_global(parameters.global_refinement);
     for (const LocalRefinement &item : parameters.local_refinements())
       {
-        if (!item.set.empty())
-          check_cell_set(item.set, "\"Local refinement\" in section \"Mesh\"");
         const std::vector<bool> tagged = tags_in({item.set});
         for (unsigned int level = 0; level < item.levels; ++level)
           {
-            const auto places = item.set.empty() ?
-                                  positions(triangulation, chart) :
-                                  std::vector<Point<3>>();
+            const auto   places  = item.set.empty() ?
+                                     positions(triangulation, chart) :
+                                     std::vector<Point<3>>();
+            unsigned int flagged = 0;
             for (const auto &cell : triangulation.active_cell_iterators())
               if (cell->is_locally_owned())
                 {
@@ -280,12 +342,19 @@ namespace Voussoir
                                  centre[d] <= item.upper[d];
                     }
                   if (inside)
-                    cell->set_refine_flag();
+                    {
+                      cell->set_refine_flag();
+                      ++flagged;
+                    }
                 }
+            if (sum_of_ranks(triangulation, flagged) == 0)
+              throw UserError(
+                "\"Local refinement\" in section \"Mesh\" names a box in which "
+                "no cell has its centre; make it larger, or leave it out.");
             triangulation.execute_coarsening_and_refinement();
           }
       }
-    while (refine_for_waves(triangulation, chart, materials))
+    while (refine_for_waves(triangulation, chart, materials, machines))
       {}
   }
 
@@ -293,7 +362,8 @@ namespace Voussoir
   bool
   Grid::refine_for_waves(dealii::Triangulation<3> &triangulation,
                          const CoarseMesh::Chart  &chart,
-                         const Materials          &materials) const
+                         const Materials          &materials,
+                         const double              machines) const
   {
     if (std::all_of(materials.longest_edges.begin(),
                     materials.longest_edges.end(),
@@ -315,15 +385,13 @@ namespace Voussoir
           cell->set_refine_flag();
           ++flagged;
         }
-    // a serial triangulation is the same on all ranks
-    if (dynamic_cast<const Triangulation *>(&triangulation) != nullptr)
-      flagged = Utilities::MPI::sum(flagged, mpi_communicator);
+    flagged = sum_of_ranks(triangulation, flagged);
     if (flagged == 0)
       return false;
     check_size(triangulation.n_global_active_cells() + 7. * flagged,
                1,
                "\"Nodes per wavelength\" in section \"Mesh\"",
-               mpi_communicator);
+               machines);
     triangulation.execute_coarsening_and_refinement();
     return true;
   }

@@ -46,7 +46,10 @@ namespace Voussoir
       prm,
       "Partition",
       partition,
-      "How the cells are distributed to the ranks; the results are the same.");
+      "How the cells are distributed to the ranks; the results are the same. "
+      "With p4est every rank stores the mesh before refinement; with METIS one "
+      "rank of each machine makes the refined mesh, and sends the others "
+      "theirs, which takes less memory for a fine mesh of a file.");
     prm.add_parameter(
       "Count partitions",
       counted_ranks,

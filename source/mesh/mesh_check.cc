@@ -28,6 +28,9 @@ namespace Voussoir
     // Peak memory of a run per unknown of elastic cells [bytes].
     constexpr double memory_per_unknown = 1000.;
 
+    // Memory of a rank per cell before refinement, with p4est [bytes].
+    constexpr double memory_per_coarse_cell = 1500.;
+
 
     // Whether the face, run through counterclockwise as seen from outside its
     // cell, goes from its lowest vertex to the smaller of the two neighbours.
@@ -296,23 +299,34 @@ namespace Voussoir
   }
 
 
-  void
-  check_size(const double       n_cells,
-             const unsigned int degree,
-             const std::string &place,
-             const MPI_Comm     communicator)
+  double
+  n_machines(const MPI_Comm communicator)
   {
     MPI_Comm machine;
     MPI_Comm_split_type(
       communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
     const bool first = Utilities::MPI::this_mpi_process(machine) == 0;
     MPI_Comm_free(&machine);
-    const double n_machines =
-      Utilities::MPI::sum(first ? 1. : 0., communicator);
+    return Utilities::MPI::sum(first ? 1. : 0., communicator);
+  }
+
+
+  double
+  memory_of_machine()
+  {
+    return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);
+  }
+
+
+  void
+  check_size(const double       n_cells,
+             const unsigned int degree,
+             const std::string &place,
+             const double       machines)
+  {
     const double n_unknowns = 3. * n_cells * Utilities::pow(degree, 3),
                  needed     = memory_per_unknown * n_unknowns,
-                 memory     = static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
-                          sysconf(_SC_PAGESIZE) * n_machines;
+                 memory     = memory_of_machine() * machines;
     if (needed <= memory)
       return;
     std::ostringstream text;
@@ -324,4 +338,21 @@ namespace Voussoir
   }
 
 
+  void
+  check_copies(const double n_cells, const MPI_Comm communicator)
+  {
+    const double ranks  = Utilities::MPI::n_mpi_processes(communicator),
+                 needed = memory_per_coarse_cell * n_cells * ranks,
+                 memory = memory_of_machine() * n_machines(communicator);
+    if (needed <= memory)
+      return;
+    std::ostringstream text;
+    text << std::setprecision(2)
+         << "\"Partition = p4est\" in section \"Mesh\" stores the " << n_cells
+         << " cells before refinement on each of the " << ranks << " ranks, "
+         << needed / 1e9 << " GB in all, but there are only " << memory / 1e9
+         << " GB of memory; give larger cells with a \"Global refinement\", "
+            "\"Partition = METIS\", or take fewer ranks.";
+    throw UserError(text.str());
+  }
 } // namespace Voussoir

@@ -113,6 +113,7 @@ namespace Voussoir
   NodalKeys::values(Vector &vector) const
   {
     KeyedValues result{3, {}};
+    result.items.reserve(keys.size());
     for (unsigned int node = 0; node < keys.size(); ++node)
       result.items.emplace_back(keys[node], vector.begin() + 3 * node);
     return result;

@@ -72,7 +72,6 @@ namespace Voussoir
     , most_steps(most_steps_between(equation.discretization.owned_dofs.size()))
     , lines(interval > 0. ? interval : 50. * time_step, time_step)
     , moved(equation.discretization.create_vector())
-    , moved_before(moved)
   {
     const InitialState &initial_state = equation.initial;
     if (initial_state.force.size() > 0)
@@ -171,7 +170,6 @@ namespace Voussoir
       {
         const double v = state.velocity.local_element(i);
         kinetic += 0.5 * equation.mass.mass.local_element(i) * v * v;
-        moved_before.local_element(i) = moved.local_element(i) - time_step * v;
       }
     kinetic += equation.terms.kinetic_energy(state.velocity, is_exact);
     const bool          knows_velocity = viscous && kept_step == state.step;
@@ -195,7 +193,8 @@ namespace Voussoir
     const PointLosses     lost     = state.material_memory.losses();
     Sum                   strain   = elastic.strain;
     strain += inelastic.stored;
-    strain += equation.terms.spring_energy(moved, moved_before, is_exact);
+    strain +=
+      equation.terms.spring_energy(moved, state.velocity, time_step, is_exact);
     Sum damping = accounts.loss_by_mass;
     damping += lost.damping;
     damping -= inelastic.damping;
@@ -227,9 +226,11 @@ namespace Voussoir
     terms.constraints  = sums[10];
     // less the part of its static forces in the work of contact
     if (initial_state.contact_force.size() > 0)
-      terms.constraints -=
-        0.5 * (product(initial_state.contact_force, moved, is_exact) +
-               product(initial_state.contact_force, moved_before, is_exact));
+      {
+        moved.add(-0.5 * time_step, state.velocity); // in the half step
+        terms.constraints -=
+          product(initial_state.contact_force, moved, is_exact);
+      }
     if (first)
       initial = terms.stored() + terms.lost() - terms.input - terms.constraints;
     first        = false;

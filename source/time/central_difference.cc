@@ -248,8 +248,9 @@ namespace Voussoir
         const double       last  = last_velocity[i][d],
                      mean        = 0.5 * (velocity[d] + last),
                      was         = mean - 0.5 * change[d];
-        state.accounts.work_of_base -=
-          time_step * mass.driven.local_element(entry) * base[d] * (mean - was);
+        state.accounts.work_of_base -= time_step *
+                                       mass.driven().local_element(entry) *
+                                       base[d] * (mean - was);
         state.accounts.loss_by_mass +=
           time_step * mass_coefficient * mass.mass.local_element(entry) *
           (mean * leap_frog.damped(last, velocity[d]) -
@@ -363,7 +364,7 @@ namespace Voussoir
                         divisor,
                  push        = time_step / divisor;
     const double   *diagonal = equation.mass.mass.begin();
-    const double   *driven   = equation.mass.driven.begin();
+    const double   *driven   = equation.mass.driven().begin();
     EnergyAccounts &accounts = state.accounts;
     for (unsigned int i = begin; i < end; ++i)
       {

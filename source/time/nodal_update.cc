@@ -137,7 +137,7 @@ namespace Voussoir
           {
             const unsigned int entry = 3 * node + d;
             state.accounts.work_of_base -= 0.5 * time_step *
-                                           mass.driven.local_element(entry) *
+                                           mass.driven().local_element(entry) *
                                            base[d] * (next[d] - swept[d]);
             state.accounts.loss_by_mass +=
               time_step * mass_coefficient * mass.mass.local_element(entry) *

@@ -59,7 +59,7 @@ namespace Voussoir
     std::vector<Place>        remote; // entry of its x in the vector
     std::vector<unsigned int> lent;   // owned nodes that are elsewhere
 
-    Vector shared; // only the shared nodes and the ghosts are used
+    Vector shared; // of the nodes lent
   };
 } // namespace Voussoir
 

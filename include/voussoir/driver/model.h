@@ -45,10 +45,18 @@ namespace Voussoir
     const Case &parameters;
 
   private:
-    /** The meshes that are needed only until the grids are made. */
+    /** The meshes that are needed only until the grids are made. One of a file
+     *  that METIS distributes is on one rank of each machine; the others have
+     *  its names and the faces of its sets. */
     struct Meshes
     {
       Meshes(const Case &parameters, Log &log);
+
+      void
+      make(const Case &parameters, Log &log);
+
+      void
+      share_sets(const MPI_Comm communicator);
 
       CoarseMesh                solid, water;
       InterfaceSurfaces         surfaces;
@@ -90,7 +98,7 @@ namespace Voussoir
     running_loads() const;
 
   private:
-    Model(const Case &parameters, const Meshes &meshes, Log &log);
+    Model(const Case &parameters, Meshes &&meshes, Log &log);
 
     void
     report(Log &log) const;

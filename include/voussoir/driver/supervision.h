@@ -55,8 +55,19 @@ namespace Voussoir
     const double         energy_limit;
     const bool           has_memory;
     const Schedule       checks; // of cracks and slips
-    State last_good;             // without the internal variables of materials
-    bool  warned_of_energy = false, warned_of_cracks = false,
+
+    /** What a picture needs, to its accuracy. */
+    struct Motion
+    {
+      using Values = std::vector<float>; // of the owned unknowns
+
+      Values              displacement, velocity;
+      std::vector<Values> memory; // of elastic materials, for the stress
+      double              time = 0.;
+    };
+
+    Motion last_good;
+    bool   warned_of_energy = false, warned_of_cracks = false,
          warned_of_slips = false;
   };
 } // namespace Voussoir

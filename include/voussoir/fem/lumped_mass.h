@@ -30,8 +30,16 @@ namespace Voussoir
     Vector inverse;
 
     /** Mass that an inertial earthquake force acts on [kg]. */
-    Vector driven;
+    const Vector &
+    driven() const
+    {
+      return part.size() > 0 ? part : mass;
+    }
 
+  private:
+    Vector part; // that is driven, where it is not all
+
+  public:
     /** Mass of each material [kg]. */
     std::vector<double> total;
   };

@@ -55,11 +55,12 @@ namespace Voussoir
     Sum
     kinetic_energy(const Vector &velocity, const bool exact = false) const;
 
-    /** Energy in the springs between two steps, u_n K u_(n-1) / 2, of this rank
-     *  [J]. */
+    /** Energy in the springs between two steps, u_n K (u_n - dt v) / 2, of this
+     *  rank [J]. */
     Sum
     spring_energy(const Vector &displacement,
-                  const Vector &previous,
+                  const Vector &velocity,
+                  const double  time_step,
                   const bool    exact = false) const;
 
     /** Adds the forces of the springs and @p dashpot_factor times the product

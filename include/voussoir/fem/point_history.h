@@ -107,17 +107,18 @@ namespace Voussoir
       return points->per_cell;
     }
 
-    /** The numbers of point @p q of the cells of a batch. */
+    /** The numbers of point @p q of the cells of a batch. Those of a point that
+     *  is elastic are zero; if they are changed, it must be activated. */
     Lanes *
     values(const unsigned int batch, const unsigned int q)
     {
-      return numbers.data() + n_numbers * index(batch, q);
+      return numbers.data() + n_numbers * active[index(batch, q)];
     }
 
     const Lanes *
     values(const unsigned int batch, const unsigned int q) const
     {
-      return numbers.data() + n_numbers * index(batch, q);
+      return numbers.data() + n_numbers * active[index(batch, q)];
     }
 
     /** Whether point @p q of any cell of the batch has left the elastic range.
@@ -141,6 +142,7 @@ namespace Voussoir
       return active_points[active[index(batch, q)] - 1];
     }
 
+    /** The point has left the elastic range, with its present numbers. */
     void
     activate(const unsigned int batch,
              const unsigned int q,
@@ -198,10 +200,12 @@ namespace Voussoir
 
     /** Energy of the Maxwell branches above the least for their sum [J/m3],
      *  which the energy balance stores at elastic points until they leave the
-     *  elastic range. */
+     *  elastic range; zero before the first one. */
     Lanes &
     imbalance(const unsigned int batch, const unsigned int q)
     {
+      if (imbalances.empty())
+        imbalances.resize(active.size());
       return imbalances[index(batch, q)];
     }
 
@@ -266,8 +270,9 @@ namespace Voussoir
     unsigned int                   n_numbers; // of a point
     std::shared_ptr<const Points>  points;
     std::shared_ptr<StaticStrains> static_strains;
-    dealii::AlignedVector<Lanes>   numbers;
-    dealii::AlignedVector<Lanes>   imbalances;
+    dealii::AlignedVector<Lanes>
+      numbers; // of elastic points, then of the others
+    dealii::AlignedVector<Lanes> imbalances;
 
     // place among the points that have left the elastic range, from one; or 0
     std::vector<unsigned int>          active;

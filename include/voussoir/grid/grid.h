@@ -52,6 +52,8 @@ namespace Voussoir
         longest_edges; // of the edges that cells of each may have [m]
     };
 
+    /** With METIS only the first rank of each machine needs the cells of the
+     *  mesh, the others the names of its sets and their faces. */
     Grid(const CoarseMesh     &mesh,
          const GridParameters &parameters,
          const Materials      &materials,
@@ -141,44 +143,51 @@ namespace Voussoir
     global_key(const Cell &cell);
 
   private:
-    /** The coarse cells with the numbers of their tags. */
-    std::vector<dealii::CellData<3>>
-    tagged_cells(const CoarseMesh                &coarse,
-                 const std::vector<unsigned int> &materials);
+    /** Numbers of the tags of the coarse cells. */
+    std::vector<dealii::types::material_id>
+    make_tags(const CoarseMesh                &coarse,
+              const std::vector<unsigned int> &materials);
 
     void
-    create_p4est(const CoarseMesh                       &coarse,
-                 const std::vector<dealii::CellData<3>> &cells,
-                 const GridParameters                   &parameters,
-                 const Materials                        &materials);
+    create_p4est(const CoarseMesh                              &coarse,
+                 const std::vector<dealii::types::material_id> &tags,
+                 const GridParameters                          &parameters,
+                 const Materials                               &materials);
+
+    /** From the first rank, since not all need have the coarse cells. */
+    void
+    share_tags();
 
     void
-    create_metis(const CoarseMesh                       &coarse,
-                 const std::vector<dealii::CellData<3>> &cells,
-                 const GridParameters                   &parameters,
-                 const Materials                        &materials);
+    create_metis(const CoarseMesh                              &coarse,
+                 const std::vector<dealii::types::material_id> &tags,
+                 const GridParameters                          &parameters,
+                 const Materials                               &materials);
 
     void
     find_faces(const CoarseMesh &coarse);
 
     /** In the coordinates of the chart, if the mesh has one. */
     void
-    create_coarse(const CoarseMesh                       &coarse,
-                  const std::vector<dealii::CellData<3>> &cells,
-                  dealii::Triangulation<3>               &triangulation) const;
+    create_coarse(const CoarseMesh                              &coarse,
+                  const std::vector<dealii::types::material_id> &tags,
+                  dealii::Triangulation<3> &triangulation) const;
 
+    /** @param machines whose memory the mesh must fit into */
     void
     refine(dealii::Triangulation<3> &triangulation,
            const CoarseMesh::Chart  &chart,
            const GridParameters     &parameters,
-           const Materials          &materials) const;
+           const Materials          &materials,
+           const double              machines) const;
 
     /** Refines the cells whose edges are too long for their material; returns
      *  whether there were any. */
     bool
     refine_for_waves(dealii::Triangulation<3> &triangulation,
                      const CoarseMesh::Chart  &chart,
-                     const Materials          &materials) const;
+                     const Materials          &materials,
+                     const double              machines) const;
 
     MPI_Comm                       mpi_communicator;
     std::unique_ptr<Triangulation> mesh;

@@ -111,7 +111,9 @@ namespace Voussoir
             };
 
             std::vector<SymmetricTensor3<Lanes>> filter(
-              history == nullptr ? 0 : cell.quadrature_point_indices().size());
+              history == nullptr || maxwell.gain.empty() ?
+                0 :
+                cell.quadrature_point_indices().size());
 
             moving.read_dof_values(motion.velocity);
             moving.evaluate(dealii::EvaluationFlags::gradients);

@@ -25,16 +25,24 @@ namespace Voussoir
              const std::string &where,
              const std::string &remedy = "improve the mesh there");
 
+  /** Number of machines that the ranks run on. */
+  double
+  n_machines(const MPI_Comm communicator);
+
   /**
    * Throw UserError, with a sentence that begins with @p place, if so many
-   * cells need more memory than the machines of all ranks have; data that each
-   * rank stores as a whole must fit into one.
+   * cells need more memory than @p machines have.
    */
   void
   check_size(const double       n_cells,
              const unsigned int degree,
              const std::string &place,
-             const MPI_Comm     communicator = MPI_COMM_SELF);
+             const double       machines = 1.);
+
+  /** The same if each rank holds so many cells before refinement, as p4est
+   *  wants it. */
+  void
+  check_copies(const double n_cells, const MPI_Comm communicator);
 } // namespace Voussoir
 
 #endif

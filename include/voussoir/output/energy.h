@@ -163,8 +163,8 @@ namespace Voussoir
     double      most_damping = 0.; // [J]
     double      static_work  = 0.; // of the loads of the static state [J]
     bool        first        = true;
-    Vector      moved, moved_before; // at the step and the one before
-    Vector      velocity_before;     // v- of the step after `kept_step`
+    Vector      moved;
+    Vector      velocity_before; // v- of the step after `kept_step`
     TimeTable   table;
 
     // loss of the elastic cells until an evaluation that was due, and in the

@@ -1,12 +1,17 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Moduli of a rod of two materials, from its frequencies in closed form.
 
 usage: check_calibration.py PROGRAM SOURCE_FOLDER
 """
 
+import importlib.util
 import pathlib
 import subprocess
 import sys
+
+if importlib.util.find_spec("numpy") is None:
+    print("numpy is missing")
+    sys.exit(77)
 
 program, source = sys.argv[1], pathlib.Path(sys.argv[2])
 # f of Z1 cot(2 pi f L1 / c1) = Z2 tan(2 pi f L2 / c2): 40 m of rock, 20 GPa and 2700 kg/m3,

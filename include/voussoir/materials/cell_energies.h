@@ -60,7 +60,7 @@ namespace Voussoir
     void
     add_branch(const Law                            &law,
                const double                          factor,
-               const Cell                           &cell,
+               Cell                                 &cell,
                const unsigned int                    batch,
                PointHistory                         &history,
                std::vector<SymmetricTensor3<Lanes>> &filter)

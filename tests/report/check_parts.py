@@ -27,8 +27,8 @@ from vtkmodules.util.numpy_support import numpy_to_vtk  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray  # noqa: E402
 from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_QUAD, vtkUnstructuredGrid  # noqa: E402
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: E402
-from voussoir_report import case, charts, faces, grid, interfaces, page, records, stages, structure, study  # noqa: E402
-from voussoir_report import study_evaluations, verdict  # noqa: E402
+from voussoir_report import case, charts, faces, grid, interfaces, page, records, scenes, stages, structure  # noqa: E402
+from voussoir_report import study, study_evaluations, verdict  # noqa: E402
 from voussoir_report.run import Run  # noqa: E402
 
 compare = functools.partial(verdicts.compare, round_off=1e-9)
@@ -77,16 +77,17 @@ SUMMARY = {"verdict": "no objection", "version": "test", "warnings": [], "time s
                               "energy-balance error, share of the losses": 1e-3}}
 
 
-def write_grid(file, corners, kind, values, names):
-    """Cells of their own corners (n, 4 or 8, 3), values at them, and lists of names."""
+def write_grid(file, corners, kind, values, names, vectors={}):
+    """Cells of their own corners (n, 4 or 8, 3), values and vectors at them, and lists of names."""
     mesh, points = vtkUnstructuredGrid(), vtkPoints()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(corners.reshape(-1, 3)), deep=True))
     mesh.SetPoints(points)
     n = corners.shape[1]
     for cell in range(len(corners)):
         mesh.InsertNextCell(kind, n, list(range(n * cell, n * cell + n)))
-    for name, numbers in values.items():
-        array = numpy_to_vtk(np.ascontiguousarray(numbers, float).reshape(-1), deep=True)
+    for name, numbers in [*values.items(), *vectors.items()]:
+        shape = (-1, 3) if name in vectors else -1
+        array = numpy_to_vtk(np.ascontiguousarray(numbers, float).reshape(shape), deep=True)
         array.SetName(name)
         mesh.GetPointData().AddArray(array)
     for name, texts in names.items():
@@ -316,6 +317,16 @@ def check_stages(scratch):
     again = stages.stages_section([run, run])
     is_true("stages common to all runs are there once", again.parts[0] == "They are the same in all runs."
             and [part.rows for part in again.parts[2:]] == [part.rows for part in stages.stages_section([run]).parts[1:]])
+    wall = grid.dam_of(run).grid
+    settled = wall.points[wall.cells] * (0., 0., -1e-3)
+    write_grid(run.folder / stages.FILE, wall.points[wall.cells], VTK_HEXAHEDRON,
+               {"material": np.zeros(wall.cells.shape)}, {"material_names": ["concrete"]},
+               vectors={"displacement after weight": settled, "displacement after water": 2. * settled})
+    scenes.open_display()
+    pictures = stages.stages_section([run]).parts[-1].pictures
+    is_true("a picture of each stage", ['stage "weight"' in pictures[0].caption, "up to 20.0 mm" in pictures[0].caption,
+                                        'stage "water"' in pictures[1].caption, "up to 40.0 mm" in pictures[1].caption]
+            == 4 * [True] and len(pictures) == 2)
     is_true("no stage, no section", stages.stages_section([make_wall(scratch / "no_stages")]) is None)
 
 

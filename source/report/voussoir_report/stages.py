@@ -1,7 +1,14 @@
 """Results of each static stage in the summary, by their names."""
 
-from .page import Section, Table, number
+import numpy as np
+
+from . import charts, scenes
+from .grid import dam_in
+from .page import Pictures, Section, Table, number
 from .run import is_quantity
+from .structure import magnified
+
+FILE, FIELD = "static_stages.vtu", "displacement after "
 
 # what the solver did, and what the table of the load cases has
 LEFT_OUT = ("names", "iterations", "load increments", "found by multigrid", "steps of dynamic relaxation",
@@ -59,6 +66,29 @@ def different(runs):
     return seen
 
 
+def stage_pictures(run):
+    """The dam after each stage, all with the same magnification and colours."""
+    dam = dam_in(run, FILE)
+    faces = dam.exposed
+    fields = {name.removeprefix(FIELD): values[faces] for name, values in dam.grid.values.items()
+              if name.startswith(FIELD)}
+    amounts = {name: np.linalg.norm(values, axis=2) for name, values in fields.items()}
+    largest = max((amount.max() for amount in amounts.values()), default=0.)
+    if largest < 1e-9:
+        return []
+    factor = magnified(dam, largest)
+    scale = charts.Scale([1e3 * amount for amount in amounts.values()], "displacement [mm]", 0., "viridis", low=0.)
+    pictures = []
+    for n, (name, values) in enumerate(fields.items(), 1):
+        moved = dam.grid.points[faces] + factor * values
+        actor = scenes.quadrilaterals(moved, scale.colours(scale.norm(1e3 * amounts[name]))[..., :3])
+        image = scenes.draw([actor], dam.points, scenes.FROM_DOWNSTREAM, zoom=0.85)
+        pictures.append(charts.framed(*image, f"{run.prefix}After the stage \"{name}\", from downstream and above, drawn "
+                                              f"{factor:g} times: up to {number(1e3 * amounts[name].max())} mm",
+                                      f"stage_{n}_{run.label}", scale))
+    return pictures
+
+
 def stages_section(runs):
     """Tables of what the stages have by themselves, and of each group of named objects."""
     groups = {}
@@ -78,7 +108,9 @@ def stages_section(runs):
     tables = [table for table in tables if table.rows]
     if not tables:
         return None
+    pictures = [picture for run in shown if run.has(FILE) for picture in stage_pictures(run)]
     return Section("Static stages", [
         *(["They are the same in all runs."] if len(shown) == 1 < len(runs) else []),
         "After each stage, under all loads up to there. Displacements are those from the unloaded model. What has "
-        "nothing but zeros after a stage, as a joint that is grouted later, has no line for it.", *tables])
+        "nothing but zeros after a stage, as a joint that is grouted later, has no line for it.", *tables,
+        *([Pictures(pictures, 2)] if pictures else [])])

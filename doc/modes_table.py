@@ -62,7 +62,7 @@ def morrow_point(program, ranks):
         "",
         f"The smaller cells have frequencies lower by {min(change):.0f} to {max(change):.0f} %: these are not converged.",
         "There is nothing to compare them with: no source of measured or computed frequencies of Morrow",
-        "Point Dam [could be read](published.md#looked-for-and-not-found). Of the shape height, crest length",
+        "Point Dam [could be read](published.md#sources-not-found). Of the shape height, crest length",
         "and two thicknesses are those of the dam; the canyon between crest and base, the radii and the",
         "thickness in between are assumed."]
 

@@ -6,13 +6,15 @@ stated figures of a network: table on the terminal, figure and numbers in a fold
 usage: scaling.py PROGRAM [--ranks 1,2] [--levels 1] [--counts 16,191,1024] [...]
 
 The prediction: a step takes as long as the rank with the most work, its cells at the
-rate of a core measured here, then an exchange in each direction with all its
-neighbours, each a latency and its bytes over the bandwidth. Computation and exchange
-do not overlap, and nothing else is shared between cores.
+rate of a core, then an exchange in each direction with all its neighbours, each a
+latency and its bytes over the bandwidth. Computation and exchange do not overlap, and
+nothing else is shared between cores. The rate of a core is the lowest of the runs on
+no more ranks than there are cores, or the one given, where other work disturbs them.
 """
 
 import argparse
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -33,7 +35,7 @@ def run(options, ranks, level, counts=()):
     command = [str(options.program.parent / "voussoir-run"), "-n", str(ranks), str(CASE),
                "--overwrite", "--set", f"Output/Folder={folder}",
                f"Mesh/Global refinement={level}",
-               "Mesh/Count partitions=" + ", ".join(map(str, counts))]
+               "Mesh/Count partitions=" + ", ".join(map(str, counts)), *options.set]
     process = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if process.returncode != 0:
         sys.exit(process.stdout[-2000:])
@@ -47,9 +49,9 @@ def step_seconds(summary):
     return summary["loop time [s]"] / summary["steps"]
 
 
-def predict(partition, cell_seconds, cells, options):
+def predict(partition, core_rate, unknowns, options):
     """Seconds of a step."""
-    work = cell_seconds * cells / partition["ranks"] * partition["balance"]
+    work = unknowns / core_rate / partition["ranks"] * partition["balance"]
     exchange = 2. * (partition["most neighbours"] * options.latency +
                      BYTES * partition["most nodes"] / options.bandwidth)
     return work + exchange
@@ -64,6 +66,9 @@ def main():
     parser.add_argument("--counts", default="16,64,191,1024", help="ranks to be counted")
     parser.add_argument("--latency", type=float, default=2e-6, help="of a message [s]")
     parser.add_argument("--bandwidth", type=float, default=1e9, help="of a rank [B/s]")
+    parser.add_argument("--core-rate", type=float, default=0.,
+                        help="of a core [million unknowns times steps per second]")
+    parser.add_argument("--set", nargs="*", default=[], help="entries of the case")
     parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("output/scaling"))
     options = parser.parse_args()
     options.program = options.program.resolve()
@@ -72,26 +77,29 @@ def main():
 
     kept = []
     for level in map(int, options.levels.split(",")):
+        rates, partitions = [], []
         for ranks in map(int, options.ranks.split(",")):
-            summary, partitions = run(options, ranks, level, counts if ranks == 1 else ())
-            if ranks == 1:
-                cell_seconds = step_seconds(summary) / summary["cells"]
-            memory = summary["peak memory of a rank [MB]"]
-            kept.append({"level": level, "ranks": ranks, "unknowns": summary["unknowns"],
-                         "step [ms]": 1e3 * step_seconds(summary),
-                         "MDOF-steps/s": summary["MDOF-steps/s"], "memory [MB]": memory})
-            print(f"{summary['unknowns']} unknowns on {ranks} ranks: "
-                  f"{kept[-1]['MDOF-steps/s']:.1f} MDOF-steps/s, {memory:.0f} MB a rank",
-                  flush=True)
-            for partition in partitions:
-                seconds = predict(partition, cell_seconds, summary["cells"], options)
-                ideal = cell_seconds * summary["cells"] / partition["ranks"]
-                kept.append({"level": level, "predicted step [ms]": 1e3 * seconds,
-                             "efficiency": ideal / seconds, **partition})
-                print(f"  {partition['ranks']:.0f} ranks: balance {partition['balance']:.3f}, "
-                      f"at most {partition['most neighbours']:.0f} neighbours and "
-                      f"{partition['most nodes']:.0f} nodes; predicted step "
-                      f"{1e3 * seconds:.3f} ms, efficiency {100 * ideal / seconds:.0f} %")
+            summary, counted = run(options, ranks, level, [] if partitions else counts)
+            partitions = partitions or counted
+            unknowns, memory = summary["unknowns"], summary["peak memory of a rank [MB]"]
+            rate = summary["MDOF-steps/s"]
+            if ranks <= os.cpu_count():
+                rates.append(rate / ranks)
+            kept.append({"level": level, "ranks": ranks, "unknowns": unknowns,
+                         "step [ms]": 1e3 * step_seconds(summary), "MDOF-steps/s": rate,
+                         "memory [MB]": memory})
+            print(f"{unknowns} unknowns on {ranks} ranks: {rate:.1f} MDOF-steps/s, "
+                  f"{memory:.0f} MB a rank", flush=True)
+        core_rate = 1e6 * (options.core_rate or min(rates))
+        for partition in partitions:
+            seconds = predict(partition, core_rate, unknowns, options)
+            ideal = unknowns / core_rate / partition["ranks"]
+            kept.append({"level": level, "predicted step [ms]": 1e3 * seconds,
+                         "efficiency": ideal / seconds, **partition})
+            print(f"  {partition['ranks']:.0f} ranks: balance {partition['balance']:.3f}, "
+                  f"at most {partition['most neighbours']:.0f} neighbours and "
+                  f"{partition['most nodes']:.0f} nodes; predicted step "
+                  f"{1e3 * seconds:.3f} ms, efficiency {100 * ideal / seconds:.0f} %")
     options.folder.mkdir(parents=True, exist_ok=True)
     (options.folder / "scaling.json").write_text(json.dumps(kept, indent=1) + "\n")
     plot(kept, options.folder / "scaling.png")

@@ -322,8 +322,7 @@ namespace Voussoir
                               situation,
                               followed(situation),
                               irreversible[sign] > 0.);
-        OfBoth<SymmetricTensor3<Number>> effective =
-          parts(elastic, split, history);
+        OfBoth<SymmetricTensor3<Number>> effective = parts(split, history);
         for (const unsigned int sign : {0, 1})
           effective[sign] = damage[sign].effective * effective[sign];
         PointResponse<Number> result =

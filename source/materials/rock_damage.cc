@@ -105,7 +105,7 @@ namespace Voussoir
                               equivalent[sign],
                               history + n_of_curve * sign,
                               situation);
-        return response(parts(strain, split, history), damage, strain);
+        return response(parts(split, history), damage, strain);
       }
 
       static std::vector<std::string>

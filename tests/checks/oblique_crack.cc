@@ -46,6 +46,12 @@ namespace Voussoir
         for (const double angle : angles)
           open(material, angle, verdicts);
         close(material, verdicts);
+        verdicts.near("largest change of half a step over that of one",
+                      largest_change(material, 8000) /
+                        largest_change(material, 4000),
+                      0.5,
+                      0.05,
+                      "");
       }
 
     private:
@@ -198,6 +204,47 @@ namespace Voussoir
                        "energy stored",
                        missing,
                        2e-3);
+      }
+
+      /** Of the stress in one of @p steps from one random strain of an open
+       * crack to the next, over the strength: half as large in half the step
+       * unless the stress jumps. */
+      double
+      largest_change(const Material &material, const unsigned int steps) const
+      {
+        const PointSituation<double> situation{0.5, 1e-3};
+        const double                 widest =
+          40. * strength / material.elastic_constants().young_modulus;
+        std::mt19937                     random(7);
+        std::normal_distribution<double> normal_distribution;
+        std::vector<double>              history(material.n_history());
+        Tensor2                          begin, last;
+        for (unsigned int i = 1; i <= 400; ++i)
+          {
+            begin[0][0] = widest * i / 400.;
+            last = material.respond(begin, history.data(), situation).stress;
+          }
+        double largest = 0.;
+        for (unsigned int corner = 0; corner < 100; ++corner)
+          {
+            Tensor2 end;
+            for (unsigned int k = 0; k < 6; ++k)
+              end.access_raw_entry(k) =
+                0.05 * widest * normal_distribution(random);
+            for (unsigned int step = 1; step <= steps; ++step)
+              {
+                const Tensor2 stress =
+                  material
+                    .respond(begin + double(step) / steps * (end - begin),
+                             history.data(),
+                             situation)
+                    .stress;
+                keep_largest(largest, (stress - last).norm() / strength);
+                last = stress;
+              }
+            begin = end;
+          }
+        return largest;
       }
 
       double              strength = 2.5e6, energy = 250.;

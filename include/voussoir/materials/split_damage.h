@@ -31,8 +31,7 @@ namespace Voussoir
    * stiffness back.
    *
    * Cracks turn with the principal strains, or keep the plane in which they
-   * began: then the compressed part is that of split_tension or, where it has
-   * less energy, of stress_beside_crack. The lesser of two potentials is one.
+   * began: then the compressed part is that of stress_beside_crack.
    *
    * The history begins with the internal variables of the two curves
    * and the normal of the crack.
@@ -195,14 +194,11 @@ namespace Voussoir
     /**
      * The effective stresses s+ and s- after the damage in tension has gone on.
      *
-     * @param strain elastic [1]
-     * @param split  of its stress
+     * @param split of the elastic stress
      */
     template <typename Number>
     OfBoth<SymmetricTensor3<Number>>
-    parts(const SymmetricTensor3<Number> &strain,
-          const TensionSplit<Number>     &split,
-          Number                         *history) const
+    parts(const TensionSplit<Number> &split, Number *history) const
     {
       OfBoth<SymmetricTensor3<Number>> parts = split.parts();
       if (crack_direction == CrackDirection::rotating ||
@@ -230,15 +226,11 @@ namespace Voussoir
       const SymmetricTensor3<Number> stress = parts[0] + parts[1];
       const SymmetricTensor3<Number> beside =
         stress_beside_crack(stress, normal, *this, crack_friction);
-      const Number saved = parts[1] * strain - beside * strain;
       for (unsigned int i = 0; i < 6; ++i)
         {
           Number &left = parts[1].access_raw_entry(i);
           left         = compare_and_apply_mask<Comparison::less_than_or_equal>(
-            std::min(saved, history[0]),
-            zero,
-            left,
-            beside.access_raw_entry(i));
+            history[0], zero, left, beside.access_raw_entry(i));
           parts[0].access_raw_entry(i) = stress.access_raw_entry(i) - left;
         }
       return parts;

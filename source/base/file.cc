@@ -143,8 +143,8 @@ namespace Voussoir
     }
 
 
-    /** Space for a file of this size, so that it is clear before the ranks write
-     *  their parts whether there is enough of it. */
+    /** Space for a file of this size, so that it is clear before the ranks
+     * write their parts whether there is enough of it. */
     std::string
     make_room(const std::string &name, const std::uintmax_t size)
     {

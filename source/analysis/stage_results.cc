@@ -1,6 +1,8 @@
 #include <voussoir/analysis/stage_results.h>
 #include <voussoir/base/json_entries.h>
 #include <voussoir/base/mpi.h>
+#include <voussoir/base/parameter_file.h>
+#include <voussoir/base/text.h>
 #include <voussoir/fem/nodal_values.h>
 
 #include <array>
@@ -16,65 +18,104 @@ namespace Voussoir
     const std::string place = "\"Points\" in section \"Static state\"";
 
 
-    /** Vertices of the upstream face at its top, of all ranks. */
-    std::vector<std::array<double, 3>>
-    crest_vertices(const Grid &grid)
+    /** Vertices of the upstream face at its top and at its bottom, by x, of all
+     *  ranks. */
+    std::array<std::vector<std::array<double, 3>>, 2>
+    top_and_bottom(const Grid &grid)
     {
       std::vector<std::array<double, 3>> mine;
-      double top    = std::numeric_limits<double>::lowest(),
-             bottom = std::numeric_limits<double>::max();
       grid.for_each_face("upstream face",
                          [&](const auto &cell, const unsigned int face) {
                            for (unsigned int v = 0; v < 4; ++v)
                              {
                                const Point<3> &at = cell->face(face)->vertex(v);
                                mine.push_back({{at[0], at[1], at[2]}});
-                               top    = std::max(top, at[2]);
-                               bottom = std::min(bottom, at[2]);
                              }
                          });
+      double top    = std::numeric_limits<double>::lowest(),
+             bottom = std::numeric_limits<double>::max();
+      for (const auto &at : mine)
+        {
+          top    = std::max(top, at[2]);
+          bottom = std::min(bottom, at[2]);
+        }
       top                = Utilities::MPI::max(top, grid.communicator());
       bottom             = Utilities::MPI::min(bottom, grid.communicator());
-      const double level = top - 1e-6 * (top - bottom);
-      mine.erase(std::remove_if(mine.begin(),
-                                mine.end(),
-                                [level](const auto &at) {
-                                  return at[2] <= level;
-                                }),
-                 mine.end());
-      auto result = join_over_ranks(mine, grid.communicator());
-      std::sort(result.begin(), result.end());
+      const double level = 1e-6 * (top - bottom);
+
+      std::array<std::vector<std::array<double, 3>>, 2> result;
+      for (const auto &at : mine)
+        if (at[2] > top - level)
+          result[0].push_back(at);
+        else if (at[2] < bottom + level)
+          result[1].push_back(at);
+      for (auto &vertices : result)
+        {
+          vertices = join_over_ranks(vertices, grid.communicator());
+          std::sort(vertices.begin(), vertices.end());
+        }
       return result;
     }
 
 
-    std::vector<NamedPoint>
-    points_of(const Grid &grid, const std::string &text)
+    NamedPoint
+    nearest_in_x(const std::string                        &name,
+                 const std::vector<std::array<double, 3>> &vertices,
+                 const double                              x)
     {
-      if (!text.empty())
-        return parse_points(text, place);
+      const auto nearest =
+        *std::min_element(vertices.begin(),
+                          vertices.end(),
+                          [x](const auto &a, const auto &b) {
+                            return std::abs(a[0] - x) < std::abs(b[0] - x);
+                          });
+      return {name, Point<3>(nearest[0], nearest[1], nearest[2])};
+    }
+
+
+    std::vector<NamedPoint>
+    usual_points(const Grid &grid)
+    {
       const auto &sets = grid.face_set_names();
       if (std::find(sets.begin(), sets.end(), "upstream face") == sets.end())
         return {};
-      const auto crest = crest_vertices(grid);
-      if (crest.empty())
+      const auto [crest, foot] = top_and_bottom(grid);
+      if (crest.empty() || foot.empty())
         return {};
-      std::vector<NamedPoint> points;
-      const double            first = crest.front()[0], last = crest.back()[0];
-      for (const auto &[name, share] :
-           std::vector<std::pair<std::string, double>>{
-             {"crest at its lower quarter of x", 0.25},
-             {"crest in the middle", 0.5},
-             {"crest at its upper quarter of x", 0.75}})
-        {
-          const double wanted  = first + share * (last - first);
-          const auto   nearest = *std::min_element(
-            crest.begin(), crest.end(), [wanted](const auto &a, const auto &b) {
-              return std::abs(a[0] - wanted) < std::abs(b[0] - wanted);
-            });
-          points.push_back(
-            {name, Point<3>(nearest[0], nearest[1], nearest[2])});
-        }
+      const double first = crest.front()[0], last = crest.back()[0];
+      const auto   base = nearest_in_x("base of the crown",
+                                     foot,
+                                     0.5 * (foot.front()[0] + foot.back()[0]));
+      return {nearest_in_x("crest at its lower quarter of x",
+                           crest,
+                           first + 0.25 * (last - first)),
+              nearest_in_x("crest at the crown", crest, base.position[0]),
+              nearest_in_x("crest at its upper quarter of x",
+                           crest,
+                           first + 0.75 * (last - first)),
+              base};
+    }
+
+
+    std::vector<NamedPoint>
+    points_of(const Grid &grid, const std::string &list)
+    {
+      std::vector<std::string> given;
+      bool                     usual = false;
+      for (const std::string &item : split_list(list, ';'))
+        if (item == usual_points_of_stages)
+          usual = true;
+        else
+          given.push_back(item);
+      std::vector<NamedPoint> points = parse_points(join(given, "; "), place);
+      if (usual)
+        for (const NamedPoint &point : usual_points(grid))
+          if (std::none_of(points.begin(),
+                           points.end(),
+                           [&point](const NamedPoint &other) {
+                             return other.name == point.name;
+                           }))
+            points.push_back(point);
       return points;
     }
 
@@ -115,17 +156,16 @@ namespace Voussoir
   } // namespace
 
 
-  StageResults::StageResults(const Discretization &discretization,
-                             const std::string    &points,
-                             const std::string    &face_sets)
+  StageResults::StageResults(const Discretization   &discretization,
+                             const StaticParameters &parameters)
     : discretization(discretization)
-    , points(points_of(discretization.grid, points))
-    , weights(this->points.empty() ?
-                nullptr :
-                std::make_unique<const PointWeights>(discretization,
-                                                     this->points,
-                                                     place))
-    , stresses(discretization, face_sets)
+    , points(points_of(discretization.grid, parameters.points))
+    , weights(
+        points.empty() ?
+          nullptr :
+          std::make_unique<const PointWeights>(discretization, points, place))
+    , stresses(discretization, parameters.faces)
+    , point_stresses(discretization, points, stresses.faces_with_arches())
   {}
 
 
@@ -160,6 +200,7 @@ namespace Voussoir
             {"displacement x [m]", values[p][0]},
             {"displacement y [m]", values[p][1]},
             {"displacement z [m]", values[p][2]}};
+        point_stresses.describe(model, report["points"]);
       }
     stresses.describe(model, report);
     if (contact != nullptr)
@@ -182,7 +223,15 @@ namespace Voussoir
           for (const char axis : {'x', 'y', 'z'})
             text << 1e3 * number(point,
                                  std::string("displacement ") + axis + " [m]")
-                 << (axis == 'z' ? ") mm\n" : ", ");
+                 << (axis == 'z' ? ") mm" : ", ");
+          text << ", principal stress "
+               << number(point, "smallest principal stress [MPa]") << " to "
+               << number(point, "largest principal stress [MPa]");
+          for (const std::string kind : {"arch", "cantilever"})
+            if (point.contains(kind + " stress [MPa]"))
+              text << ", " << kind << " stress "
+                   << number(point, kind + " stress [MPa]");
+          text << " MPa\n";
         }
     if (report.contains("faces"))
       for (const auto &[name, face] : report.at("faces").items())

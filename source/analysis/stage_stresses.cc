@@ -56,6 +56,17 @@ namespace Voussoir
   }
 
 
+  std::vector<const FaceMesh *>
+  StageStresses::faces_with_arches() const
+  {
+    std::vector<const FaceMesh *> result;
+    for (const Face &face : faces)
+      if (!face.is_level)
+        result.push_back(face.mesh.get());
+    return result;
+  }
+
+
   void
   StageStresses::describe(const StressModel &model,
                           nlohmann::json    &report) const

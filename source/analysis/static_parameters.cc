@@ -49,11 +49,11 @@ namespace Voussoir
     prm.add_parameter(
       "Points",
       points,
-      "Named points \"name: x y z\" [m], separated by \";\", "
-      "whose displacement after each stage is in "
-      "static_stages.csv. Empty: the upstream edge of the crest "
-      "in the middle of its length and at its quarters, where "
-      "the mesh has an \"upstream face\".");
+      "Named points \"name: x y z\" [m], separated by \";\", whose "
+      "displacement and stresses after each stage are in static_stages.csv. "
+      "\"usual\" among them: where the mesh has an \"upstream face\", the "
+      "upstream edge of the crest at the crown and at its quarters, and the "
+      "base of the crown. Empty: these and the points of the histories.");
     prm.add_parameter(
       "Face sets",
       faces,

@@ -2,7 +2,7 @@
 #include <voussoir/analysis/lost_equilibrium.h>
 #include <voussoir/analysis/relaxation.h>
 #include <voussoir/analysis/stage_results.h>
-#include <voussoir/analysis/static_state.h>
+#include <voussoir/analysis/static_outline.h>
 #include <voussoir/base/json_entries.h>
 #include <voussoir/base/text.h>
 #include <voussoir/fem/nodal_values.h>
@@ -55,10 +55,19 @@ namespace Voussoir
                    const StaticParameters &parameters,
                    Log                    &log);
 
+      /** Sets up the equations. */
+      void
+      set_up();
+
       /** Applies a stage; returns its part of the summary. */
       nlohmann::json
       apply(const StaticParameters::Stage             &applied,
             const std::map<std::string, const Load *> &load_of);
+
+      /** The summary of a stage, before equilibrium is found. */
+      nlohmann::json
+      outline(const StaticParameters::Stage             &applied,
+              const std::map<std::string, const Load *> &load_of);
 
       /** State after the stages so far; its force is that of the supports. */
       InitialState state;
@@ -221,13 +230,19 @@ namespace Voussoir
           on_springs ? model.boundaries.supports.list() :
                        model.boundaries.supports_with_absorbing(
                          parameters.supports == StaticSupports::roller)))
-      , results(model.solid.discretization, parameters.points, parameters.faces)
+      , results(model.solid.discretization, parameters)
       , damping(Damping::none())
       , loads(model.solid.discretization.create_vector())
     {
-      const Timer clock;
       state.displacement = state.temperature = state.force = loads;
       state.material_memory = internal_force.new_memory();
+    }
+
+
+    void
+    StaticStages::set_up()
+    {
+      const Timer clock;
       make_solver();
       if (model.contact != nullptr || internal_force.has_memory())
         relaxation = std::make_unique<Relaxation>(model.solid.discretization,
@@ -295,6 +310,18 @@ namespace Voussoir
           state.grouted_displacement = state.displacement;
           solver.reset(); // other parts are tied now
         }
+      return report;
+    }
+
+
+    nlohmann::json
+    StaticStages::outline(const StaticParameters::Stage             &applied,
+                          const std::map<std::string, const Load *> &load_of)
+    {
+      nlohmann::json report;
+      for (const std::string &name : applied.loads)
+        add_load(name, *load_of.at(name), report);
+      report_equilibrium(0, 0., report);
       return report;
     }
 
@@ -731,6 +758,17 @@ namespace Voussoir
     }
 
 
+    void
+    add_stage(const StaticParameters::Stage &stage,
+              const nlohmann::json          &report,
+              nlohmann::json                &summary)
+    {
+      summary["stages"].push_back(report);
+      if (!stage.name.empty())
+        summary["combinations"][stage.name] = report;
+    }
+
+
     /** The state after the last stage, in the static model. */
     InitialState
     apply_stages(const StaticModel      &model,
@@ -743,13 +781,9 @@ namespace Voussoir
       const std::map<std::string, const Load *> load_of(loads.begin(),
                                                         loads.end());
       StaticStages                              stages(model, parameters, log);
+      stages.set_up();
       for (const auto &stage : parameters.stage_list())
-        {
-          const nlohmann::json report = stages.apply(stage, load_of);
-          summary["stages"].push_back(report);
-          if (!stage.name.empty())
-            summary["combinations"][stage.name] = report;
-        }
+        add_stage(stage, stages.apply(stage, load_of), summary);
       summary["seconds"] = clock.wall_time();
       return std::move(stages.state);
     }
@@ -760,7 +794,23 @@ namespace Voussoir
   check_stage_results(const Discretization   &discretization,
                       const StaticParameters &parameters)
   {
-    StageResults(discretization, parameters.points, parameters.faces);
+    StageResults(discretization, parameters);
+  }
+
+
+  nlohmann::json
+  outline_of_static_state(const StaticModel      &model,
+                          const StaticParameters &parameters,
+                          const NamedLoads       &loads)
+  {
+    const std::map<std::string, const Load *> load_of(loads.begin(),
+                                                      loads.end());
+    Log            unseen(model.solid.grid().communicator(), true);
+    StaticStages   stages(model, parameters, unseen);
+    nlohmann::json summary;
+    for (const auto &stage : parameters.stage_list())
+      add_stage(stage, stages.outline(stage, load_of), summary);
+    return summary;
   }
 
 

@@ -253,6 +253,13 @@ namespace Voussoir
             const auto  equals = rest.find('=');
             std::string path   = join_path(section);
             path += (path.empty() ? "" : "/") + trim(rest.substr(0, equals));
+            // the lists of two files that another one includes are one
+            if (values.count(path) > 0 && entry_of(path) == "Names" &&
+                values[path].place.rfind(filename + ", line ", 0) != 0)
+              {
+                values[path].text += ", " + trim(rest.substr(equals + 1));
+                continue;
+              }
             if (values.count(path) > 0)
               throw UserError(place + ": \"" + entry_of(path) +
                               "\" is set a second time (first in " +

@@ -1,3 +1,4 @@
+#include <voussoir/analysis/stage_results.h>
 #include <voussoir/base/active.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/parameter_section.h>
@@ -94,6 +95,40 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    /** Static stages have results at the points of the histories, too, unless
+     *  the file gives them others. */
+    void
+    add_points_of_histories(Case &parameters)
+    {
+      std::string &points = parameters.static_state.points;
+      if (!points.empty())
+        return;
+      points = usual_points_of_stages;
+      for (const auto &observer : parameters.observers.objects)
+        if (observer.first == "histories")
+          points += "; " + parameters.file.given("Output/histories/Points");
+    }
+
+
+    void
+    note_unused_crack_friction(Case &parameters)
+    {
+      parameters.materials.for_each(
+        [&parameters](const std::string &place, Material &) {
+          const ParameterFile &file = parameters.file;
+          if (!file.given(place + "/Crack friction").empty() &&
+              file.given(place + "/Crack direction", "rotating") == "rotating")
+            parameters.notes.push_back(
+              "\"Crack friction\" in section \"" + place +
+              "\" is not used, as \"Crack direction\" there is "
+              "\"rotating\"");
+        });
+    }
+  } // namespace
+
+
   Case::Case(const ParameterFile                           &file,
              const std::function<void(ParameterHandler &)> &declare_more)
     : file(with_random_classes(file))
@@ -109,6 +144,8 @@ namespace Voussoir
       reader.file = file.resolve(reader.file);
     warnings = unusual_values(prm);
     find_water_of_uplift();
+    add_points_of_histories(*this);
+    note_unused_crack_friction(*this);
     check();
     for (const std::string &warning : ground_motion.warnings())
       warnings.push_back(warning);

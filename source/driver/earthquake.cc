@@ -49,7 +49,8 @@ namespace Voussoir
       const double     rest =
         find_peak(motion, motion.end(), peak.time, away).acceleration;
       if (rest < 0.2 * peak.acceleration)
-        log.warn(text,
+        log.warn(std::setprecision(3),
+                 text,
                  ", but stays below ",
                  rest / standard_gravity,
                  " g where this is more than ",
@@ -89,7 +90,8 @@ namespace Voussoir
                " m/s after");
       if (match.method == MatchMethod::each_component &&
           fit.mean_misfit() > accepted)
-        log.warn("the ground motion ",
+        log.warn(std::setprecision(3),
+                 "the ground motion ",
                  axis,
                  " is off its target spectrum by ",
                  100. * fit.mean_misfit(),
@@ -117,7 +119,7 @@ namespace Voussoir
               std::isfinite(end) ? find_peak(*motion[d], end) : reached;
             const double       g = whole.acceleration / standard_gravity;
             std::ostringstream text;
-            text << "the ground motion " << axes[d]
+            text << std::setprecision(3) << "the ground motion " << axes[d]
                  << " has its peak acceleration of " << g
                  << " g at t = " << whole.time << " s";
             const std::string remedy =
@@ -142,7 +144,8 @@ namespace Voussoir
             if (parameters.type == GroundMotionType::record)
               check_single_sample(*motion[d], whole, text.str(), log);
             if (reached.acceleration < 0.99 * whole.acceleration)
-              log.warn(text.str(),
+              log.warn(std::setprecision(3),
+                       text.str(),
                        ", but reaches ",
                        reached.acceleration / standard_gravity,
                        " g only up to the \"End time\" of ",
@@ -187,7 +190,8 @@ namespace Voussoir
       for (unsigned int m = 0; m < carried.size(); ++m)
         if (carried[m] > 0. && model.solid.materials[m]->inertia_factor == 1. &&
             fairly * carried[m] < middle)
-          log.warn("half of the power of the ground motion lies above ",
+          log.warn(std::setprecision(3),
+                   "half of the power of the ground motion lies above ",
                    middle,
                    " Hz, but the largest cells of \"",
                    model.parameters.materials.objects[m].first,

@@ -200,8 +200,9 @@ namespace Voussoir
   std::string
   RunSummary::short_verdict() const
   {
-    const std::string whole = verdict();
-    return whole.substr(0, whole.find(". "));
+    const std::string whole = verdict(),
+                      first = whole.substr(0, whole.find(". "));
+    return first.substr(0, first.find_last_not_of('.') + 1);
   }
 
 

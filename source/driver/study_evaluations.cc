@@ -153,19 +153,22 @@ namespace Voussoir
   Study::Table
   Study::sensitivities() const
   {
-    Table      lines;
-    const auto run_of = [this](const StudyValues &values) -> const Outcome * {
-      for (const Outcome &outcome : outcomes)
-        if (outcome.values == values && is_complete(outcome.summary))
-          return &outcome;
-      return nullptr;
-    };
-    const Outcome *as_given = run_of({});
-    if (!parameters.moves_numbers() || as_given == nullptr)
+    Table lines;
+    if (!parameters.moves_numbers())
       return lines;
+    std::map<StudyValues, const Outcome *> run_of;
+    for (const Outcome &outcome : outcomes)
+      if (is_complete(outcome.summary))
+        run_of[outcome.values] = &outcome;
+    if (run_of.count({}) == 0)
+      return lines;
+    const Outcome               &as_given = *run_of.at({});
+    std::vector<const Outcome *> run_of_move;
+    for (const MovedNumber &move : moves)
+      run_of_move.push_back(run_of[{{move.entry, move.text}}]);
     for (const SummaryNumber &number : parameters.numbers())
       {
-        const std::optional<double> value = number.in(as_given->numbers);
+        const std::optional<double> value = number.in(as_given.numbers);
         if (!value)
           continue;
         // moves of one number follow each other
@@ -175,7 +178,7 @@ namespace Voussoir
             std::vector<std::pair<double, double>> points;
             std::array<std::optional<double>, 2>   moved; // down and up
             for (; move != moves.end() && move->name == first->name; ++move)
-              if (const Outcome *run = run_of({{move->entry, move->text}}))
+              if (const Outcome *run = run_of_move[move - moves.begin()])
                 if (const auto there = number.in(run->numbers))
                   {
                     points.emplace_back(move->change, *there);

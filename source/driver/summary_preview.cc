@@ -1,3 +1,4 @@
+#include <voussoir/analysis/static_outline.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
 #include <voussoir/driver/summary_preview.h>
@@ -28,6 +29,20 @@ namespace Voussoir
     }
 
 
+    nlohmann::json
+    outline_of(const Model &model)
+    {
+      StaticState found(model);
+      return outline_of_static_state({model.solid,
+                                      model.parameters.boundaries,
+                                      model.terms,
+                                      found.contact ? &*found.contact :
+                                                      nullptr},
+                                     model.parameters.static_state,
+                                     model.load_list());
+    }
+
+
     /** The summary of a run, as far as it is known at the beginning. */
     nlohmann::json
     preview(Run &run)
@@ -43,6 +58,10 @@ namespace Voussoir
       fs::create_directories(name, ignored);
       MPI_Barrier(communicator);
       RunSummary summary = summary_of(run);
+      if (!run.model.parameters.static_state.stage_names().empty())
+        summary.march->static_state = outline_of(run.model);
+      if (const unsigned int n = run.model.parameters.modes.number; n > 0)
+        summary.march->modes = Modes{std::vector<Mode>(n), {}}.summary();
       for (const auto &observer : run.setup->plan.observers)
         {
           observer.second->begin(observed);
@@ -91,9 +110,7 @@ namespace Voussoir
     add_paths(summary, "", known);
     for (const auto &[number, entry] : wanted)
       {
-        const std::string first = number.path.substr(0, number.path.find('/'));
-        if (number.is_in(summary) || first == "static state" ||
-            first == "modes")
+        if (number.is_in(summary))
           continue;
         const std::string closest = closest_match(number.path, known);
         throw UserError(

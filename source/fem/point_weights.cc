@@ -37,6 +37,30 @@ namespace Voussoir
   }
 
 
+  std::optional<Point<3>>
+  unit_place(const Discretization       &discretization,
+             const Discretization::Cell &cell,
+             const Point<3>             &point)
+  {
+    constexpr double tolerance = 1e-6;
+    if (!cell->bounding_box().point_inside(point, tolerance))
+      return {};
+    try
+      {
+        const Point<3> unit =
+          discretization.mapping.transform_real_to_unit_cell(
+            static_cast<Triangulation<3>::active_cell_iterator>(cell), point);
+        if (GeometryInfo<3>::is_inside_unit_cell(unit, tolerance))
+          return unit;
+      }
+    catch (const Mapping<3>::ExcTransformationFailed &)
+      {
+        // far outside
+      }
+    return {};
+  }
+
+
   PointWeights::PointWeights(const Discretization          &discretization,
                              const std::vector<NamedPoint> &points,
                              const std::string             &place)
@@ -59,32 +83,20 @@ namespace Voussoir
         // the point belongs to the lowest rank that finds it, or to the rank of
         // the lowest cell
         Discretization::Cell found;
-        Point<3>             unit, here_unit;
+        Point<3>             here_unit;
         std::uint64_t        mine = nowhere;
         for (const auto &cell :
              discretization.dof_handler.active_cell_iterators())
           if (const std::uint64_t key =
                 reproducible ? Grid::global_key(cell) : rank;
-              cell->is_locally_owned() && key < mine &&
-              cell->bounding_box().point_inside(points[p].position, 1e-6))
-            {
-              try
-                {
-                  unit = discretization.mapping.transform_real_to_unit_cell(
-                    static_cast<Triangulation<3>::active_cell_iterator>(cell),
-                    points[p].position);
-                }
-              catch (const Mapping<3>::ExcTransformationFailed &)
-                {
-                  continue;
-                }
-              if (GeometryInfo<3>::is_inside_unit_cell(unit, 1e-6))
-                {
-                  found     = cell;
-                  here_unit = unit;
-                  mine      = key;
-                }
-            }
+              cell->is_locally_owned() && key < mine)
+            if (const auto unit =
+                  unit_place(discretization, cell, points[p].position))
+              {
+                found     = cell;
+                here_unit = *unit;
+                mine      = key;
+              }
         // not the library's minimum, which is one of MPI_UNSIGNED_LONG: Open
         // MPI 4.1 takes those from 2^63 on, and so `nowhere`, for negative
         std::uint64_t first;

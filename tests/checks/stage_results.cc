@@ -92,6 +92,19 @@ namespace Voussoir
                         1e-6);
         };
         largest("pictures", simulation->static_state.initial);
+        const auto of_histories = make_case(
+          file.with({"Static state/Points=", "Output/Folder=stage_points"}));
+        make_simulation_with_files(*of_histories, communicator);
+        verdicts.near("points of the histories where none are given: top [m]",
+                      read_summary("stage_points")
+                        .at("static state")
+                        .at("stages")
+                        .at(0)
+                        .at("points")
+                        .at("top")
+                        .at("displacement z [m]"),
+                      -of_weight,
+                      1e-6);
         const auto keeping =
           make_case(file.with({"Static state/Keep in=kept_stages",
                                "Output/Folder=stage_results_kept"}));

@@ -85,6 +85,27 @@ namespace Voussoir
                       wall(2, "smallest cantilever stress [MPa]"),
                       -weight - pressure,
                       tolerance);
+        const auto point = [&](const unsigned int stage,
+                               const std::string &name,
+                               const std::string &quantity) {
+          return stages.at(stage).at("points").at(name).at(quantity);
+        };
+        verdicts.near("point in a cell, weight: cantilever stress",
+                      point(0, "inside", "cantilever stress [MPa]"),
+                      -0.7 * weight,
+                      tolerance);
+        verdicts.near("  arch stress",
+                      point(0, "inside", "arch stress [MPa]"),
+                      -0.7 * aside * weight,
+                      tolerance);
+        verdicts.near("point between two, cooling: largest principal stress",
+                      point(2, "between", "largest principal stress [MPa]"),
+                      cooling - aside * (pressure + 0.6 * weight),
+                      tolerance);
+        verdicts.near("  smallest principal stress",
+                      point(2, "between", "smallest principal stress [MPa]"),
+                      -pressure - 0.6 * weight,
+                      tolerance);
         const nlohmann::json top = stages.at(1).at("faces").at("top");
         verdicts.near("level face: smallest principal stress",
                       top.at("smallest principal stress [MPa]"),
@@ -105,6 +126,12 @@ namespace Voussoir
                         .numbers("front smallest cantilever stress [MPa]")
                         .at(2),
                       -weight - pressure,
+                      tolerance);
+        verdicts.near("  of the point in a cell",
+                      CsvTable(folder + "/static_stages.csv")
+                        .numbers("inside cantilever stress [MPa]")
+                        .at(2),
+                      -0.7 * weight - pressure,
                       tolerance);
       }
     };

@@ -49,6 +49,33 @@ namespace Voussoir
         verdicts.same_text("in a file that is included",
                            only_note(ParameterFile("unused_including.prm")),
                            note);
+
+        for (const std::string name : {"crest", "heel"})
+          std::ofstream(name + "_criterion.prm")
+            << "subsection Acceptance\n  set Names = " << name
+            << "\n  subsection " << name
+            << "\n    set Quantity = x\n    set At most = 1\n"
+               "    set Source = user's\n  end\nend\n";
+        std::ofstream("two_lists.prm")
+          << "include " << file.resolve("unused_by_change.prm")
+          << "\ninclude crest_criterion.prm\ninclude heel_criterion.prm\n";
+        verdicts.is_true("lists of two files that are included: one",
+                         make_case(ParameterFile("two_lists.prm"))
+                             ->acceptance.of_the_run()
+                             .size() == 2);
+
+        const std::string friction = "Materials/rock/Crack friction=0.5";
+        verdicts.same_text(
+          "friction of cracks that turn",
+          only_note(file.with({"Materials/rock/Class=rock damage", friction})),
+          "\"Crack friction\" in section \"Materials/rock\" is not used, as "
+          "\"Crack direction\" there is \"rotating\"");
+        verdicts.is_true("of fixed ones: no note",
+                         make_case(
+                           file.with({"Materials/rock/Class=rock damage",
+                                      "Materials/rock/Crack direction=fixed",
+                                      friction}))
+                           ->notes.empty());
       }
 
     private:

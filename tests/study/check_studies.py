@@ -59,6 +59,7 @@ def check_ends(scratch):
             in said.splitlines()[-1], said)
     code, said = study(slope, scratch / "all", "Study/Limit/Entry=", friction + "0.1, 0.05")
     is_true("none stands: exit code 1", code == 1 and "0 stand, 2 were stopped" in said.splitlines()[-1], said)
+    is_true("  sentences end with one full stop", ".." not in said.replace(str(scratch), ""), said)
     code, said = study(slope, scratch / "limit", "Study/Limit/Accuracy=0.5")
     is_true("a limit at which runs are stopped is what was asked for: exit code 0",
             code == 0 and " stopped, 0 failed" in said.splitlines()[-1]

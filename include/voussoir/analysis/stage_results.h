@@ -1,34 +1,31 @@
 #ifndef voussoir_analysis_stage_results_h
 #define voussoir_analysis_stage_results_h
 
+#include <voussoir/analysis/point_stresses.h>
 #include <voussoir/analysis/stage_stresses.h>
-#include <voussoir/constraints/contact.h>
-#include <voussoir/fem/point_weights.h>
+#include <voussoir/analysis/static_state.h>
 
 #include <memory>
 
 namespace Voussoir
 {
+  /** In a list of points: with a face set "upstream face", its lowest point
+   *  under the crown, and its upper edge above that and at the quarters. */
+  constexpr char usual_points_of_stages[] = "usual";
+
   /** Results of a static stage at named points, of the body and of its
    *  interfaces. */
   class StageResults
   {
   public:
-    /**
-     * Called on all ranks.
-     *
-     * @param points as the entry has them; if it is empty the upstream edge of
-     *   the crest in the middle of its length and at its quarters, or none
-     *   where there is no face set "upstream face"
-     * @param face_sets see StageStresses
-     */
-    StageResults(const Discretization &discretization,
-                 const std::string    &points,
-                 const std::string    &face_sets);
+    /** Called on all ranks. */
+    StageResults(const Discretization   &discretization,
+                 const StaticParameters &parameters);
 
-    /** Adds displacements of the points, the largest one of all nodes with its
-     *  place, stresses on faces, and opening, slip and forces of each surface
-     *  of @p contact, which may be null. Called on all ranks.
+    /** Adds displacements and stresses of the points, the largest displacement
+     *  of all nodes with its place, stresses on faces, and opening, slip and
+     *  forces of each surface of @p contact, which may be null. Called on all
+     *  ranks.
      *  @param model with the initial state of this stage */
     void
     describe(const StressModel &model,
@@ -40,6 +37,7 @@ namespace Voussoir
     const std::vector<NamedPoint>             points;
     const std::unique_ptr<const PointWeights> weights; // null without points
     const StageStresses                       stresses;
+    const PointStresses                       point_stresses;
   };
 
   /** Points, faces and interfaces of a stage in lines of the log. */

@@ -18,6 +18,10 @@ namespace Voussoir
     StageStresses(const Discretization &discretization,
                   const std::string    &sets);
 
+    /** Faces that are level nowhere. */
+    std::vector<const FaceMesh *>
+    faces_with_arches() const;
+
     /** Adds largest and smallest stresses of each face set with their places.
      *  Called on all ranks.
      *  @param model with the initial state of this stage */

@@ -9,9 +9,7 @@ namespace Voussoir
    * Refuses paths of numbers that the summary of a run will not have: those of
    * criteria of the section "Acceptance", and quantities and criteria of a
    * study. The observers are evaluated once for a run that has not begun, and
-   * write into a folder that is removed. Results of static stages and modes are
-   * not known before them, and their paths are not checked. Called on all
-   * ranks.
+   * write into a folder that is removed. Called on all ranks.
    */
   void
   check_summary_paths(Run &run);

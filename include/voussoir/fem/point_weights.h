@@ -3,6 +3,8 @@
 
 #include <voussoir/fem/discretization.h>
 
+#include <optional>
+
 namespace Voussoir
 {
   /** A place with a name. */
@@ -15,6 +17,12 @@ namespace Voussoir
   /** Reads "crest: 0 0 289; base: 0 0 0"; @p place names the entry. */
   std::vector<NamedPoint>
   parse_points(const std::string &text, const std::string &place);
+
+  /** Place of a point in the reference cell, where it is in or on this cell. */
+  std::optional<dealii::Point<3>>
+  unit_place(const Discretization       &discretization,
+             const Discretization::Cell &cell,
+             const dealii::Point<3>     &point);
 
   /**
    * Interpolation weights at points of the mesh. Every rank holds those of its

@@ -1,8 +1,10 @@
-# deal_ii_pickup_tests() with four cures: tests called long_* run only with
+# deal_ii_pickup_tests() with five cures: tests called long_* run only with
 # VOUSSOIR_ALL_TESTS; labels that ctest knows (deal.II 9.4 sets LABEL, which
 # ctest ignores); an edited parameter file, or page of doc/, runs its test
-# again; and a check that finds something wrong, or a case that is refused, is
-# run by a script, since the harness shows no difference where a program fails.
+# again; a check that finds something wrong, or a case that is refused, is run by
+# a script, since the harness shows no difference where a program fails; and a
+# test takes as many processors as it has ranks (deal.II 9.4 counts half of
+# them: ranks that wait for each other then share a core, five times as slow).
 macro(voussoir_pickup_tests)
   set(_program ${TEST_TARGET})
   set(TEST_TARGET ${_program}_script)
@@ -20,6 +22,7 @@ macro(voussoir_pickup_tests)
     endif()
     set(_folder "${CMAKE_CURRENT_BINARY_DIR}/${_name}.${_build}")
     if(_test MATCHES "mpirun=([0-9]+)")
+      set_tests_properties(${_test} PROPERTIES PROCESSORS ${CMAKE_MATCH_1})
       string(APPEND _folder "/mpirun=${CMAKE_MATCH_1}")
     elseif(IS_DIRECTORY ${_folder}/serial) # made by the harness of deal.II 9.6
       string(APPEND _folder "/serial")

@@ -94,7 +94,7 @@ namespace Voussoir
         largest("pictures", simulation->static_state.initial);
         const auto of_histories = make_case(
           file.with({"Static state/Points=", "Output/Folder=stage_points"}));
-        make_simulation_with_files(*of_histories, communicator);
+        make_simulation_with_files(*of_histories, communicator)->run.march();
         verdicts.near("points of the histories where none are given: top [m]",
                       read_summary("stage_points")
                         .at("static state")

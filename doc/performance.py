@@ -81,7 +81,7 @@ def main():
         for name, case, settings in KINDS:
             rates = []
             for n in ranks:
-                runs = [rate(program, case, settings, n, pathlib.Path(folder))
+                runs = [rate(program, case, settings, n, pathlib.Path(folder) / case)
                         for _ in range(options.repeat)]
                 rates.append(max(value for value, _ in runs))
                 version, bits = (runs[0][1][key] for key in ("version", "SIMD bits"))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures the step on this machine and writes the tables of performance.md.
 
-usage: performance.py PROGRAM [--ranks 1,2] [--end 2] [--lulesh LULESH]
+usage: performance.py PROGRAM [--ranks 1,2] [--repeat 2] [--lulesh LULESH]
 
 Throughput is that of prm/benchmarks, the best of --repeat runs. LULESH is its serial
 program, if there is one: nodes of its mesh times three, times steps, over its time.
@@ -35,8 +35,8 @@ KINDS = [
 ]
 
 
-def rate(program, case, settings, ranks, folder):
-    """MDOF-steps/s of a run, and the peak memory of all its ranks over that of its unknowns [B]."""
+def run(program, case, settings, ranks, folder):
+    """Summary of a run."""
     command = [str(program)] if ranks == 1 else \
         [str(program.parent / "voussoir-run"), "-n", str(ranks)]
     command += [str(ROOT / f"prm/benchmarks/{case}.prm"), "--overwrite", "--set",
@@ -44,8 +44,7 @@ def rate(program, case, settings, ranks, folder):
     process = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if process.returncode != 0:
         sys.exit(process.stdout[-2000:])
-    summary = json.loads((folder / "summary.json").read_text())
-    return summary["MDOF-steps/s"], summary
+    return json.loads((folder / "summary.json").read_text())
 
 
 def processor():
@@ -81,10 +80,10 @@ def main():
         for name, case, settings in KINDS:
             rates = []
             for n in ranks:
-                runs = [rate(program, case, settings, n, pathlib.Path(folder) / case)
+                runs = [run(program, case, settings, n, pathlib.Path(folder) / case)
                         for _ in range(options.repeat)]
-                rates.append(max(value for value, _ in runs))
-                version, bits = (runs[0][1][key] for key in ("version", "SIMD bits"))
+                rates.append(max(summary["MDOF-steps/s"] for summary in runs))
+                version, bits = (runs[0][key] for key in ("version", "SIMD bits"))
             row = [name] + [f"{value:.1f}" for value in rates]
             if peer:
                 row.append(f"{rates[0] / peer:.1f}")

@@ -291,13 +291,11 @@ namespace Voussoir
     matrix_free.single_corners.resize(matrix_free.n_cell_batches());
     for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
       {
-        const std::array<Point<3, Lanes>, 8> corners =
-          corners_of(matrix_free, batch);
+        const auto &corners = matrix_free.corners[batch];
         for (unsigned int v = 0; v < 8; ++v)
           for (unsigned int d = 0; d < 3; ++d)
-            for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-              matrix_free.single_corners[batch][8 * d + v][lane] =
-                corners[v][d][lane] - corners[0][d][lane];
+            matrix_free.single_corners[batch][8 * d + v] =
+              rounded(corners[v][d] - corners[0][d]);
       }
   }
 

@@ -35,7 +35,7 @@ namespace Voussoir
                         factors[material],
                         discretization.reproducible,
                         rounding,
-                        single_precision});
+                        single_precision && discretization.single_precision});
           begin = end;
         }
     }
@@ -227,7 +227,7 @@ namespace Voussoir
               factors,
               run,
               discretization.reproducible ? &rounding : nullptr,
-              input.single_precision && discretization.single_precision);
+              input.single_precision);
 
     // the initial value of a sum must be in quanta, too
     const auto begin_sums = [&](const unsigned int begin,
@@ -274,11 +274,7 @@ namespace Voussoir
     };
     const auto loop = [&](Rounding *rounding) {
       discretization.matrix_free.cell_loop(
-        on_runs(discretization,
-                factors,
-                run,
-                rounding,
-                input.single_precision && discretization.single_precision),
+        on_runs(discretization, factors, run, rounding, input.single_precision),
         force,
         input.filtered,
         true);

@@ -19,15 +19,47 @@ namespace Voussoir
 
 
   FilteredDisplacement::FilteredDisplacement(const StressModel &model)
-    : FilteredDisplacement(model, model.discretization.create_vector())
-  {
-    add_range(0, u.locally_owned_size());
-  }
+    : FilteredDisplacement(model,
+                           model.discretization.create_vector(),
+                           model.discretization.owned_dofs)
+  {}
 
 
   FilteredDisplacement::FilteredDisplacement(const StressModel &model,
                                              const IndexSet    &needed)
-    : FilteredDisplacement(model, vector_with(model, needed))
+    : FilteredDisplacement(model, vector_with(model, needed), needed)
+  {}
+
+
+  FilteredDisplacement
+  FilteredDisplacement::for_cells(const StressModel &model,
+                                  const IndexSet    &needed)
+  {
+    return {model, model.discretization.create_vector(), needed};
+  }
+
+
+  void
+  FilteredDisplacement::add_range(const unsigned int begin,
+                                  const unsigned int end)
+  {
+    constexpr unsigned int length = 1024;
+    for (unsigned int first = begin; first < end; first += length)
+      ranges.emplace_back(first, std::min(first + length, end));
+  }
+
+
+  FilteredDisplacement::FilteredDisplacement(const StressModel &model,
+                                             Vector           &&layout,
+                                             const IndexSet    &needed)
+    : damping(model.damping)
+    , maxwell(model.damping, model.time_step)
+    , uniform(
+        model.internal_force.uniform_damping() ||
+        (damping.n_branches() == 0 && damping.stiffness_coefficient == 0.))
+    , factor(uniform ? model.internal_force.damping_factor() : 1.)
+    , u(std::move(layout))
+    , w(uniform ? Vector() : u)
   {
     const auto &partitioner = *u.get_partitioner();
     // for this rank and for those whose ghosts they are
@@ -45,29 +77,6 @@ namespace Voussoir
         begin = end;
       }
   }
-
-
-  void
-  FilteredDisplacement::add_range(const unsigned int begin,
-                                  const unsigned int end)
-  {
-    constexpr unsigned int length = 1024;
-    for (unsigned int first = begin; first < end; first += length)
-      ranges.emplace_back(first, std::min(first + length, end));
-  }
-
-
-  FilteredDisplacement::FilteredDisplacement(const StressModel &model,
-                                             Vector           &&layout)
-    : damping(model.damping)
-    , maxwell(model.damping, model.time_step)
-    , uniform(
-        model.internal_force.uniform_damping() ||
-        (damping.n_branches() == 0 && damping.stiffness_coefficient == 0.))
-    , factor(uniform ? model.internal_force.damping_factor() : 1.)
-    , u(std::move(layout))
-    , w(uniform ? Vector() : u)
-  {}
 
 
   void

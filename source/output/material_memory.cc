@@ -119,6 +119,44 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    /** Calls visit(material, history, cell, place, point, band) for the points
+     *  of for_each_crack(). */
+    template <typename Visit>
+    void
+    for_each_active(const ObservedRun &run, const Visit &visit)
+    {
+      for (unsigned int m = 0; m < run.solid.materials.size(); ++m)
+        {
+          const Material     &material = *run.solid.materials[m];
+          const PointHistory *history  = run.material_memory.of(m);
+          if (history == nullptr || !tells_of_cracks(material))
+            continue;
+          for (const auto &[cell, place] : history->cells())
+            for (unsigned int q = 0; q < history->n_points(); ++q)
+              if (const double band = history->band(place, q); band > 0.)
+                visit(material, *history, cell, place, q, band);
+        }
+    }
+  } // namespace
+
+
+  void
+  for_each_active_point(const ObservedRun                             &run,
+                        const std::function<void(const Discretization::Cell &,
+                                                 const unsigned int)> &visit)
+  {
+    for_each_active(run,
+                    [&](const Material &,
+                        const PointHistory &,
+                        const Discretization::Cell &cell,
+                        const PointHistory::Place &,
+                        const unsigned int q,
+                        const double) { visit(cell, q); });
+  }
+
+
   void
   for_each_crack(const ObservedRun                               &run,
                  const std::function<void(const Discretization::Cell &,
@@ -126,30 +164,28 @@ namespace Voussoir
                                           const double,
                                           const CrackOpening &)> &visit)
   {
-    for (unsigned int m = 0; m < run.solid.materials.size(); ++m)
-      {
-        const Material     &material = *run.solid.materials[m];
-        const PointHistory *history  = run.material_memory.of(m);
-        if (history == nullptr || !tells_of_cracks(material))
-          continue;
-        const std::size_t number =
-          output_number(material, OutputName::largest_opening);
-        for (const auto &[cell, place] : history->cells())
-          for (unsigned int q = 0; q < history->n_points(); ++q)
-            if (const double band = history->band(place, q); band > 0.)
-              {
-                const double largest =
-                  1e-3 * material.outputs(history->read(place, q).data(),
-                                          band)[number];
-                visit(cell,
-                      q,
-                      band,
-                      {largest > 0. ?
-                         opening_of(material, *history, place, q, largest) :
-                         0.,
-                       largest});
-              }
-      }
+    const Material *known  = nullptr;
+    std::size_t     number = 0;
+    for_each_active(
+      run,
+      [&](const Material             &material,
+          const PointHistory         &history,
+          const Discretization::Cell &cell,
+          const PointHistory::Place  &place,
+          const unsigned int          q,
+          const double                band) {
+        if (&material != known)
+          number = output_number(material, OutputName::largest_opening);
+        known = &material;
+        const double largest =
+          1e-3 * material.outputs(history.read(place, q).data(), band)[number];
+        visit(cell,
+              q,
+              band,
+              {largest > 0. ? opening_of(material, history, place, q, largest) :
+                              0.,
+               largest});
+      });
   }
 
 

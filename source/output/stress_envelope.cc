@@ -9,12 +9,43 @@ namespace Voussoir
 {
   using namespace dealii;
 
+  namespace
+  {
+    /** Entries that the evaluation of this rank's cells in these sets reads:
+     *  those of their nodes, and of those that lead hanging ones. */
+    IndexSet
+    entries_in(const Discretization           &discretization,
+               const std::vector<std::string> &sets)
+    {
+      const std::vector<bool> tagged = discretization.grid.tags_in(sets);
+      IndexSet                entries(discretization.owned_dofs.size());
+      for (const auto &cell :
+           discretization.dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned() &&
+            (sets.empty() || tagged[cell->material_id()]))
+          for (const auto node : discretization.cell_nodes(cell))
+            entries.add_range(3 * node, 3 * node + 3);
+      entries.compress();
+      IndexSet leading(entries.size());
+      for (const auto entry : entries)
+        if (const auto *line =
+              discretization.constraints.get_constraint_entries(entry))
+          for (const auto &[lead, weight] : *line)
+            leading.add_index(lead);
+      entries.add_indices(leading);
+      return entries;
+    }
+  } // namespace
+
+
   StressEnvelope::StressEnvelope(const ObservedRun              &run,
                                  const std::vector<std::string> &sets)
     : run(run)
     , matrix_free(run.solid.discretization.matrix_free)
     , points(QTrapezoid<1>(), run.solid.discretization.degree)
-    , filtered(run)
+    , filtered(FilteredDisplacement::for_cells(
+        run,
+        entries_in(run.solid.discretization, sets)))
   {
     const auto &scalar = run.solid.discretization.fe.base_element(0);
     const auto  order  = FETools::lexicographic_to_hierarchic_numbering<3>(

@@ -1,16 +1,10 @@
 #include <voussoir/base/error.h>
-#include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
-#include <voussoir/materials/tension_split.h>
+#include <voussoir/output/crack_paths.h>
 #include <voussoir/output/material_memory.h>
 #include <voussoir/output/table_observer.h>
 
 #include <deal.II/base/geometry_info.h>
-
-#include <boost/pending/disjoint_sets.hpp>
-#include <boost/serialization/array.hpp>
-
-#include <bitset>
 
 namespace Voussoir
 {
@@ -19,117 +13,6 @@ namespace Voussoir
   namespace
   {
     const std::string section = "section \"Output/through cracks\"";
-
-
-    /** An eighth of a cell, at one of its corners, with a crack in it. */
-    struct CrackedEighth
-    {
-      double                  opening; // [mm]
-      std::uint64_t           cell;    // Grid::global_key
-      unsigned int            corner;  // of the cell
-      types::global_dof_index node;    // there
-      Point<3>                where;   // that is [m]
-
-      // of the edges of the cell that begin there, in thousandths, as those of
-      // cells of other size begin there too
-      std::array<std::array<int, 3>, 3> directions;
-
-      bool begins, ends; // at the two faces
-
-      template <typename Archive>
-      void
-      serialize(Archive &archive, const unsigned int)
-      {
-        archive &opening &cell &corner &node &where &directions &begins &ends;
-      }
-    };
-
-
-    /** A path from face to face. */
-    struct Way
-    {
-      double   opening = 0.; // smallest opening along it [mm]
-      Point<3> where;        // that is [m]
-    };
-
-
-    /**
-     * The widest opening that a chain of eighths of cells has everywhere on its
-     * way from one face to the other; 0 if there is no such chain. Eighths of
-     * one cell are next to each other unless they lie across its middle, those
-     * of two cells if an edge of both begins in their corner. They are added in
-     * the order of their opening until a chain is complete.
-     */
-    Way
-    widest_way(std::vector<CrackedEighth> eighths)
-    {
-      const auto none = [&](const bool CrackedEighth::*at_face) {
-        return std::none_of(eighths.begin(),
-                            eighths.end(),
-                            [&](const auto &one) { return one.*at_face; });
-      };
-      if (none(&CrackedEighth::begins) || none(&CrackedEighth::ends))
-        return {};
-      std::sort(eighths.begin(),
-                eighths.end(),
-                [](const auto &a, const auto &b) {
-                  return a.opening > b.opening;
-                });
-      boost::disjoint_sets_with_storage<> chains(eighths.size());
-      std::vector<bool> begins(eighths.size()), ends(eighths.size()); // of one
-      std::map<std::pair<types::global_dof_index, std::array<int, 3>>,
-               std::size_t>
-                                                        at_edge;
-      std::map<std::uint64_t, std::vector<std::size_t>> in_cell;
-      for (std::size_t i = 0; i < eighths.size(); ++i)
-        {
-          const CrackedEighth &own = eighths[i];
-          begins[i]                = own.begins;
-          ends[i]                  = own.ends;
-          const auto join          = [&](const std::size_t other) {
-            const std::size_t a = chains.find_set(other),
-                              b = chains.find_set(i);
-            const bool begin = begins[a] || begins[b], end = ends[a] || ends[b];
-            chains.link(a, b);
-            const std::size_t whole = chains.find_set(i);
-            begins[whole]           = begin;
-            ends[whole]             = end;
-          };
-          for (const auto &direction : own.directions)
-            {
-              const auto [known, is_first] =
-                at_edge.insert({{own.node, direction}, i});
-              if (!is_first)
-                join(known->second);
-            }
-          auto &others = in_cell[own.cell];
-          for (const std::size_t other : others)
-            if ((eighths[other].corner ^ own.corner) != 7)
-              join(other);
-          others.push_back(i);
-          if (const std::size_t chain = chains.find_set(i);
-              begins[chain] && ends[chain])
-            return {own.opening, own.where};
-        }
-      return {};
-    }
-
-
-    /** The edges that begin in a corner of a cell, see CrackedEighth. */
-    std::array<std::array<int, 3>, 3>
-    directions_at(const Discretization::Cell &cell, const unsigned int corner)
-    {
-      std::array<std::array<int, 3>, 3> directions;
-      for (unsigned int k = 0; k < 3; ++k)
-        {
-          Tensor<1, 3> edge =
-            cell->vertex(corner ^ (1 << k)) - cell->vertex(corner);
-          edge /= edge.norm();
-          for (unsigned int d = 0; d < 3; ++d)
-            directions[k][d] = std::lround(1e3 * edge[d]);
-        }
-      return directions;
-    }
 
 
     /** Shares of the integration points of a cell in the mean of each eighth:
@@ -207,10 +90,13 @@ namespace Voussoir
       {
         if (!is_due(state.step))
           return;
-        const Ways ways = find_ways();
-        compare(ways, state.time);
-        if (has_line(state.step))
-          table.write(state.time, {ways.now.opening, ways.ever.opening});
+        const bool      lists    = has_line(state.step);
+        const Openings  openings = find_openings();
+        const CrackPath now = paths->widest(openings.now, lists ? 0. : most[0]);
+        compare(now, state.time);
+        if (lists)
+          table.write(state.time,
+                      {now.opening, paths->widest(openings.ever, 0.).opening});
       }
 
     private:
@@ -223,6 +109,8 @@ namespace Voussoir
           shares.push_back(
             shares_in_eighths(run().solid.discretization.points(m)));
         find_touching();
+        paths.emplace(run().solid.discretization, touching);
+        n_active = 0;
         open_table({"opening from face to face now [mm]",
                     "largest openings ever from face to face [mm]"});
       }
@@ -230,13 +118,15 @@ namespace Voussoir
       void
       conclude(const State &state, nlohmann::json &summary) override
       {
-        const Ways ways = find_ways();
-        compare(ways, state.time);
+        const Openings  openings = find_openings();
+        const CrackPath now      = paths->widest(openings.now, 0.);
+        compare(now, state.time);
         summary["through cracks"] = {
           {"largest opening from face to face at one moment [mm]", most[0]},
           {"at the time [s]", most[1]},
-          {"opening from face to face at the end [mm]", ways.now.opening},
-          {"largest openings ever from face to face [mm]", ways.ever.opening}};
+          {"opening from face to face at the end [mm]", now.opening},
+          {"largest openings ever from face to face [mm]",
+           paths->widest(openings.ever, 0.).opening}};
         if (most[0] > 0.)
           summary["through cracks"]["at [m]"] = {most[2], most[3], most[4]};
       }
@@ -253,76 +143,80 @@ namespace Voussoir
           model.solid.grid().check_face_set(set, place);
       }
 
-      /** Widest openings from face to face [mm]. */
-      struct Ways
+      /** Openings of the eighths of cells [mm]. */
+      struct Openings
       {
-        Way now;
-        Way ever; // by the largest openings, which need not be of one moment
+        std::vector<double> now;
+        std::vector<double> ever; // the largest, which need not be of one
+                                  // moment
       };
 
       void
-      compare(const Ways &ways, const double time)
+      compare(const CrackPath &path, const double time)
       {
-        if (const auto &[opening, where] = ways.now;
-            !(opening <= most[0])) // a NaN stays
+        if (const auto &[opening, where] = path; opening > most[0])
           most = {{opening, time, where[0], where[1], where[2]}};
       }
 
-      Ways
-      find_ways() const
+      /** Openings, or zero where none can be part of a path from face to face.
+       */
+      Openings
+      find_openings()
       {
-        const Discretization &discretization = run().solid.discretization;
-        using OfEighths                      = std::array<double, 8>;
-        struct Cracked
-        {
-          Discretization::Cell cell;
-          OfEighths            now{}, ever{};
-        };
-        std::vector<Cracked> cells;
-        for_each_crack(run(),
-                       [&](const Discretization::Cell &cell,
-                           const unsigned int          q,
-                           const double,
-                           const CrackOpening &opening) {
-                         if (opening.largest == 0.)
-                           return;
-                         if (cells.empty() || cells.back().cell != cell)
-                           cells.push_back({cell});
-                         const auto &share =
-                           shares[run().solid.grid().material(cell)][q];
-                         for (unsigned int corner = 0; corner < 8; ++corner)
-                           {
-                             const double factor = 1e3 * share[corner];
-                             cells.back().now[corner] += factor * opening.now;
-                             cells.back().ever[corner] +=
-                               factor * opening.largest;
-                           }
-                       });
-        std::array<std::vector<CrackedEighth>, 2> mine;
-        for (const Cracked &cracked : cells)
-          {
-            const auto  nodes = discretization.cell_nodes(cracked.cell);
-            const auto &touched =
-              touching[discretization.grid.owned_cell(cracked.cell)];
-            for (unsigned int corner = 0; corner < 8; ++corner)
-              {
-                CrackedEighth one{cracked.now[corner],
-                                  Grid::global_key(cracked.cell),
-                                  corner,
-                                  nodes[corner], // vertices come first
-                                  cracked.cell->vertex(corner),
-                                  directions_at(cracked.cell, corner),
-                                  touched[0][corner],
-                                  touched[1][corner]};
-                if (one.opening > 0.)
-                  mine[0].push_back(one);
-                one.opening = cracked.ever[corner];
-                if (one.opening > 0.)
-                  mine[1].push_back(one);
-              }
-          }
-        return {widest_way(join_over_ranks(mine[0], communicator())),
-                widest_way(join_over_ranks(mine[1], communicator()))};
+        const bool can_be_through = has_active_path();
+        Openings   openings{std::vector<double>(paths->n_eighths()),
+                          std::vector<double>(paths->n_eighths())};
+        if (can_be_through)
+          for_each_crack(run(),
+                         [&](const Discretization::Cell &cell,
+                             const unsigned int          q,
+                             const double,
+                             const CrackOpening &opening) {
+                           const unsigned int first =
+                             8 * paths->number_of(cell);
+                           const auto &share = shares_of(cell)[q];
+                           for (unsigned int corner = 0; corner < 8; ++corner)
+                             {
+                               const double factor = 1e3 * share[corner];
+                               openings.now[first + corner] +=
+                                 factor * opening.now;
+                               openings.ever[first + corner] +=
+                                 factor * opening.largest;
+                             }
+                         });
+        return openings;
+      }
+
+      /** Whether points that have left the elastic range lead from face to
+       *  face: until then no crack does, whatever its openings. */
+      bool
+      has_active_path()
+      {
+        // cells by their numbers, and shares of the point
+        std::vector<std::pair<unsigned int, const std::array<double, 8> *>>
+          active;
+        for_each_active_point(
+          run(), [&](const Discretization::Cell &cell, const unsigned int q) {
+            active.emplace_back(paths->number_of(cell), &shares_of(cell)[q]);
+          });
+        const std::size_t n =
+          Utilities::MPI::sum(active.size(), communicator());
+        if (n == n_active)
+          return active_path;
+        n_active = n;
+        std::vector<double> is_active(paths->n_eighths());
+        for (const auto &[cell, share] : active)
+          for (unsigned int corner = 0; corner < 8; ++corner)
+            if ((*share)[corner] > 0.)
+              is_active[8 * cell + corner] = 1.;
+        active_path = paths->widest(is_active, 0.).opening > 0.;
+        return active_path;
+      }
+
+      const std::vector<std::array<double, 8>> &
+      shares_of(const Discretization::Cell &cell) const
+      {
+        return shares[run().solid.grid().material(cell)];
       }
 
       /** Finds the corners of cells that lie on the two sets of faces. */
@@ -351,6 +245,12 @@ namespace Voussoir
 
       // of each owned cell, whether its corners lie on the two sets of faces
       std::vector<std::array<std::bitset<8>, 2>> touching;
+      std::optional<CrackPaths>                  paths;
+
+      // points that had left the elastic range, and whether they led from face
+      // to face
+      std::size_t n_active    = 0;
+      bool        active_path = false;
 
       // largest opening from face to face at one moment [mm], when [s], and
       // where it was narrowest [m]

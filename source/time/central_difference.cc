@@ -259,6 +259,41 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    /** Advances n Maxwell branches, and sets @p w to their sum times
+     *  @p factor, in one pass over the vectors. */
+    template <unsigned int n>
+    void
+    advance_branches(std::vector<Vector>       &branches,
+                     const std::vector<double> &decay,
+                     const std::vector<double> &gain,
+                     const double               factor,
+                     const double              *v,
+                     double                    *w,
+                     const unsigned int         begin,
+                     const unsigned int         end)
+    {
+      std::array<double *, n> of_branch;
+      std::array<double, n>   a, b;
+      for (unsigned int k = 0; k < n; ++k)
+        {
+          of_branch[k] = branches[k].begin();
+          a[k]         = decay[k];
+          b[k]         = gain[k];
+        }
+#pragma GCC ivdep
+      for (unsigned int i = begin; i < end; ++i)
+        {
+          double sum = 0.;
+          for (unsigned int k = 0; k < n; ++k)
+            sum += of_branch[k][i] = a[k] * of_branch[k][i] + b[k] * v[i];
+          w[i] = factor * sum;
+        }
+    }
+  } // namespace
+
+
   void
   CentralDifference::update_memory(State             &state,
                                    const unsigned int begin,
@@ -274,6 +309,9 @@ namespace Voussoir
     const double factor =
       uniform ? equation.internal_force.damping_factor() : 1.;
     const auto &[decay, gain] = maxwell;
+    const auto advance        = [&](const auto n) {
+      advance_branches<n>(state.memory, decay, gain, factor, v, w, begin, end);
+    };
     switch (decay.size())
       {
         case 0:
@@ -281,23 +319,15 @@ namespace Voussoir
           for (unsigned int i = begin; i < end; ++i)
             w[i] = factor * stiffness_coefficient * v[i];
           break;
-        case 3: // the default, in one pass
-          {
-            double      *w0 = state.memory[0].begin();
-            double      *w1 = state.memory[1].begin();
-            double      *w2 = state.memory[2].begin();
-            const double a0 = decay[0], a1 = decay[1], a2 = decay[2];
-            const double b0 = gain[0], b1 = gain[1], b2 = gain[2];
-#pragma GCC ivdep
-            for (unsigned int i = begin; i < end; ++i)
-              {
-                w0[i] = a0 * w0[i] + b0 * v[i];
-                w1[i] = a1 * w1[i] + b1 * v[i];
-                w2[i] = a2 * w2[i] + b2 * v[i];
-                w[i]  = factor * (w0[i] + w1[i] + w2[i]);
-              }
-            break;
-          }
+        case 1:
+          advance(std::integral_constant<unsigned int, 1>());
+          break;
+        case 2:
+          advance(std::integral_constant<unsigned int, 2>());
+          break;
+        case 3:
+          advance(std::integral_constant<unsigned int, 3>());
+          break;
         default:
           std::fill(w + begin, w + end, 0.);
           for (unsigned int k = 0; k < decay.size(); ++k)

@@ -3,6 +3,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <numeric>
+#include <type_traits>
 #include <vector>
 
 namespace Voussoir
@@ -22,10 +24,32 @@ namespace Voussoir
   std::vector<T>
   join_over_ranks(const std::vector<T> &list, const MPI_Comm communicator)
   {
+    namespace MPI = dealii::Utilities::MPI;
     std::vector<T> joined;
-    for (const auto &part :
-         dealii::Utilities::MPI::all_gather(communicator, list))
-      joined.insert(joined.end(), part.begin(), part.end());
+    if constexpr (std::is_trivially_copyable_v<T>)
+      {
+        // as they are: the library would compress them
+        const auto sizes =
+          MPI::all_gather(communicator, static_cast<int>(list.size()));
+        std::vector<int> begins(sizes.size(), 0);
+        std::partial_sum(sizes.begin(), sizes.end() - 1, begins.begin() + 1);
+        joined.resize(begins.back() + sizes.back());
+        MPI_Datatype type;
+        MPI_Type_contiguous(sizeof(T), MPI_BYTE, &type);
+        MPI_Type_commit(&type);
+        MPI_Allgatherv(list.data(),
+                       list.size(),
+                       type,
+                       joined.data(),
+                       sizes.data(),
+                       begins.data(),
+                       type,
+                       communicator);
+        MPI_Type_free(&type);
+      }
+    else
+      for (const auto &part : MPI::all_gather(communicator, list))
+        joined.insert(joined.end(), part.begin(), part.end());
     return joined;
   }
 } // namespace Voussoir

@@ -24,6 +24,10 @@ namespace Voussoir
     FilteredDisplacement(const StressModel      &model,
                          const dealii::IndexSet &needed);
 
+    /** The same in vectors of the discretization, for cell evaluations. */
+    static FilteredDisplacement
+    for_cells(const StressModel &model, const dealii::IndexSet &needed);
+
     /** All ranks must call this together. */
     void
     update(const State &state);
@@ -45,7 +49,9 @@ namespace Voussoir
     entries_of(const Vector &vector) const;
 
   private:
-    FilteredDisplacement(const StressModel &model, Vector &&layout);
+    FilteredDisplacement(const StressModel      &model,
+                         Vector                &&layout,
+                         const dealii::IndexSet &needed);
 
     /** Adds the owned entries of this range. */
     void

@@ -27,7 +27,14 @@ namespace Voussoir
   };
 
   /** Visits the points of this rank's cells that have left the elastic range,
-   *  of all materials with crack openings, with the width of their band [m]. */
+   *  of all materials with crack openings. */
+  void
+  for_each_active_point(
+    const ObservedRun                                   &run,
+    const std::function<void(const Discretization::Cell &,
+                             const unsigned int point)> &visit);
+
+  /** The same, with the width of the crack band [m] and the opening. */
   void
   for_each_crack(const ObservedRun                                      &run,
                  const std::function<void(const Discretization::Cell &,

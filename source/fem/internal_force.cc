@@ -428,13 +428,16 @@ namespace Voussoir
       if (!vector->has_ghost_elements())
         vector->update_ghost_values();
     Sum sum{};
-    for_each_run(discretization,
-                 factors,
-                 0,
-                 discretization.matrix_free.n_cell_batches(),
-                 [&](const unsigned int material, const CellRange &cells) {
-                   sum += evaluate(material, cells);
-                 });
+    for_each_run(
+      discretization,
+      factors,
+      0,
+      discretization.matrix_free.n_cell_batches(),
+      [&](const unsigned int material, const CellRange &cells) {
+        sum += evaluate(material, cells);
+      },
+      nullptr,
+      true);
     for (const Vector *vector : read)
       vector->zero_out_ghost_values();
     return sum;

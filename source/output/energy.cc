@@ -12,12 +12,12 @@ namespace Voussoir
 
   namespace
   {
-    // Steps from one evaluation to the next, which takes as long as a step or
-    // two: 50 at most, one in models that are small enough to afford it ...
+    // Steps from one evaluation to the next, which takes as long as two or
+    // three: 100 at most, one in models that are small enough to afford it ...
     unsigned int
     most_steps_between(const types::global_dof_index n_unknowns)
     {
-      return std::min<types::global_dof_index>(50, 1 + n_unknowns / 1000);
+      return std::min<types::global_dof_index>(100, 1 + n_unknowns / 1000);
     }
 
     // ... and no more than the trapezoidal rule needs: the loss of the cells

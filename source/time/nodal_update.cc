@@ -29,6 +29,7 @@ namespace Voussoir
     , leap_frog(leap_frog)
     , inverse(terms.nodes.size())
     , masses(terms.nodes.size())
+    , has_water(terms.nodes.size())
     , applied(terms.nodes.size())
     , last_displacement(terms.nodes.size())
     , last_velocity(terms.nodes.size())
@@ -51,7 +52,8 @@ namespace Voussoir
               if (d == e)
                 matrix[d][e] += masses[slot][d] > 0. ? masses[slot][d] : 1.;
             }
-        inverse[slot] = invert(matrix);
+        inverse[slot]   = invert(matrix);
+        has_water[slot] = terms.added_mass[slot].norm() > 0.;
       }
   }
 
@@ -99,53 +101,63 @@ namespace Voussoir
   void
   NodalUpdate::correct(State &state, const NodalForces &forces)
   {
-    const double time_step = leap_frog.time_step,
-                 lag       = leap_frog.explicit_share();
+    const double time_step           = leap_frog.time_step,
+                 lag                 = leap_frog.explicit_share();
+    EnergyAccounts &accounts         = state.accounts;
+    const bool      has_mass_damping = mass_coefficient != 0.,
+               has_base              = base.norm_square() > 0.;
     for (unsigned int slot = 0; slot < terms.nodes.size(); ++slot)
       {
         const unsigned int  node     = terms.nodes[slot];
         const Tensor<1, 3> &last     = last_velocity[slot];
         const auto         &dashpots = terms.dashpots[slot];
         const auto         &water    = terms.added_mass[slot];
-        // the added mass is driven by the motion of a rigid base
-        applied[slot] = forces.of_slot(slot) - water * base;
-        Tensor<1, 3> momentum =
-          water * last +
-          time_step *
-            (applied[slot] - terms.springs[slot] * last_displacement[slot]) -
-          lag * (damping_at(terms, slot, mass_coefficient) * last);
-        for (unsigned int d = 0; d < 3; ++d)
+        applied[slot]                = forces.of_slot(slot);
+        Tensor<1, 3> momentum        = -lag * (dashpots * last);
+        if (has_water[slot])
           {
-            momentum[d] +=
-              masses[slot][d] * state.velocity.local_element(3 * node + d);
-            if (masses[slot][d] == 0.)
-              momentum[d] = 0.;
+            // the added mass is driven by the motion of a rigid base
+            applied[slot] -= water * base;
+            momentum += (1. - lag * mass_coefficient) * (water * last);
           }
-        const Tensor<1, 3> next = inverse[slot] * momentum;
-        const Tensor<1, 3> mean = 0.5 * (next + last);
-        state.accounts.work_of_forces += time_step * (applied[slot] * mean);
-        state.accounts.loss_in_dashpots +=
-          time_step * (mean * (dashpots * leap_frog.damped(last, next)));
-        state.accounts.loss_by_mass +=
-          time_step * mass_coefficient *
-          (mean * (water * leap_frog.damped(last, next)));
-        // the sweep has added these for the motion without terms
-        const Tensor<1, 3> swept        = node_value(state.velocity, node);
-        const Tensor<1, 3> damped       = leap_frog.damped(last, next),
-                           damped_swept = leap_frog.damped(last, swept);
+        momentum += time_step * (applied[slot] -
+                                 terms.springs[slot] * last_displacement[slot]);
+        const Tensor<1, 3> swept = node_value(state.velocity, node);
+        for (unsigned int d = 0; d < 3; ++d)
+          momentum[d] = masses[slot][d] == 0. ?
+                          0. :
+                          momentum[d] + masses[slot][d] * swept[d];
+        const Tensor<1, 3> next   = inverse[slot] * momentum;
+        const Tensor<1, 3> mean   = 0.5 * (next + last),
+                           damped = leap_frog.damped(last, next);
+        accounts.work_of_forces += time_step * (applied[slot] * mean);
+        accounts.loss_in_dashpots += time_step * (mean * (dashpots * damped));
         for (unsigned int d = 0; d < 3; ++d)
           {
-            const unsigned int entry = 3 * node + d;
-            state.accounts.work_of_base -= 0.5 * time_step *
-                                           mass.driven().local_element(entry) *
-                                           base[d] * (next[d] - swept[d]);
-            state.accounts.loss_by_mass +=
-              time_step * mass_coefficient * mass.mass.local_element(entry) *
-              (mean[d] * damped[d] -
-               0.5 * (swept[d] + last[d]) * damped_swept[d]);
-            state.velocity.local_element(3 * node + d) = next[d];
-            state.displacement.local_element(3 * node + d) =
+            const unsigned int entry            = 3 * node + d;
+            state.velocity.local_element(entry) = next[d];
+            state.displacement.local_element(entry) =
               last_displacement[slot][d] + time_step * next[d];
+          }
+
+        // the sweep has added these for the motion without terms
+        if (has_base)
+          for (unsigned int d = 0; d < 3; ++d)
+            accounts.work_of_base -= 0.5 * time_step *
+                                     mass.driven().local_element(3 * node + d) *
+                                     base[d] * (next[d] - swept[d]);
+        if (has_mass_damping)
+          {
+            if (has_water[slot])
+              accounts.loss_by_mass +=
+                time_step * mass_coefficient * (mean * (water * damped));
+            const Tensor<1, 3> damped_swept = leap_frog.damped(last, swept);
+            for (unsigned int d = 0; d < 3; ++d)
+              accounts.loss_by_mass +=
+                time_step * mass_coefficient *
+                mass.mass.local_element(3 * node + d) *
+                (mean[d] * damped[d] -
+                 0.5 * (swept[d] + last[d]) * damped_swept[d]);
           }
       }
   }

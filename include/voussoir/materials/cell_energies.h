@@ -23,10 +23,21 @@ namespace Voussoir
     }
 
 
+    /** Cells of two batches have no internal variables. */
+    inline Singles
+    where_elastic(const PointHistory *,
+                  const unsigned int,
+                  const unsigned int,
+                  const Singles &value)
+    {
+      return value;
+    }
+
+
     /** x^T K x and x^T K v of the elastic points of each cell, with x and v of
      *  @p field and @p moving. */
     template <typename Law, typename Cell>
-    std::array<Lanes, 2>
+    auto
     elastic_products(const Law          &law,
                      const double        stress_factor,
                      Cell               &field,
@@ -34,12 +45,15 @@ namespace Voussoir
                      const PointHistory *history,
                      const unsigned int  batch)
     {
-      std::array<Lanes, 2> sums{{Lanes(0.), Lanes(0.)}};
+      using Number = std::decay_t<decltype(field.JxW(0))>;
+      std::array<Number, 2> sums{{Number(0.), Number(0.)}};
       for (const unsigned int q : field.quadrature_point_indices())
         {
-          const auto  strain = field.get_symmetric_gradient(q);
-          const auto  stress = stress_factor * law.stress(strain);
-          const Lanes weight = where_elastic(history, batch, q, field.JxW(q));
+          const SymmetricTensor3<Number> strain =
+            field.get_symmetric_gradient(q);
+          const SymmetricTensor3<Number> stress =
+            stress_factor * law.stress(strain);
+          const Number weight = where_elastic(history, batch, q, field.JxW(q));
           sums[0] += weight * (stress * strain);
           sums[1] += weight * (stress * moving.get_symmetric_gradient(q));
         }
@@ -74,6 +88,95 @@ namespace Voussoir
     }
 
 
+    /**
+     * Adds the energy of a batch, or of two in single precision.
+     *
+     * @param read   reads a vector into a cell and evaluates its gradients
+     * @param reduce makes a number of one number per cell
+     */
+    template <typename Law, typename Cell, typename Read, typename Reduce>
+    void
+    add_elastic_energy(ElasticEnergy      &total,
+                       const Law          &law,
+                       const CellRange    &cells,
+                       const double        damping_factor,
+                       const DampedMotion &motion,
+                       const MaxwellStep  &maxwell,
+                       const unsigned int  batch,
+                       PointHistory       *history,
+                       Cell               &cell,
+                       Cell               &moving, // at v+
+                       const Read         &read,
+                       const Reduce       &reduce)
+    {
+      const double   stress_factor = cells.stress_factor;
+      const double   dt            = motion.time_step;
+      const Damping &damping       = motion.damping;
+      const double   branches      = damping.branch_stiffness();
+      const double   viscosity =
+        damping_factor * damping.stiffness_coefficient + damping.mesh_viscosity;
+      using Number = decltype(reduce(cell.JxW(0)));
+
+      const auto products = [&](Cell &field) {
+        const auto sums =
+          elastic_products(law, stress_factor, field, moving, history, batch);
+        return std::array<Number, 2>{{reduce(sums[0]), reduce(sums[1])}};
+      };
+      const auto products_of = [&](const Vector &vector) {
+        read(cell, vector);
+        return products(cell);
+      };
+
+      std::vector<SymmetricTensor3<Lanes>> filter(
+        history == nullptr || maxwell.gain.empty() ?
+          0 :
+          cell.quadrature_point_indices().size());
+
+      read(moving, motion.velocity);
+      const auto [uu, uv] = products_of(motion.displacement);
+      add_cells(total.strain, cells, batch, Number(0.5 * (uu - dt * uv)));
+      if (viscosity > 0.)
+        {
+          const auto [bb, bv] = products_of(motion.velocity_before);
+          add_cells(total.last_loss,
+                    cells,
+                    batch,
+                    Number(0.5 * dt * viscosity * (bb + bv)));
+        }
+      const Number vv = maxwell.gain.empty() ? Number(0.) : products(moving)[0];
+      for (unsigned int q = 0; q < filter.size(); ++q)
+        history->imbalance(batch, q) = 0.;
+      for (unsigned int i = 0; i < maxwell.gain.size(); ++i)
+        if (const double a = maxwell.decay[i], b = maxwell.gain[i]; b > 0.)
+          {
+            const auto [ww, wv] = products_of(motion.memory[i]);
+            const double factor = damping_factor * dt / (2. * b);
+            const Number across = a * ww + b * wv, // w_i^T K w_i+
+              next              = a * across + b * (a * wv + b * vv);
+            if constexpr (std::is_same_v<std::decay_t<decltype(cell.JxW(0))>,
+                                         Lanes>)
+              if (history != nullptr)
+                add_branch(law,
+                           0.5 * stress_factor * damping_factor /
+                             damping.coefficients[i],
+                           cell,
+                           batch,
+                           *history,
+                           filter);
+            add_cells(total.memory, cells, batch, Number(factor * across));
+            add_cells(total.next_loss,
+                      cells,
+                      batch,
+                      Number(factor * (1. - a) * (next + across)));
+          }
+      if (branches > 0.)
+        for (unsigned int q = 0; q < filter.size(); ++q)
+          history->imbalance(batch, q) -= 0.5 * stress_factor * damping_factor /
+                                          branches *
+                                          (law.stress(filter[q]) * filter[q]);
+    }
+
+
     /** CellKernel::elastic_energy. */
     template <typename Law>
     ElasticEnergy
@@ -83,90 +186,66 @@ namespace Voussoir
                    const DampedMotion &motion,
                    PointHistory       *history)
     {
-      const auto       &matrix_free   = cells.matrix_free;
-      const double      stress_factor = cells.stress_factor;
-      const double      dt            = motion.time_step;
-      const Damping    &damping       = motion.damping;
-      const MaxwellStep maxwell(damping, dt);
-      const double      branches = damping.branch_stiffness();
-      const double      viscosity =
-        damping_factor * damping.stiffness_coefficient + damping.mesh_viscosity;
-      ElasticEnergy total(cells.exact_sums);
-      const auto    add_up = [&](auto &cell, const auto &reduce) {
-        std::decay_t<decltype(cell)> moving(matrix_free); // at v+
-        for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
-          {
-            cell.reinit(batch);
-            moving.reinit(batch);
-            const auto products = [&](auto &field) {
-              const auto sums = elastic_products(
-                law, stress_factor, field, moving, history, batch);
-              return std::array<decltype(reduce(batch, sums[0])), 2>{
-                {reduce(batch, sums[0]), reduce(batch, sums[1])}};
-            };
-            const auto products_of = [&](const Vector &vector) {
-              cell.read_dof_values(vector);
-              cell.evaluate(dealii::EvaluationFlags::gradients);
-              return products(cell);
-            };
-
-            std::vector<SymmetricTensor3<Lanes>> filter(
-              history == nullptr || maxwell.gain.empty() ?
-                0 :
-                cell.quadrature_point_indices().size());
-
-            moving.read_dof_values(motion.velocity);
-            moving.evaluate(dealii::EvaluationFlags::gradients);
-            using Number        = decltype(reduce(batch, Lanes()));
-            const auto [uu, uv] = products_of(motion.displacement);
-            add_cells(total.strain, cells, batch, Number(0.5 * (uu - dt * uv)));
-            if (viscosity > 0.)
-              {
-                const auto [bb, bv] = products_of(motion.velocity_before);
-                add_cells(total.last_loss,
-                          cells,
-                          batch,
-                          Number(0.5 * dt * viscosity * (bb + bv)));
-              }
-            const Number vv =
-              maxwell.gain.empty() ? Number(0.) : products(moving)[0];
-            for (unsigned int q = 0; q < filter.size(); ++q)
-              history->imbalance(batch, q) = 0.;
-            for (unsigned int i = 0; i < maxwell.gain.size(); ++i)
-              if (const double a = maxwell.decay[i], b = maxwell.gain[i];
-                  b > 0.)
-                {
-                  const auto [ww, wv] = products_of(motion.memory[i]);
-                  const double factor = damping_factor * dt / (2. * b);
-                  const Number across = a * ww + b * wv, // w_i^T K w_i+
-                    next              = a * across + b * (a * wv + b * vv);
-                  if (history != nullptr)
-                    add_branch(law,
-                               0.5 * stress_factor * damping_factor /
-                                 damping.coefficients[i],
-                               cell,
-                               batch,
-                               *history,
-                               filter);
-                  add_cells(total.memory,
-                            cells,
-                            batch,
-                            Number(factor * across));
-                  add_cells(total.next_loss,
-                            cells,
-                            batch,
-                            Number(factor * (1. - a) * (next + across)));
-                }
-            if (branches > 0.)
-              for (unsigned int q = 0; q < filter.size(); ++q)
-                history->imbalance(batch, q) -=
-                  0.5 * stress_factor * damping_factor / branches *
-                  (law.stress(filter[q]) * filter[q]);
-          }
+      const auto       &matrix_free = cells.matrix_free;
+      const MaxwellStep maxwell(motion.damping, motion.time_step);
+      ElasticEnergy     total(cells.exact_sums);
+      const auto        add = [&](const unsigned int batch,
+                           auto              &cell,
+                           auto              &moving,
+                           const auto        &read,
+                           const auto        &reduce) {
+        add_elastic_energy(total,
+                           law,
+                           cells,
+                           damping_factor,
+                           motion,
+                           maxwell,
+                           batch,
+                           history,
+                           cell,
+                           moving,
+                           read,
+                           reduce);
       };
       with_cells(cells, [&](auto &&cell) {
-        with_reduction(cells,
-                       [&](const auto &reduce) { add_up(cell, reduce); });
+        if (cells.single_precision && history == nullptr)
+          {
+            SingleCells<decltype(cell)> two(matrix_free), moving(matrix_free);
+            const auto read = [](auto &two, const Vector &vector) {
+              two.gather_evaluate(vector);
+            };
+            for (unsigned int batch = cells.begin; batch < cells.end;
+                 batch += 2)
+              {
+                const unsigned int n = std::min(2U, cells.end - batch);
+                two.reinit(batch, n);
+                moving.reinit(batch, n);
+                add(batch, two, moving, read, [&](const Singles &values) {
+                  double sum = 0.;
+                  for (unsigned int half = 0; half < n; ++half)
+                    sum += sum_of_cells(matrix_free,
+                                        batch + half,
+                                        half_of_singles(values, half));
+                  return sum;
+                });
+              }
+            return;
+          }
+        std::decay_t<decltype(cell)> moving(matrix_free);
+        const auto read = [](auto &cell, const Vector &vector) {
+          cell.read_dof_values(vector);
+          cell.evaluate(dealii::EvaluationFlags::gradients);
+        };
+        with_reduction(cells, [&](const auto &reduce) {
+          for (unsigned int batch = cells.begin; batch < cells.end; ++batch)
+            {
+              cell.reinit(batch);
+              moving.reinit(batch);
+              add(batch, cell, moving, read, [&](const Lanes &values) {
+                return reduce(batch, values);
+              });
+            }
+        });
       });
       return total;
     }

@@ -60,8 +60,9 @@ namespace Voussoir
     const double                      mass_coefficient;
     const LeapFrog                    leap_frog;
     std::vector<dealii::Tensor<2, 3>> inverse;
-    std::vector<dealii::Tensor<1, 3>> masses;  // diagonal
-    std::vector<dealii::Tensor<1, 3>> applied; // F - M_a a_base
+    std::vector<dealii::Tensor<1, 3>> masses;    // diagonal
+    std::vector<bool>                 has_water; // added mass
+    std::vector<dealii::Tensor<1, 3>> applied;   // F - M_a a_base
     std::vector<dealii::Tensor<1, 3>> last_displacement, last_velocity;
     dealii::Tensor<1, 3>              base;
   };

@@ -50,14 +50,15 @@ namespace Voussoir
       "Cell precision",
       precision,
       "Arithmetic of the internal forces of elastic cells of degree 1 in the "
-      "time loop, and of the smoother of the static solver. Single: strain, "
-      "stress and forces of a cell are computed in single precision, twice as "
-      "many cells at a time, from relative displacements of its nodes that are "
-      "formed in double precision; sums at the nodes, the motion, cells that "
-      "crack or yield and static equilibrium are in double precision. Faster by "
-      "a half to two thirds, with round-off of 1e-7 of the strain, that of the "
-      "static state included. Cells of higher degree and reproducible sums are "
-      "in double precision whatever is asked for.");
+      "time loop. Single: strain, stress and forces of a cell are computed in "
+      "single precision, twice as many cells at a time, from relative "
+      "displacements of its nodes that are formed in double precision; sums at "
+      "the nodes, the motion, cells that crack or yield and static equilibrium "
+      "are in double precision. Faster by a half to two thirds, with round-off "
+      "of 1e-7 of the strain, that of the static state included. Cells of "
+      "higher degree and reproducible sums are in double precision whatever is "
+      "asked for; the smoother of the static solver, which changes no result, "
+      "is in single precision where it can be.");
   }
 
 
@@ -194,7 +195,7 @@ namespace Voussoir
         keep_corners_only();
         find_node_entries();
       }
-    if (single_precision)
+    if (has_singles && degree == 1 && !reproducible)
       make_single_corners();
 
     node_positions.resize(n_owned_nodes());

@@ -35,7 +35,8 @@ namespace Voussoir
                         factors[material],
                         discretization.reproducible,
                         rounding,
-                        single_precision && discretization.single_precision});
+                        single_precision &&
+                          !discretization.matrix_free.single_corners.empty()});
           begin = end;
         }
     }
@@ -437,7 +438,7 @@ namespace Voussoir
         sum += evaluate(material, cells);
       },
       nullptr,
-      true);
+      discretization.single_precision);
     for (const Vector *vector : read)
       vector->zero_out_ghost_values();
     return sum;

@@ -166,7 +166,7 @@ namespace Voussoir
                    &memory,
                    point_step,
        bound ? &*bound : nullptr,
-                   true},
+                   equation.discretization.single_precision},
       state.material_memory,
       [&](const unsigned int begin, const unsigned int end) {
         update_memory(state, begin, end);

@@ -68,7 +68,7 @@ namespace Voussoir
     const Vector      *damping_memory = nullptr; // w [m], if `by_material`
     PointStep          step           = {}; // of laws with internal variables
     const MotionBound *bound          = nullptr; // null: none is known
-    bool single_precision = false; // of forces, where the discretization allows
+    bool single_precision = false; // of forces, where cells are trilinear
 
     /** Strain of the displacement alone, which laws follow at once. */
     static SweepInput

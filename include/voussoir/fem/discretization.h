@@ -129,7 +129,8 @@ namespace Voussoir
       dealii::AlignedVector<std::array<dealii::Point<3, Lanes>, 8>> corners;
 
       /** The same in single precision, relative to the first corner, component
-       *  by component; none unless forces are computed so. */
+       *  by component; none if cells are of higher degree or sums reproducible.
+       */
       dealii::AlignedVector<std::array<HalfSingles, 24>> single_corners;
 
       /** Of each batch of trilinear cells the first vector entry of each node
@@ -153,7 +154,7 @@ namespace Voussoir
     /** Whether results must not depend on the partition, bit for bit. */
     const bool reproducible;
     /** Whether the time loop computes internal forces in single precision where
-     *  it can. */
+     *  it can; the smoother of the static solver always does. */
     const bool single_precision;
     /** Of all cells, where results are reproducible [m]. */
     double longest_edge = 0.;

@@ -257,8 +257,8 @@ namespace Voussoir
       std::vector<double>                           time_of_largest; // [s]
     };
 
-    const Registry<Observer>::Add<Histories>
-      registered("histories",
-                 "Motion of named points over time, in histories.csv.");
+    const Registry<Observer>::Add<Histories> registered_histories(
+      "histories",
+      "Motion of named points over time, in histories.csv.");
   } // namespace
 } // namespace Voussoir

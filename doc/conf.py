@@ -57,7 +57,7 @@ def check_names(app, page, source):
             warn("%s is named, but there is no such file", name, location=page)
 
 
-def look_around(app, environment):
+def check_pages(app, environment):
     """The pages name each of the shipped cases, links of the README
     have a target, and messages that are explained are those of the program."""
     for target in re.findall(r"\]\(([^):#]+)[#)]", (ROOT / "README.md").read_text()):
@@ -122,4 +122,4 @@ def setup(app):
     app.add_html_math_renderer("mathml", (write_inline, None), (write_display, None))
     app.connect("source-read", check_generated)
     app.connect("source-read", check_names)
-    app.connect("env-updated", look_around)
+    app.connect("env-updated", check_pages)

@@ -25,7 +25,7 @@ KEPT = ROOT / "doc" / "studies"
 QUOTES = ROOT / "doc" / "figures.json"
 NUMBER = r"([-+]?\d+(?:\.\d+)?(?: \d{3})*)"
 ABOUT = 0.05
-LEFT_OUT = "names", "target spectrum", "mesh quality", "looks at the stress of cells"
+LEFT_OUT = "names", "target spectrum", "mesh quality", "stress samples"
 
 
 # ------------------------------------------------------------- kept summaries

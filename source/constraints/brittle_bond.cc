@@ -19,7 +19,7 @@ namespace Voussoir
       }
     };
 
-    const Registry<InterfaceLaw>::Add<BrittleBond> registered(
+    const Registry<InterfaceLaw>::Add<BrittleBond> registered_brittle_bond(
       "brittle bond",
       "Tensile strength and cohesion that are lost at the first opening or "
       "slip, then friction.");

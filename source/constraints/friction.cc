@@ -48,6 +48,6 @@ namespace Voussoir
     };
 
     const Registry<InterfaceLaw>::Add<Friction>
-      registered("friction", "Coulomb friction without bond.");
+      registered_friction("friction", "Coulomb friction without bond.");
   } // namespace
 } // namespace Voussoir

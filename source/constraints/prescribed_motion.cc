@@ -189,8 +189,9 @@ namespace Voussoir
     };
 
     const Registry<Projection>::Add<PrescribedMotion>
-      registered("prescribed motion",
-                 "Nodes of face sets follow a given displacement over time, in "
-                 "all components or some.");
+      registered_prescribed_motion(
+        "prescribed motion",
+        "Nodes of face sets follow a given displacement over time, in "
+        "all components or some.");
   } // namespace
 } // namespace Voussoir

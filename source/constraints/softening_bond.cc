@@ -56,7 +56,7 @@ namespace Voussoir
       double opening_energy = 200., slip_energy = 2000.;
     };
 
-    const Registry<InterfaceLaw>::Add<SofteningBond> registered(
+    const Registry<InterfaceLaw>::Add<SofteningBond> registered_softening_bond(
       "softening bond",
       "Tensile strength and cohesion that soften with opening and slip at "
       "given fracture energies, then friction.");

@@ -390,7 +390,7 @@ namespace Voussoir
              option_name(parameters.grid.partition),
              ", at most ",
              solid.discretization.largest_interface(),
-             " nodes of a rank owned by others");
+             " ghost nodes of a rank");
     const std::vector<double> costs = materials_of_grid(parameters, {}).costs;
     for (const unsigned int n_ranks : parameters.grid.counted_ranks)
       log.line("Partition into ",

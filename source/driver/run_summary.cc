@@ -49,7 +49,7 @@ namespace Voussoir
   {
     entry("model", part.model);
     entry("moduli hold at [Hz]", part.reference_frequency);
-    entry("moduli at rest over given", part.modulus_at_rest);
+    entry("relaxed modulus over the given one", part.modulus_at_rest);
   }
 
 

@@ -137,7 +137,7 @@ namespace Voussoir
       std::vector<double> mass;   // of each owned node [kg]
     };
 
-    const Registry<Load>::Add<Gravity> registered("gravity",
-                                                  "Weight of the material.");
+    const Registry<Load>::Add<Gravity>
+      registered_gravity("gravity", "Weight of the material.");
   } // namespace
 } // namespace Voussoir

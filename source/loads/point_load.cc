@@ -49,6 +49,6 @@ namespace Voussoir
     };
 
     const Registry<Load>::Add<PointLoad>
-      registered("point load", "A force at a point, over time.");
+      registered_point_load("point load", "A force at a point, over time.");
   } // namespace
 } // namespace Voussoir

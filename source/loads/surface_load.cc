@@ -58,6 +58,7 @@ namespace Voussoir
     };
 
     const Registry<Load>::Add<SurfaceLoad>
-      registered("surface load", "A traction or pressure on faces, over time.");
+      registered_surface_load("surface load",
+                              "A traction or pressure on faces, over time.");
   } // namespace
 } // namespace Voussoir

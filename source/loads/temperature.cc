@@ -205,9 +205,9 @@ namespace Voussoir
       std::vector<double>       changes; // of these [K]
     };
 
-    const Registry<Load>::Add<Temperature>
-      registered("temperature",
-                 "A change of temperature, over the elevation and through the "
-                 "dam.");
+    const Registry<Load>::Add<Temperature> registered_temperature(
+      "temperature",
+      "A change of temperature, over the elevation and through the "
+      "dam.");
   } // namespace
 } // namespace Voussoir

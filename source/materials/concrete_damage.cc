@@ -376,9 +376,10 @@ namespace Voussoir
       }
     };
 
-    const Registry<Material>::Add<MaterialOf<ConcreteDamage>> registered(
-      "concrete damage",
-      "Concrete with damage in tension and compression on the effective "
-      "stress; cracks close with their stiffness back.");
+    const Registry<Material>::Add<MaterialOf<ConcreteDamage>>
+      registered_concrete_damage(
+        "concrete damage",
+        "Concrete with damage in tension and compression on the effective "
+        "stress; cracks close with their stiffness back.");
   } // namespace
 } // namespace Voussoir

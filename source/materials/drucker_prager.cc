@@ -129,8 +129,9 @@ namespace Voussoir
       }
     };
 
-    const Registry<Material>::Add<MaterialOf<DruckerPrager>> registered(
-      "drucker-prager",
-      "Rock that yields on a cone without hardening, with tension cut-off.");
+    const Registry<Material>::Add<MaterialOf<DruckerPrager>>
+      registered_drucker_prager(
+        "drucker-prager",
+        "Rock that yields on a cone without hardening, with tension cut-off.");
   } // namespace
 } // namespace Voussoir

@@ -412,7 +412,7 @@ namespace Voussoir
       }
     };
 
-    const Registry<Material>::Add<MaterialOf<LeeFenves>> registered(
+    const Registry<Material>::Add<MaterialOf<LeeFenves>> registered_lee_fenves(
       "lee-fenves",
       "Concrete with plastic strain and damage in tension and compression "
       "after Lee and Fenves (1998), modified: a crack that closes gets the "

@@ -43,6 +43,6 @@ namespace Voussoir
     };
 
     const Registry<Material>::Add<MaterialOf<LinearElastic>>
-      registered("linear elastic", "Isotropic Hooke's law.");
+      registered_linear_elastic("linear elastic", "Isotropic Hooke's law.");
   } // namespace
 } // namespace Voussoir

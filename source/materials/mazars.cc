@@ -221,7 +221,7 @@ namespace Voussoir
       }
     };
 
-    const Registry<Material>::Add<MaterialOf<Mazars>> registered(
+    const Registry<Material>::Add<MaterialOf<Mazars>> registered_mazars(
       "mazars",
       "Concrete with one damage by Mazars, for monotonic loads: cracks that "
       "close do not get their stiffness back.");

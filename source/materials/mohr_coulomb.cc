@@ -201,9 +201,10 @@ namespace Voussoir
       }
     };
 
-    const Registry<Material>::Add<MaterialOf<MohrCoulomb>> registered(
-      "mohr-coulomb",
-      "Rock that yields on the planes of Mohr and Coulomb without hardening, "
-      "with tension cut-off.");
+    const Registry<Material>::Add<MaterialOf<MohrCoulomb>>
+      registered_mohr_coulomb(
+        "mohr-coulomb",
+        "Rock that yields on the planes of Mohr and Coulomb without hardening, "
+        "with tension cut-off.");
   } // namespace
 } // namespace Voussoir

@@ -211,7 +211,8 @@ namespace Voussoir
     };
 
     const Registry<Material>::Add<MaterialOf<OrthotropicElastic>>
-      registered("orthotropic elastic",
-                 "Hooke's law with three axes, for jointed or layered rock.");
+      registered_orthotropic_elastic(
+        "orthotropic elastic",
+        "Hooke's law with three axes, for jointed or layered rock.");
   } // namespace
 } // namespace Voussoir

@@ -121,7 +121,7 @@ namespace Voussoir
       }
     };
 
-    const Registry<Material>::Add<MaterialOf<RockDamage>> registered(
+    const Registry<Material>::Add<MaterialOf<RockDamage>> registered_rock_damage(
       "rock damage",
       "Rock that cracks in tension and loses its cohesion, not its friction, in "
       "shear.");

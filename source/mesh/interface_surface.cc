@@ -13,8 +13,6 @@ namespace Voussoir
 
   namespace
   {
-    constexpr unsigned int none = numbers::invalid_unsigned_int;
-
     // Number of each face on an interface, from either side.
     using FaceNumbers = std::map<std::pair<unsigned int, unsigned int>, int>;
 

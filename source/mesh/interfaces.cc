@@ -16,8 +16,6 @@ namespace Voussoir
 
   namespace
   {
-    constexpr unsigned int none = numbers::invalid_unsigned_int;
-
     // The interface of a face, given by cell and face, from either side.
     using SplitFaces =
       std::map<std::pair<unsigned int, unsigned int>, const InterfaceSurface *>;

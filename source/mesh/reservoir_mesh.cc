@@ -3,7 +3,6 @@
 #include <voussoir/mesh/mesh_geometry.h>
 #include <voussoir/mesh/reservoir_mesh.h>
 
-#include <deal.II/base/numbers.h>
 #include <deal.II/numerics/rtree.h>
 
 #include <optional>
@@ -16,9 +15,6 @@ namespace Voussoir
 
   namespace
   {
-    constexpr unsigned int none = numbers::invalid_unsigned_int;
-
-
     std::vector<bool>
     water_cells(const CoarseMesh               &mesh,
                 const std::vector<std::string> &cell_sets,

@@ -17,22 +17,22 @@ namespace Voussoir
 
     // Solid elements that are no trilinear hexahedra, by the beginning of their
     // type; other elements are ignored (beams, masses, ...).
-    const std::vector<std::pair<std::string, std::string>> refused_types = {
-      {"C3D4", "tetrahedra"},
-      {"C3D5", "pyramids"},
-      {"C3D6", "wedges"},
-      {"C3D10", "tetrahedra with 10 nodes"},
-      {"C3D15", "wedges with 15 nodes"},
-      {"C3D20", "hexahedra with 20 nodes"},
-      {"C3D27", "hexahedra with 27 nodes"},
-      {"C3D", "solid elements"},
-      {"AC3D", "acoustic elements"},
-      {"DC3D", "heat transfer elements"},
-      {"COH3D", "cohesive elements"},
-      {"CIN3D", "infinite elements"},
-      {"SC6", "continuum shells"},
-      {"SC8", "continuum shells"},
-      {"CSS8", "continuum shells"}};
+    const std::vector<std::pair<std::string, std::string>>
+      refused_abaqus_types = {{"C3D4", "tetrahedra"},
+                              {"C3D5", "pyramids"},
+                              {"C3D6", "wedges"},
+                              {"C3D10", "tetrahedra with 10 nodes"},
+                              {"C3D15", "wedges with 15 nodes"},
+                              {"C3D20", "hexahedra with 20 nodes"},
+                              {"C3D27", "hexahedra with 27 nodes"},
+                              {"C3D", "solid elements"},
+                              {"AC3D", "acoustic elements"},
+                              {"DC3D", "heat transfer elements"},
+                              {"COH3D", "cohesive elements"},
+                              {"CIN3D", "infinite elements"},
+                              {"SC6", "continuum shells"},
+                              {"SC8", "continuum shells"},
+                              {"CSS8", "continuum shells"}};
 
     const std::vector<std::string> quadrilateral_types =
       {"S4", "R3D4", "M3D4", "SFM3D4", "CPS4", "CPE4"};
@@ -256,7 +256,7 @@ namespace Voussoir
       void
       count_other_element(const std::string &type)
       {
-        for (const auto &[beginning, kind] : refused_types)
+        for (const auto &[beginning, kind] : refused_abaqus_types)
           if (begins_with(type, beginning))
             {
               ++mesh.refused[kind + " (" + type + ")"];

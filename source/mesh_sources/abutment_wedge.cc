@@ -12,8 +12,6 @@ namespace Voussoir
 
   namespace
   {
-    constexpr unsigned int none = numbers::invalid_unsigned_int;
-
     int
     row(const ArchDamCrossSection::Quad &quad)
     {

@@ -398,6 +398,6 @@ namespace Voussoir
     }
 
     const Registry<MeshGenerator>::Add<ArchDam>
-      registered("arch dam", "An arch dam in its canyon.");
+      registered_arch_dam("arch dam", "An arch dam in its canyon.");
   } // namespace
 } // namespace Voussoir

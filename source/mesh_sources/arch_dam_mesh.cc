@@ -1,7 +1,5 @@
 #include <voussoir/mesh_sources/arch_dam_mesh.h>
 
-#include <deal.II/base/numbers.h>
-
 #include <algorithm>
 #include <map>
 
@@ -11,9 +9,6 @@ namespace Voussoir
 
   namespace
   {
-    constexpr unsigned int none = numbers::invalid_unsigned_int;
-
-
     class ArchDamMesh
     {
     public:

@@ -15,7 +15,7 @@ namespace Voussoir
   {
     // Length over the dam's height in which the lines of the mesh turn from the
     // dam's normal into the river's direction.
-    constexpr double relative_turning_length = 0.35;
+    constexpr double relative_turning_length_of_sweep = 0.35;
 
 
     // Part of a cell by which the foot of a ledge moves in one step.
@@ -59,7 +59,7 @@ namespace Voussoir
                              const double               cell_size)
     : sections(sections)
     , n_thickness(n_thickness)
-    , turning_length(relative_turning_length * height)
+    , turning_length(relative_turning_length_of_sweep * height)
     , full_length(rock.extent * height)
     , points(graded_points(full_length + turning_length,
                            cell_size,

@@ -166,6 +166,6 @@ namespace Voussoir
     };
 
     const Registry<MeshGenerator>::Add<Box>
-      registered("box", "A box, or a column, optionally in layers.");
+      registered_box("box", "A box, or a column, optionally in layers.");
   } // namespace
 } // namespace Voussoir

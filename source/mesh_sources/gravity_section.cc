@@ -407,7 +407,7 @@ namespace Voussoir
       double                    water_length = 0.;
     };
 
-    const Registry<MeshGenerator>::Add<GravitySection> registered(
+    const Registry<MeshGenerator>::Add<GravitySection> registered_gravity_section(
       "gravity section",
       "A slice of a gravity dam (the default is Koyna's), optionally on rock.");
   } // namespace

@@ -6,10 +6,10 @@ namespace Voussoir
 {
   namespace
   {
-    const std::map<std::string_view, std::string> refused_types =
+    const std::map<std::string_view, std::string> refused_ucd_types =
       {{"tet", "tetrahedra"}, {"pyr", "pyramids"}, {"prism", "wedges"}};
 
-    const std::map<std::string_view, std::string> ignored_types =
+    const std::map<std::string_view, std::string> ignored_ucd_types =
       {{"pt", "points"}, {"line", "lines"}, {"tri", "triangles"}};
 
 
@@ -65,10 +65,10 @@ namespace Voussoir
           }
         else
           {
-            if (refused_types.count(type) > 0)
-              ++mesh.refused[refused_types.at(type)];
-            else if (ignored_types.count(type) > 0)
-              ++mesh.ignored[ignored_types.at(type)];
+            if (refused_ucd_types.count(type) > 0)
+              ++mesh.refused[refused_ucd_types.at(type)];
+            else if (ignored_ucd_types.count(type) > 0)
+              ++mesh.ignored[ignored_ucd_types.at(type)];
             else
               file.fail("unknown type of cell " + in_quotes(type) +
                         "; allowed are hex and quad (line, tri and pt are "

@@ -12,7 +12,7 @@ namespace Voussoir
 {
   namespace
   {
-    const std::map<int, std::string> refused_types = {
+    const std::map<int, std::string> refused_vtk_types = {
       {10, "tetrahedra"},
       {13, "wedges"},
       {14, "pyramids"},
@@ -24,7 +24,7 @@ namespace Voussoir
       {42, "polyhedra"},
       {72, "Lagrange hexahedra with many nodes"}};
 
-    const std::map<int, std::string> ignored_types = {
+    const std::map<int, std::string> ignored_vtk_types = {
       {1, "points"},
       {2, "groups of points"},
       {3, "lines"},
@@ -326,10 +326,10 @@ namespace Voussoir
                 mesh.quadrilaterals.push_back(
                   {static_cast<std::int64_t>(i), vertices_of<4>(i)});
               }
-            else if (ignored_types.count(type) > 0)
-              ++mesh.ignored[ignored_types.at(type)];
-            else if (refused_types.count(type) > 0)
-              ++mesh.refused[refused_types.at(type)];
+            else if (ignored_vtk_types.count(type) > 0)
+              ++mesh.ignored[ignored_vtk_types.at(type)];
+            else if (refused_vtk_types.count(type) > 0)
+              ++mesh.refused[refused_vtk_types.at(type)];
             else
               ++mesh.refused["cells of VTK's type " + std::to_string(type)];
           }

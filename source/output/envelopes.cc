@@ -42,8 +42,8 @@ namespace Voussoir
         prm.add_parameter(
           "Interval",
           interval,
-          "Duration of the mean acceleration, which leaves out frequencies "
-          "above 0.44 over it, and interval of the samples of the "
+          "Averaging interval of the mean acceleration, whose -3 dB frequency "
+          "is 0.44 divided by it, and sampling interval of the "
           "acceleration of a single step [s]. Displacement and velocity are "
           "sampled each twentieth of the shortest period that the mesh "
           "carries with eight nodes per wavelength, if that is shorter.",
@@ -116,12 +116,13 @@ namespace Voussoir
           return std::map<std::string, KeyedValues>{
             {"principal stress", values}};
         });
-        looked_at       = stress_interval > 0. ?
-                            stress_interval :
-                            std::max(run().resolving_interval(),
-                               steps_per_look * stress->share_of_cells() *
-                                 run().time_step);
-        stress_schedule = Schedule(looked_at, run().time_step);
+        sampling_interval =
+          stress_interval > 0. ?
+            stress_interval :
+            std::max(run().resolving_interval(),
+                     steps_per_sample * stress->share_of_cells() *
+                       run().time_step);
+        stress_schedule = Schedule(sampling_interval, run().time_step);
         if (stress_interval > 0.)
           run().warn_of_coarse_sampling(
             stress_interval,
@@ -154,9 +155,9 @@ namespace Voussoir
                            {&values[2], "time_of_largest_s"},
                            {&values[3], "time_of_smallest_s"}};
             summarise_stress(summary["envelopes"]);
-            summary["looks at the stress of cells"] = {
-              {"interval [s]", looked_at},
-              {"extremes hold to 1.2 % up to [Hz]", 0.05 / looked_at}};
+            summary["stress samples"] = {{"interval [s]", sampling_interval},
+                                         {"extremes hold to 1.2 % up to [Hz]",
+                                          0.05 / sampling_interval}};
           }
         write_fields(run(),
                      {{&largest,
@@ -265,7 +266,7 @@ namespace Voussoir
       }
 
       // a sample of all cells costs about a quarter of a step
-      static constexpr double steps_per_look = 12.;
+      static constexpr double steps_per_sample = 12.;
 
       bool        wants_stress = true;
       double      interval = 0.01, stress_interval = 0.;
@@ -275,12 +276,12 @@ namespace Voussoir
       Vector   largest, accelerations;
       Vector   previous,
         last_sample; // velocities of a step and of a sample before
-      unsigned long long              last_step = 0;  // of that sample
-      double                          looked_at = 0.; // interval of stress [s]
-      std::unique_ptr<StressEnvelope> stress;         // null: not wanted
+      unsigned long long last_step         = 0;  // of that sample
+      double             sampling_interval = 0.; // of the stress [s]
+      std::unique_ptr<StressEnvelope> stress;    // null: not wanted
     };
 
-    const Registry<Observer>::Add<Envelopes> registered(
+    const Registry<Observer>::Add<Envelopes> registered_envelopes(
       "envelopes",
       "Largest displacement, velocity and acceleration of each node and "
       "principal stresses of each cell over the run, in envelopes.vtu.");

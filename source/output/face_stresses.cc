@@ -10,7 +10,7 @@ namespace Voussoir
 
   namespace
   {
-    const std::string place =
+    const std::string stressed_sets =
       "\"Face sets\" in section \"Output/face stresses\"";
 
     /** Stresses on the faces of the dam, in the directions of its arches and
@@ -41,7 +41,7 @@ namespace Voussoir
       check(const ObservedModel &model) const override
       {
         pictures.check(model);
-        make_mesh(model).check_not_level(place);
+        make_mesh(model).check_not_level(stressed_sets);
       }
 
       void
@@ -155,7 +155,7 @@ namespace Voussoir
       {
         return FaceMesh(model.solid.discretization,
                         split_list(sets),
-                        place,
+                        stressed_sets,
                         "face_set",
                         model.names.face_sets);
       }
@@ -212,7 +212,7 @@ namespace Voussoir
       std::vector<double> envelopes;
     };
 
-    const Registry<Observer>::Add<FaceStresses> registered(
+    const Registry<Observer>::Add<FaceStresses> registered_face_stresses(
       "face stresses",
       "Arch, cantilever and principal stresses on the faces of the dam: "
       "pictures in face_stresses.pvd, extremes, their times and the start in "

@@ -203,7 +203,7 @@ namespace Voussoir
       const std::vector<NodalField> &fields;
       const std::vector<CellField>   cell_fields = {};
 
-      // state of the stress, and its displacement; or null
+      // principal stresses and the displacement they are of; null: not written
       std::unique_ptr<const PrincipalStresses> stress   = nullptr;
       Vector                                   filtered = {};
     };

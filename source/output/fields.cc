@@ -133,7 +133,7 @@ namespace Voussoir
       dealii::Vector<float> scaled_jacobian, aspect_ratio;
     };
 
-    const Registry<Observer>::Add<Fields> registered(
+    const Registry<Observer>::Add<Fields> registered_fields(
       "fields",
       "The whole model at chosen times, in fields.pvd for ParaView.");
   } // namespace

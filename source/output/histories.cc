@@ -9,20 +9,20 @@ namespace Voussoir
 
   namespace
   {
-    struct Quantity
+    struct PointQuantity
     {
       std::string name, unit;
     };
     // those of PointMotion, then displacements from later states
-    constexpr unsigned int                   n_quantities = 6, n_recorded = 4;
-    const std::array<Quantity, n_quantities> all_quantities{
+    constexpr unsigned int n_point_quantities = 6, n_recorded = 4;
+    const std::array<PointQuantity, n_point_quantities> all_quantities{
       {{"displacement", "m"},
        {"velocity", "m/s"},
        {"acceleration", "m/s2"},
        {"filtered acceleration", "m/s2"},
        {since_static_state, "m"},
        {since_grouting, "m"}}};
-    using Motion = std::array<Tensor<1, 3>, n_quantities>;
+    using Motion = std::array<Tensor<1, 3>, n_point_quantities>;
 
 
     /** Displacement, velocity and acceleration of named points, as columns of
@@ -98,7 +98,7 @@ namespace Voussoir
         recorder.prepare(run(), 0., 0.443 / filtered_at);
         keep("largest",
              largest,
-             std::vector<std::array<double, n_quantities>>(
+             std::vector<std::array<double, n_point_quantities>>(
                recorder.points().size()));
         keep("time of the largest displacement",
              time_of_largest,
@@ -107,7 +107,7 @@ namespace Voussoir
           "window",
           [this] { return recorder.save(); },
           [this](const nlohmann::json &saved) { recorder.load(saved); });
-        for (unsigned int k = n_recorded; k < n_quantities; ++k)
+        for (unsigned int k = n_recorded; k < n_point_quantities; ++k)
           {
             origins[k].assign(recorder.points().size(), {});
             if (const Vector *origin =
@@ -117,7 +117,7 @@ namespace Voussoir
         std::vector<std::string> columns;
         for (unsigned int p = 0; p < recorder.points().size(); ++p)
           for (unsigned int d = 0; d < 3; ++d)
-            for (unsigned int k = 0; k < n_quantities; ++k)
+            for (unsigned int k = 0; k < n_point_quantities; ++k)
               if (wanted(k))
                 columns.push_back(
                   recorder.points()[p].name + ' ' + all_quantities[k].name +
@@ -145,7 +145,7 @@ namespace Voussoir
               largest[p][2];
             point["largest filtered acceleration [m/s2]"] = largest[p][3];
             point["filtered at [Hz]"]                     = filtered_at;
-            for (unsigned int k = n_recorded; k < n_quantities; ++k)
+            for (unsigned int k = n_recorded; k < n_point_quantities; ++k)
               if (wanted(k))
                 point["largest " + all_quantities[k].name + " [m]"] =
                   largest[p][k];
@@ -185,7 +185,7 @@ namespace Voussoir
         const PointMotion &recorded = line.points[point];
         Motion             motion;
         std::copy(recorded.begin(), recorded.end(), motion.begin());
-        for (unsigned int k = n_recorded; k < n_quantities; ++k)
+        for (unsigned int k = n_recorded; k < n_point_quantities; ++k)
           motion[k] = motion[0] - origins[k][point];
         return motion;
       }
@@ -206,7 +206,7 @@ namespace Voussoir
         for (unsigned int p = 0; p < line.points.size(); ++p)
           {
             Motion motion = motion_of(line, p);
-            for (unsigned int k = 0; k < n_quantities; ++k)
+            for (unsigned int k = 0; k < n_point_quantities; ++k)
               {
                 if (is_relative(p))
                   motion[k] -= motion_of(line, reference)[k];
@@ -219,7 +219,7 @@ namespace Voussoir
                   }
               }
             for (unsigned int d = 0; d < 3; ++d)
-              for (unsigned int k = 0; k < n_quantities; ++k)
+              for (unsigned int k = 0; k < n_point_quantities; ++k)
                 if (wanted(k))
                   values.push_back(motion[k][d]);
           }
@@ -250,15 +250,15 @@ namespace Voussoir
       double filtered_at = 0.; // [Hz]
 
       // of each quantity and point: the displacement it counts from [m]
-      std::array<std::vector<Tensor<1, 3>>, n_quantities> origins;
+      std::array<std::vector<Tensor<1, 3>>, n_point_quantities> origins;
 
       // of each point: amounts of its motion
-      std::vector<std::array<double, n_quantities>> largest;
-      std::vector<double>                           time_of_largest; // [s]
+      std::vector<std::array<double, n_point_quantities>> largest;
+      std::vector<double> time_of_largest; // [s]
     };
 
-    const Registry<Observer>::Add<Histories>
-      registered("histories",
-                 "Motion of named points over time, in histories.csv.");
+    const Registry<Observer>::Add<Histories> registered_histories(
+      "histories",
+      "Motion of named points over time, in histories.csv.");
   } // namespace
 } // namespace Voussoir

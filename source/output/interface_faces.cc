@@ -10,10 +10,10 @@ namespace Voussoir
   namespace
   {
     constexpr unsigned int n_envelopes = 4;
-    using Envelopes                    = std::array<double, n_envelopes>;
+    using PointEnvelopes               = std::array<double, n_envelopes>;
 
 
-    Envelopes
+    PointEnvelopes
     envelopes_of(const ContactPoint &point, const InterfaceExtremes &extremes)
     {
       double state = 0.; // a place in ResultNames::interface_states()
@@ -90,8 +90,8 @@ namespace Voussoir
     // from the ranks of the points to the owners of the nodes
     struct Record
     {
-      unsigned int surface;
-      Envelopes    values;
+      unsigned int   surface;
+      PointEnvelopes values;
     };
     std::vector<std::pair<types::global_dof_index, Record>> records;
     for (unsigned int k = 0; k < contact.points().size(); ++k)

@@ -14,8 +14,9 @@ namespace Voussoir
   {
     using namespace InterfaceSum;
 
-    const std::string place = "\"Points\" in section \"Output/interfaces\"",
-                      blocks_place =
+    const std::string points_entry =
+                        "\"Points\" in section \"Output/interfaces\"",
+                      blocks_entry =
                         "\"Blocks\" in section \"Output/interfaces\"";
 
     /** Opening, slip, forces and safety of all interfaces. */
@@ -66,9 +67,9 @@ namespace Voussoir
             "\"Observers\" in section \"Output\" names \"interfaces\", but the "
             "case has none; list some in section \"Interfaces\", or remove "
             "the observer.");
-        parse_points(points_text, place);
+        parse_points(points_text, points_entry);
         find_sliding_blocks(blocks_text,
-                            blocks_place,
+                            blocks_entry,
                             model.solid,
                             *model.interfaces);
       }
@@ -113,10 +114,10 @@ namespace Voussoir
       prepare() override
       {
         points = find_contact_points(contact(),
-                                     parse_points(points_text, place),
+                                     parse_points(points_text, points_entry),
                                      communicator());
         blocks = find_sliding_blocks(blocks_text,
-                                     blocks_place,
+                                     blocks_entry,
                                      run().solid,
                                      contact());
 
@@ -469,7 +470,7 @@ namespace Voussoir
       double                           window = 0.; // [s]
     };
 
-    const Registry<Observer>::Add<Interfaces> registered(
+    const Registry<Observer>::Add<Interfaces> registered_interfaces(
       "interfaces",
       "Opening, slip, forces and sliding safety of the interfaces, in "
       "interfaces.csv; extremes on their faces in interface_envelopes.vtu, "

@@ -15,8 +15,9 @@ namespace Voussoir
 
   namespace
   {
-    const std::string section = "section \"Output/over-stress\"";
-    const std::string place   = "\"Face sets\" in " + section;
+    const std::string over_stress_section = "section \"Output/over-stress\"";
+    const std::string over_stressed_sets =
+      "\"Face sets\" in " + over_stress_section;
 
 
     enum class ComparedStress
@@ -73,15 +74,15 @@ namespace Voussoir
       {
         const FaceMesh faces = make_mesh(model);
         if (compared != ComparedStress::principal)
-          faces.check_not_level(place);
+          faces.check_not_level(over_stressed_sets);
         const auto face_sets = split_list(sets);
         if (strengths.size() != 1 && strengths.size() != face_sets.size())
-          throw UserError("\"Tensile strength\" in " + section + " has " +
-                          std::to_string(strengths.size()) + " values for " +
-                          std::to_string(face_sets.size()) +
+          throw UserError("\"Tensile strength\" in " + over_stress_section +
+                          " has " + std::to_string(strengths.size()) +
+                          " values for " + std::to_string(face_sets.size()) +
                           " face sets; give one for all or one for each.");
         strengths_of_nodes(model, faces);
-        limits.check(section);
+        limits.check(over_stress_section);
         check_elastic(model, face_sets);
       }
 
@@ -178,7 +179,7 @@ namespace Voussoir
       {
         return FaceMesh(model.solid.discretization,
                         split_list(sets),
-                        place,
+                        over_stressed_sets,
                         "face_set",
                         model.names.face_sets);
       }
@@ -201,8 +202,8 @@ namespace Voussoir
             const auto &known = model.names.materials;
             if (!value ||
                 std::find(known.begin(), known.end(), name) == known.end())
-              throw UserError("\"Strengths of materials\" in " + section +
-                              " has \"" + item +
+              throw UserError("\"Strengths of materials\" in " +
+                              over_stress_section + " has \"" + item +
                               "\"; write \"MATERIAL: STRENGTH\" with a "
                               "material of the case.");
             of_material[name] = *value;
@@ -227,7 +228,7 @@ namespace Voussoir
             return value <= 0.;
           });
         if (Utilities::MPI::logical_or(any_missing, faces.communicator()))
-          throw UserError("\"Tensile strength\" in " + section +
+          throw UserError("\"Tensile strength\" in " + over_stress_section +
                           " is 0; give the static tensile strength of the "
                           "concrete in Pa, there or with its material.");
         return strength;
@@ -250,8 +251,8 @@ namespace Voussoir
           Utilities::MPI::max(cracking, model.solid.grid().communicator());
         if (cracking >= 0)
           throw UserError(
-            "The faces of " + section + " have cells of the material \"" +
-            model.names.materials[cracking] +
+            "The faces of " + over_stress_section +
+            " have cells of the material \"" + model.names.materials[cracking] +
             "\", whose stress is limited by its strength, but over-stress is "
             "that of a linear analysis; choose a linear elastic law, or "
             "remove the observer \"over-stress\".");
@@ -474,7 +475,7 @@ namespace Voussoir
       std::vector<double>                waiting_areas, waiting_times;
     };
 
-    const Registry<Observer>::Add<OverStress> registered(
+    const Registry<Observer>::Add<OverStress> registered_over_stress(
       "over-stress",
       "How far, how long and on what area the tension on the faces of a dam "
       "exceeds its strength, in over_stress.csv and over_stress.vtu, and "

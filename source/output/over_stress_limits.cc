@@ -25,22 +25,22 @@ namespace Voussoir
       longest_time,
       "Accumulated time above the ratio 1 that is allowed in a linear "
       "analysis [s]. It falls linearly to zero at the \"Largest ratio\". "
-      "The limits are those ascribed to USACE EM 1110-2-6053 for arch "
-      "dams, gravity dams have 0.3 s; compare them with the code that "
-      "applies." +
+      "The default is of no code that was read: the limit is the user's." +
         usually(Usual::accumulated_time),
       Patterns::Double(0.));
     prm.add_parameter(
       "Largest ratio",
       largest_ratio,
-      "Demand-capacity ratio that is allowed in a linear analysis [-]." +
+      "Demand-capacity ratio that is allowed in a linear analysis [-]. The "
+      "default is of no code that was read: the limit is the user's." +
         usually(Usual::demand_capacity_ratio),
       Patterns::Double(1.));
     prm.add_parameter(
       "Largest share",
       largest_share,
       "Share of a face above the ratio 1 at any time that is allowed in a "
-      "linear analysis [%]; gravity dams have 15 % of the section.",
+      "linear analysis [%]. The default is of no code that was read: the "
+      "limit is the user's.",
       Patterns::Double(0., 100.));
   }
 

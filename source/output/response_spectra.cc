@@ -10,7 +10,7 @@ namespace Voussoir
 
   namespace
   {
-    const std::string section = "Output/response spectra";
+    const std::string spectra_section = "Output/response spectra";
 
 
     /** Response spectra of the absolute acceleration of chosen points. */
@@ -57,7 +57,7 @@ namespace Voussoir
       void
       check(const ObservedModel &model) const override
       {
-        const std::string place = "in section \"" + section + "\" ";
+        const std::string place = "in section \"" + spectra_section + "\" ";
         if (longest <= shortest)
           throw UserError("\"Longest period\" " + place +
                           "must be longer than the \"Shortest period\".");
@@ -174,16 +174,16 @@ namespace Voussoir
       unsigned int n_periods = 100;
       double       interval  = 0.005;
 
-      PointRecorder recorder{section, "Reference"};
+      PointRecorder recorder{spectra_section, "Reference"};
 
       std::vector<unsigned int>        directions;
       double                           sample_step = 0.; // [s]
       std::vector<std::vector<double>> accelerations;    // by point, direction
     };
 
-    const Registry<Observer>::Add<ResponseSpectra>
-      registered("response spectra",
-                 "Pseudo-acceleration response spectra of chosen points, in "
-                 "response_spectra.csv, and their amplification.");
+    const Registry<Observer>::Add<ResponseSpectra> registered_response_spectra(
+      "response spectra",
+      "Pseudo-acceleration response spectra of chosen points, in "
+      "response_spectra.csv, and their amplification.");
   } // namespace
 } // namespace Voussoir

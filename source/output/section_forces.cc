@@ -8,15 +8,15 @@ namespace Voussoir
 
   namespace
   {
-    const std::string place =
+    const std::string sections_entry =
       "\"Sections\" in section \"Output/section forces\"";
 
-    struct Quantity
+    struct SectionQuantity
     {
       const char *name, *unit;
     };
-    constexpr unsigned int                   n_quantities = 7;
-    const std::array<Quantity, n_quantities> quantities{
+    constexpr unsigned int n_section_quantities = 7;
+    const std::array<SectionQuantity, n_section_quantities> quantities{
       {{"arch thrust", "MN/m"},
        {"arch moment", "MNm/m"},
        {"arch shear", "MN/m"},
@@ -77,7 +77,7 @@ namespace Voussoir
         std::vector<Sum> shares;
         for (const SectionLine &line : lines)
           {
-            std::vector<Sum> sums = no_sums(n_quantities);
+            std::vector<Sum> sums = no_sums(n_section_quantities);
             for (const auto &point : line.points)
               {
                 const double       factor  = 1e-6 * point.weight;
@@ -110,7 +110,7 @@ namespace Voussoir
         stress_points = std::make_unique<StressPoints>(run(), places);
         std::vector<std::string> columns;
         for (const SectionLine &line : lines)
-          for (const Quantity &quantity : quantities)
+          for (const SectionQuantity &quantity : quantities)
             columns.push_back(line.name + ' ' + quantity.name + " [" +
                               quantity.unit + ']');
         keep(extremes, columns.size());
@@ -135,11 +135,11 @@ namespace Voussoir
                                              lines[i].upstream[1],
                                              lines[i].upstream[2]};
             section["thickness [m]"]      = lines[i].thickness;
-            for (unsigned int k = 0; k < n_quantities; ++k)
+            for (unsigned int k = 0; k < n_section_quantities; ++k)
               {
                 const std::string name = std::string(quantities[k].name) +
                                          " [" + quantities[k].unit + ']';
-                const unsigned int column   = n_quantities * i + k;
+                const unsigned int column   = n_section_quantities * i + k;
                 section["largest " + name]  = extremes.largest[column];
                 section["smallest " + name] = extremes.smallest[column];
               }
@@ -149,7 +149,7 @@ namespace Voussoir
       std::vector<SectionLine>
       make_lines(const ObservedModel &model) const
       {
-        const auto  requests = parse_sections(sections_text, place);
+        const auto  requests = parse_sections(sections_text, sections_entry);
         const Grid &grid     = model.solid.grid();
         const std::array<std::vector<FaceCorners>, 2> faces{
           {gather_faces(grid,
@@ -164,7 +164,7 @@ namespace Voussoir
           result.emplace_back(model.solid.discretization,
                               request,
                               faces,
-                              place);
+                              sections_entry);
         return result;
       }
 
@@ -177,7 +177,7 @@ namespace Voussoir
       Extremes                      extremes;
     };
 
-    const Registry<Observer>::Add<SectionForces> registered(
+    const Registry<Observer>::Add<SectionForces> registered_section_forces(
       "section forces",
       "Forces and moments of arches and cantilevers in chosen sections, in "
       "section_forces.csv.");

@@ -11,7 +11,7 @@ namespace Voussoir
 
   namespace
   {
-    const std::string place =
+    const std::string supports_entry =
       "\"Face sets\" in section \"Output/support forces\"";
 
     /**
@@ -169,14 +169,14 @@ namespace Voussoir
         std::vector<std::pair<std::string, std::vector<unsigned int>>> result;
         const auto sets = split_list(face_sets);
         if (sets.empty())
-          throw UserError(place + " is empty; name a face set.");
+          throw UserError(supports_entry + " is empty; name a face set.");
         for (const std::string &set : sets)
           {
             bool                      is_free = false, meets_interface = false;
             std::vector<unsigned int> nodes;
-            for (const unsigned int node :
-                 owned_carriers(discretization,
-                                nodes_of_faces(discretization, {set}, place)))
+            for (const unsigned int node : owned_carriers(
+                   discretization,
+                   nodes_of_faces(discretization, {set}, supports_entry)))
               {
                 is_free = is_free || !(prescribed.count(node) > 0 ||
                                        is_fixed(discretization, node, 0) ||
@@ -189,12 +189,12 @@ namespace Voussoir
               }
             if (Utilities::MPI::logical_or(is_free, communicator))
               throw UserError(
-                place + " names \"" + set +
+                supports_entry + " names \"" + set +
                 "\", on which neither a support of section "
                 "\"Boundaries\" nor a prescribed motion constrains all nodes; "
                 "name faces that are fixed.");
             if (Utilities::MPI::logical_or(meets_interface, communicator))
-              throw UserError(place + " names \"" + set +
+              throw UserError(supports_entry + " names \"" + set +
                               "\", whose nodes an interface touches, the "
                               "forces of which cannot be told apart there; "
                               "name faces away from interfaces.");
@@ -242,9 +242,9 @@ namespace Voussoir
       Extremes             extremes;
     };
 
-    const Registry<Observer>::Add<SupportForces>
-      registered("support forces",
-                 "Forces of supports and prescribed motions over time, in "
-                 "support_forces.csv.");
+    const Registry<Observer>::Add<SupportForces> registered_support_forces(
+      "support forces",
+      "Forces of supports and prescribed motions over time, in "
+      "support_forces.csv.");
   } // namespace
 } // namespace Voussoir

@@ -12,7 +12,7 @@ namespace Voussoir
 
   namespace
   {
-    const std::string section = "section \"Output/through cracks\"";
+    const std::string cracks_section = "section \"Output/through cracks\"";
 
 
     /** Shares of the integration points of a cell in the mean of each eighth:
@@ -72,15 +72,15 @@ namespace Voussoir
       void
       check(const ObservedModel &model) const override
       {
-        check_sets(model, "\"From\" in " + section, from);
-        check_sets(model, "\"To\" in " + section, to);
+        check_sets(model, "\"From\" in " + cracks_section, from);
+        check_sets(model, "\"To\" in " + cracks_section, to);
         if (std::none_of(model.solid.materials.begin(),
                          model.solid.materials.end(),
                          [](const Material *material) {
                            return tells_of_cracks(*material);
                          }))
           throw UserError(
-            "No material of the case cracks, but " + section +
+            "No material of the case cracks, but " + cracks_section +
             " looks for cracks; remove the observer \"through cracks\", or "
             "give a material a law that cracks.");
       }
@@ -257,7 +257,7 @@ namespace Voussoir
       std::array<double, 5> most{};
     };
 
-    const Registry<Observer>::Add<ThroughCracks> registered(
+    const Registry<Observer>::Add<ThroughCracks> registered_through_cracks(
       "through cracks",
       "Cracks that go through the dam: how wide they are open at one moment "
       "all the way from one face to the other, in through_cracks.csv.");

@@ -65,7 +65,7 @@ namespace Voussoir
       PictureSeries pictures{"water_pressure", "Output/water pressure"};
     };
 
-    const Registry<Observer>::Add<WaterPressure> registered(
+    const Registry<Observer>::Add<WaterPressure> registered_water_pressure(
       "water pressure",
       "Hydrodynamic pressure in compressible water, in water_pressure.pvd.");
   } // namespace

@@ -28,7 +28,7 @@ namespace Voussoir
   namespace
   {
     constexpr double       period_ratio = 1.05; // between fitted periods
-    constexpr unsigned int n_iterations = 15;
+    constexpr unsigned int n_matching_iterations = 15;
 
     // Share of the sum of squares that keeps amplitudes small where
     // neighbouring periods compete.
@@ -192,7 +192,7 @@ namespace Voussoir
       TimeSeries  motion = fit.acceleration;
       SpectrumFit best   = fit;
       double      least  = std::numeric_limits<double>::max();
-      for (unsigned int i = 0; i < n_iterations; ++i)
+      for (unsigned int i = 0; i < n_matching_iterations; ++i)
         {
           add_wavelets(motion, periods, target, damping_ratio);
           motion.values = BaselineCorrection().apply(motion).acceleration;

@@ -51,7 +51,7 @@ namespace Voussoir
           Tensor<1, 3> rest       = contact_sums(*simulation, 0).force;
           rest[0] += mass * gravity * std::sin(angle);
           rest[2] -= mass * gravity * std::cos(angle);
-          verdicts.below("tan(theta) = 0.99 f stays: force over weight",
+          verdicts.below("tan(theta) = 0.99 f sticks: force over weight",
                          rest.norm() / (mass * gravity),
                          1e-10);
         }

@@ -270,6 +270,6 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<IrreversibleStrain>
-      irreversible("irreversible strain", "Strain that stays on unloading.");
+      irreversible("irreversible strain", "Residual strain on unloading.");
   } // namespace
 } // namespace Voussoir

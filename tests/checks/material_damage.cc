@@ -181,7 +181,7 @@ namespace Voussoir
                       1e-6,
                       "GPa");
         advance(cycle, {{{true, 4e-4}, {}, {}}}, 2000);
-        verdicts.near("stress when it opens as far again",
+        verdicts.near("stress on reopening to the same strain",
                       1e-6 * cycle.stress[0][0],
                       1e-6 * opened,
                       1e-6,

@@ -95,7 +95,7 @@ namespace Voussoir
                       "GPa");
         advance(test, uniaxial(0.), 10);
         advance(test, uniaxial(4. * limit), 400);
-        verdicts.near("stress when it opens as far again",
+        verdicts.near("stress on reopening to the same strain",
                       1e-6 * test.stress[0][0],
                       1e-6 * opened,
                       1e-6,

@@ -14,9 +14,10 @@ namespace Voussoir
   namespace
   {
     /**
-     * A run that continues to a later end time is the one that had it from the
-     * beginning, bit for bit, also where the wave that enters is computed from
-     * a record at the free surface; one whose record has changed is refused.
+     * A run that is continued to a later end time has the results of one with
+     * that end time from the beginning, bit for bit, also where the incident
+     * wave is computed from a record at the free surface; a restart with a
+     * changed record is refused.
      */
     class RestartLonger : public Check
     {

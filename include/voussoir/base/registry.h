@@ -18,7 +18,7 @@ namespace Voussoir
    * The named classes of one kind (materials, loads, projections, observers).
    * A class joins with one line in its own source file,
    *
-   *   const Registry<Material>::Add<LinearElastic> registered(
+   *   const Registry<Material>::Add<LinearElastic> registered_linear_elastic(
    *     "linear elastic", "Isotropic Hooke's law.");
    *
    * and from that line follow the allowed values in the parameter file, the

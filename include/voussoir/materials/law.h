@@ -18,7 +18,7 @@ namespace Voussoir
    * without mesh, clock and ranks, in one file of its own with the line
    *
    *   const Registry<Material>::Add<MaterialOf<Law>>
-   *     registered("name", "One sentence.");
+   *     registered_name("name", "One sentence.");
    *
    * and doc/new_material.md makes one step by step. Its functions are templates
    * in the type of numbers: `double` for one point by itself, `Lanes` for a

@@ -1,6 +1,7 @@
 #ifndef voussoir_mesh_coarse_mesh_h
 #define voussoir_mesh_coarse_mesh_h
 
+#include <deal.II/base/numbers.h>
 #include <deal.II/base/point.h>
 
 #include <array>
@@ -11,6 +12,9 @@
 
 namespace Voussoir
 {
+  /** Where there is no vertex, edge or cell. */
+  constexpr unsigned int none = dealii::numbers::invalid_unsigned_int;
+
   /**
    * A hexahedral mesh with named sets, as generators make it and readers read
    * it, before it becomes a distributed triangulation. Lengths in metres, z up.

@@ -29,9 +29,9 @@ namespace Voussoir
 
 
   /**
-   * Limits up to which a linear analysis suffices (Ghanaat, "Failure modes
-   * approach to safety evaluation of dams", 13th World Conference on Earthquake
-   * Engineering, 2004; USACE EM 1110-2-6053, 2007).
+   * Limits up to which a linear analysis suffices: ratio, area and accumulated
+   * time, the quantities of Ghanaat (2004). The defaults are of no code that
+   * was read.
    */
   struct OverStressLimits
   {

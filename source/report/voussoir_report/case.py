@@ -167,9 +167,9 @@ def damping_in_words(run):
         return "No damping."
     moduli = run.summary.get("damping", {})
     words = f"Damping: {model}, {100. * run.number('Damping/Ratio'):g} % of critical"
-    if "moduli hold at [Hz]" in moduli and "moduli at rest over given" in moduli:
+    if "moduli hold at [Hz]" in moduli and "relaxed modulus over the given one" in moduli:
         words += (f"; moduli hold at {number(moduli['moduli hold at [Hz]'])} Hz; the relaxed ones are "
-                  f"{number(moduli['moduli at rest over given'])} times these")
+                  f"{number(moduli['relaxed modulus over the given one'])} times these")
     return words + "."
 
 

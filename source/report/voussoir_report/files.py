@@ -115,7 +115,7 @@ TEXT, NUMBER, NUMBER_OR_NONE = "a text", "a number", "a number or null"
 
 
 def as_kind(value, kind, refuse_at, place=""):
-    """A value of JSON, in which numbers that are none (null) become NaN; calls
+    """A value of JSON, in which null for a number becomes NaN; calls
     refuse_at(place, what it should be) for another kind."""
     if isinstance(kind, Group):
         if not isinstance(value, dict):

@@ -9,7 +9,7 @@ import numpy as np
 
 from .files import NUMBER, NUMBER_OR_NONE, TEXT, Group, ReportError, Table, is_number, read_bytes, read_json, refuse
 
-# what sections take from summary.json; numbers that are none are null there
+# what sections take from summary.json; values that are not finite are null there
 SUMMARY = Group(
     {"verdict": TEXT},
     {"version": TEXT, "warnings": [TEXT], "files not written": Group(), "end time [s]": NUMBER,
@@ -19,7 +19,7 @@ SUMMARY = Group(
      "static state": Group(optional={"seconds": NUMBER, "stages": [Group(
          optional={"sum of loads so far [N]": [NUMBER], "sum of reactions [N]": [NUMBER],
                    "largest displacement [m]": NUMBER, "names": [TEXT]})]}),
-     "damping": Group(optional={"moduli hold at [Hz]": NUMBER, "moduli at rest over given": NUMBER}),
+     "damping": Group(optional={"moduli hold at [Hz]": NUMBER, "relaxed modulus over the given one": NUMBER}),
      "through cracks": Group(optional=dict.fromkeys(
          ("largest opening from face to face at one moment [mm]", "at the time [s]",
           "opening from face to face at the end [mm]"), NUMBER)),
@@ -161,7 +161,7 @@ class Run:
 
     @property
     def own_entries(self):
-        """What is not the default and in use, as --set takes it."""
+        """Entries in use whose values are not the defaults, as arguments of --set."""
         return [f"{path} = {self.parameters[path]}" for path in self.changed
                 if path != "Output/Folder" and self.is_used(path)]
 

@@ -259,6 +259,14 @@ def check_openings(scratch):
             == ("0.834 mm", "no limit in the case", "to be judged", "wedge back"))
 
 
+def limited(folder):
+    """The study there, with a limit."""
+    found = study.Study(folder)
+    found.limits = [{"of": "Ground motion/Overload factor", "values": {}, "not met at": 1.625, "met at": 1.6875,
+                     "criterion": "interfaces/blocks/* wedge/slip [mm] > 100; stopped"}]
+    return found
+
+
 def check_study(scratch):
     """The acceptance table of each run stands before the numbers of the study."""
     folder = scratch / "study"
@@ -274,6 +282,9 @@ def check_study(scratch):
     table = next(part for part in study.study_section([], [study.Study(folder)]).parts if isinstance(part, page.Table))
     is_true("acceptance of the runs of a study", table.head == ["Overload factor", "crest, MCE"]
             and table.rows == [["1", "met: 0.100"], ["2", "not met: 0.200"]])
+    is_true("a limit in all its digits, its criterion in the words of the tables", study.study_section(
+        [], [limited(folder)]).parts[2] == "The limit of Overload factor lies between 1.625 and 1.6875 "
+            "(criterion: * wedge: slip [mm] > 100; stopped).")
     is_true("in their colours", [row[1].colour for row in table.rows] == ["good", "bad"])
     text = make_page(folder, scratch / "study.html")
     is_true("before the conclusions of its runs", "<h2>Study" in text.split("<h2>Conclusions")[0])

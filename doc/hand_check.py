@@ -77,7 +77,10 @@ class Arch:
             beam = strains.T @ np.array([[a, 0, 0], [0, 4 * b, 2 * b], [0, 2 * b, 4 * b]]) @ strains
             stiffness[3 * i:3 * i + 6, 3 * i:3 * i + 6] += beam
             beams.append(beam)
-        springs = {node: np.array(2 * [rock_springs(self.t[node])[0]] + [rock_springs(self.t[node])[1]]) for node in (0, n - 1)}
+        springs = {}
+        for node in (0, n - 1):
+            translation, rotation = rock_springs(self.t[node])
+            springs[node] = np.array([translation, translation, rotation])
         for node, spring in springs.items():
             stiffness[3 * node:3 * node + 3, 3 * node:3 * node + 3] += np.diag(spring)
         arc = np.cumsum(h)
@@ -98,33 +101,34 @@ class Arch:
 
 
 def dam(modulus, twist, n=30):
-    """With or without the energy of twist and of shear between arches: elevations; matrices of stiffness and mass, without and with Westergaard's added
-    mass, the load of the water, and those of a unit acceleration along the river, for
-    values and slopes of the displacement at the crown at these elevations."""
+    """Of the dam with or without the energy of twist and of shear between arches:
+    elevations; matrices of stiffness and of mass, without and with Westergaard's added
+    mass, and the load of the water, for values and slopes of the displacement of the
+    crown at these elevations."""
     z, step = np.linspace(0., HEIGHT, n + 1, retstep=True)
     stiffness, empty, full = (np.zeros((2 * n + 2, 2 * n + 2)) for _ in range(3))
-    water, river, river_full = (np.zeros(2 * n + 2) for _ in range(3))
+    water = np.zeros(2 * n + 2)
+    shapes = np.array([[1., 0., -3., 2.], [0., step, -2. * step, step], [0., 0., 3., -2.], [0., 0., -step, step]])
     points, weights = np.polynomial.legendre.leggauss(4)
     for cell in range(n):
         own = slice(2 * cell, 2 * cell + 4)
         for r, weight in zip((points + 1.) / 2., weights * step / 2.):
+            shape, sloped, curved = (shapes @ powers for powers in (
+                [1., r, r**2, r**3], np.array([0., 1., 2. * r, 3. * r**2]) / step, np.array([0., 0., 2., 6. * r]) / step**2))
             at = z[cell] + r * step
-            shape = np.array([1 - 3 * r**2 + 2 * r**3, step * (r - 2 * r**2 + r**3), 3 * r**2 - 2 * r**3, step * (r**3 - r**2)])
-            curved = np.array([12 * r - 6, step * (6 * r - 4), 6 - 12 * r, step * (6 * r - 2)]) / step**2
-            sloped = np.array([6 * r**2 - 6 * r, step * (1 - 4 * r + 3 * r**2), 6 * r - 6 * r**2, step * (3 * r**2 - 2 * r)]) / step
             one, depth, both = Arch(at, modulus), max(0., LEVEL - at), weight * np.outer(shape, shape)
             bending = modulus / 12. / (1. - NU**2) * np.sum(one.t**3 * one.across**2 * one.share)
-            mass, added = CONCRETE * one.t * one.share, 7. / 8. * WATER * np.sqrt(LEVEL * depth) * one.share
             stiffness[own, own] += one.stiffness * both + weight * bending * np.outer(curved, curved)
             if twist:
-                shear = modulus / 2. / (1. + NU) * np.sum((one.t**3 / 3. * one.slope**2 + one.t * one.along**2) * one.share)
+                sheared = one.t**3 / 3. * one.slope**2 + one.t * one.along**2
+                shear = modulus / 2. / (1. + NU) * np.sum(sheared * one.share)
                 stiffness[own, own] += weight * shear * np.outer(sloped, sloped)
-            empty[own, own] += np.sum(mass * one.u**2) * both
-            full[own, own] += (np.sum(mass * one.u**2) + np.sum(added * one.across**2)) * both
+            mass = np.sum(CONCRETE * one.t * one.share * one.u**2)
+            added = 7. / 8. * WATER * np.sqrt(LEVEL * depth) * np.sum(one.share * one.across**2)
+            empty[own, own] += mass * both
+            full[own, own] += (mass + added) * both
             water[own] -= weight * WATER * G * depth * np.sum(one.across * one.share) * shape
-            river[own] += weight * np.sum(mass * one.u[1]) * shape
-            river_full[own] += weight * np.sum(mass * one.u[1] + added * one.across * one.normal[1]) * shape
-    return z, stiffness, (empty, river), (full, river_full), water
+    return z, stiffness, empty, full, water
 
 
 def safety(force):
@@ -137,42 +141,51 @@ def safety(force):
     return [(FRICTION * normal.sum() + COHESION * area) / drives for area in (BOTTOM, BOTTOM + SIDE)] + [drives]
 
 
+def volume(line):
+    """Of a metre of height of an arch, cell by cell."""
+    x, y, t = line
+    return np.hypot(np.diff(x), np.diff(y)) * (t[1:] + t[:-1]) / 2.
+
+
 def main():
     z = np.linspace(0., HEIGHT, 301)
     lines = [arch(at) for at in z]
-    volume = np.trapz([np.sum(np.hypot(np.diff(x), np.diff(y)) * (t[1:] + t[:-1]) / 2.) for x, y, t in lines], z)
-    print(f"volume {volume:.0f} m3, weight {1e-6 * CONCRETE * G * volume:.0f} MN")
+    whole = np.trapz([volume(line).sum() for line in lines], z)
+    print(f"volume {whole:.0f} m3, weight {1e-6 * CONCRETE * G * whole:.0f} MN")
     # the abutments are vertical planes, normal to the crest
-    chord = [sum(abs(x[i]) + t[i] / 2. * np.sin(np.arctan(abs(x[i]) / radius)) for i, radius in ((0, ARCHES[-1, 5]), (-1, ARCHES[-1, 6])))
+    chord = [sum(abs(x[i]) + t[i] / 2. * np.sin(np.arctan(abs(x[i]) / ARCHES[-1, radius])) for i, radius in ((0, 5), (-1, 6)))
              for x, y, t in lines]
     print(f"thrust {1e-6 * np.trapz(WATER * G * np.maximum(0., LEVEL - z) * chord, z):.0f} MN")
     face, crown = table(z).T[:2]
     middle = face - crown / 2.
     normal, moment = (np.trapz(CONCRETE * G * crown * arm, z) for arm in (1., middle - middle[0]))
     for side, sign in (("upstream", -1.), ("downstream", 1.)):
-        print(f"free-standing crown, {side} foot: {1e-6 * (-normal / crown[0] + sign * 6. * moment / crown[0]**2):.2f} MPa")
+        stress = -normal / crown[0] + sign * 6. * moment / crown[0]**2
+        print(f"free-standing crown, {side} foot: {1e-6 * stress:.2f} MPa")
 
     # the dam stands on the block from its foot there on
     foot = table(ELEVATION)[7]
-    stands = np.trapz([np.sum((np.hypot(np.diff(x), np.diff(y)) * (t[1:] + t[:-1]) / 2.)[x[1:] > foot]) for x, y, t in lines], z)
-    weights = -G * (DENSITY * VOLUME + CONCRETE * stands)
+    stands = np.trapz([volume(line)[line[0][1:] > foot].sum() for line in lines], z)
+    weight = -G * (DENSITY * VOLUME + CONCRETE * stands)
     for twist in (False, True):
         print(f"with{'' if twist else 'out'} twist and shear between arches:")
         elevation, stiffness, _, _, water = dam(STATIC, twist)
         u = np.linalg.solve(stiffness, water)[::2]
         arches = [Arch(at, STATIC) for at in elevation]
-        thrust = [one.thrust * w for one, w in zip(arches, u)]
-        print(f"  crest at the crown {1e3 * u[-1]:.1f} mm, arch stress there {-1e-6 * thrust[-1] / crown[-1]:.2f} MPa, "
-              f"thrust through the crown {1e-6 * np.trapz(thrust, elevation):.0f} MN")
+        thrust = np.array([one.thrust for one in arches]) * u
+        for at in (50., 100., 150.):
+            i = np.argmin(abs(elevation - at))
+            print(f"  crown at {at:.0f} m: {1e3 * u[i]:.1f} mm, arch stress {-1e-6 * thrust[i] / table(at)[1]:.2f} MPa")
+        print(f"  thrust through the crown {1e-6 * np.trapz(thrust, elevation):.0f} MN")
         above = elevation >= ELEVATION
-        pushes = np.trapz(np.array([one.on_left_bank * w for one, w in zip(arches, u)])[above], elevation[above], axis=0)
-        force = np.array([*pushes, weights])
+        pushes = np.trapz(np.array([one.on_left_bank for one in arches])[above] * u[above, None], elevation[above], axis=0)
+        force = np.array([*pushes, weight])
         print("  on the block [MN]:", *(f"{1e-6 * part:.0f}" for part in force), "and safety {:.2f} to {:.2f}".format(*safety(force)))
         _, stiffness, empty, full, _ = dam(DYNAMIC, twist)
-        for name, (mass, _) in (("empty", empty), ("with added mass", full)):
+        for name, mass in (("empty", empty), ("with added mass", full)):
             omega2 = eigh(stiffness, mass, eigvals_only=True, subset_by_index=[0, 0])
             print(f"  first mode, {name}: {np.sqrt(omega2[0]) / 2. / np.pi:.2f} Hz")
-    print("safety by the program's force {:.2f} to {:.2f}, of which {:.0f} N drive".format(*safety(PROGRAM)))
+    print("safety by the program's force {:.2f} to {:.2f}, of which {:.4g} N drive".format(*safety(PROGRAM)))
 
 
 if __name__ == "__main__":

@@ -76,8 +76,9 @@ def short(path):
 
 def titled(path):
     """The last name with what it is of, as "left wedge: smallest safety"."""
-    place = path.rsplit(short(path), 1)[0].strip("/")
-    return f"{place.rsplit('/', 1)[-1]}: {short(path)}" if place else short(path)
+    *_, above, place = ("", "", *path.rsplit(short(path), 1)[0].strip("/").split("/"))
+    of = f"{above} *" if place == "*" else place
+    return f"{of}: {short(path)}" if of else short(path)
 
 
 def criterion_in_words(text):

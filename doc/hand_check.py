@@ -158,10 +158,12 @@ def main():
     print(f"thrust {1e-6 * np.trapz(WATER * G * np.maximum(0., LEVEL - z) * chord, z):.0f} MN")
     face, crown = table(z).T[:2]
     middle = face - crown / 2.
-    normal, moment = (np.trapz(CONCRETE * G * crown * arm, z) for arm in (1., middle - middle[0]))
+    above = z >= 5.  # the middle of the lowest cells
+    crown, middle = crown[above], middle[above]
+    normal, moment = (np.trapz(CONCRETE * G * crown * arm, z[above]) for arm in (1., middle - middle[0]))
     for side, sign in (("upstream", -1.), ("downstream", 1.)):
         stress = -normal / crown[0] + sign * 6. * moment / crown[0]**2
-        print(f"free-standing crown, {side} foot: {1e-6 * stress:.2f} MPa")
+        print(f"free-standing crown 5 m above its {side} foot: {1e-6 * stress:.2f} MPa")
 
     # the dam stands on the block from its foot there on
     foot = table(ELEVATION)[7]

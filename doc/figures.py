@@ -2,8 +2,8 @@
 """Compares the figures that the texts quote with the summaries they come from.
 
 usage: doc/figures.py --check            fails where text and summary part
-       doc/figures.py --keep FOLDER...   keeps the summary of a run, its output
-                                         folder, as doc/studies/NAME.json
+       doc/figures.py --keep FOLDER...   keeps the summary of a run or a study, its
+                                         output folder, as doc/studies/NAME.json
 
 doc/figures.json lists the quotes: for each file of text and each source of
 figures a pattern of the text and, for each number in it, marked by {}, a path in
@@ -73,7 +73,23 @@ def logged(log):
     return found
 
 
+def with_runs(folder):
+    """A study with the version, acceptance table and blocks of each of its runs."""
+    study = json.loads((folder / "study.json").read_text())
+    for run in study["runs"]:
+        summary = json.loads((folder / run["folder"] / "summary.json").read_text())
+        run["folder"] = pathlib.Path(run["folder"]).name
+        run["version"], run["unknowns"] = summary["version"], summary["unknowns"]
+        run["acceptance table"] = summary.get("acceptance table", {})
+        run["blocks"] = summary.get("interfaces", {}).get("blocks", {})
+    return study
+
+
 def keep(folder):
+    if (folder / "study.json").exists():
+        text = json.dumps(rounded(with_runs(folder)), indent=1, sort_keys=True)
+        (KEPT / f"{folder.name}.json").write_text(text + "\n")
+        return
     summary = json.loads((folder / "summary.json").read_text())
     for key in LEFT_OUT:
         summary.pop(key, None)

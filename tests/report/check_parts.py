@@ -246,6 +246,27 @@ def check_verdicts(scratch):
                     and lines["crest, MCE: 4.2"].found == "0.200 m")
 
 
+def check_openings(scratch):
+    """Joints are compared with the depth of their own keys; a plane has none."""
+    run = make_wall(scratch / "openings", SUMMARY)
+    run.parameters |= {"Interfaces/Names": "joints, planes", "Interfaces/joints/Face sets": "joint *",
+                       "Interfaces/joints/Key depth": "0.2", "Interfaces/planes/Face sets": "wedge back"}
+    run.summary["interfaces"] = {"surfaces": {name: {"largest opening [mm]": opening} for name, opening in (
+        ("joint 1", 250.), ("joint 2", 5.), ("wedge back", 0.834))}}
+    keyed, other = verdict.opening_lines(run)
+    is_true("a joint wider than its keys", (keyed.found, keyed.judged, keyed.place) == ("250 mm", "not met", "joint 1"))
+    is_true("a plane without keys", (other.found, other.limit, other.judged, other.place)
+            == ("0.834 mm", "no limit in the case", "to be judged", "wedge back"))
+
+
+def limited(folder):
+    """The study there, with a limit."""
+    found = study.Study(folder)
+    found.limits = [{"of": "Ground motion/Overload factor", "values": {}, "not met at": 1.625, "met at": 1.6875,
+                     "criterion": "interfaces/blocks/* wedge/slip [mm] > 100; stopped"}]
+    return found
+
+
 def check_study(scratch):
     """The acceptance table of each run stands before the numbers of the study."""
     folder = scratch / "study"
@@ -261,6 +282,9 @@ def check_study(scratch):
     table = next(part for part in study.study_section([], [study.Study(folder)]).parts if isinstance(part, page.Table))
     is_true("acceptance of the runs of a study", table.head == ["Overload factor", "crest, MCE"]
             and table.rows == [["1", "met: 0.100"], ["2", "not met: 0.200"]])
+    is_true("a limit in all its digits, its criterion in the words of the tables", study.study_section(
+        [], [limited(folder)]).parts[2] == "The limit of Overload factor lies between 1.625 and 1.6875 "
+            "(criterion: * wedge: slip [mm] > 100; stopped).")
     is_true("in their colours", [row[1].colour for row in table.rows] == ["good", "bad"])
     text = make_page(folder, scratch / "study.html")
     is_true("before the conclusions of its runs", "<h2>Study" in text.split("<h2>Conclusions")[0])
@@ -297,23 +321,25 @@ def check_input(run):
 def check_stages(scratch):
     """All results of a stage are in a table, with the stage, and round-off is zero."""
     def stage(name, size):
-        return {"names": [name], "iterations": 12, "found by multigrid": True, "largest displacement [m]": 0.1 * size,
+        return {"name": "usual" if name == "water" else name, "names": [name], "iterations": 12, "found by multigrid": True, "largest displacement [m]": 0.1 * size,
                 "sum of loads so far [N]": [0., 0., -1.], "sum of reactions [N]": [0., 0., 1.],
                 "interfaces": {"joint": {"normal force [MN]": 1e-12 if name == "weight" else 3.}},
-                "points": {"crest": {"position [m]": [0., 4., 20.], "displacement y [m]": -0.05 * size}},
+                "points": {"crest": {"displacement y [m]": -0.05 * size, "position [m]": [0., 4., 20.]}},
                 "face stresses": {"upstream face": {"largest arch stress [MPa]": size,
+                                                    "place of the largest arch stress [m]": [3., 0., 5.],
                                                     "smallest": {"value [MPa]": None, "at [m]": [1e-15, 2., 3.]}}}}
     run = make_wall(scratch / "stages", {**SUMMARY, "static state": {"stages": [stage("weight", 1.), stage("water", 2.)]}})
     tables = {part.head[0]: part for part in stages.stages_section([run]).parts if isinstance(part, page.Table)}
     is_true("stages by themselves, without what the solver did", tables["after the stage"].rows
-            == [["weight", "0.100"], ["water", "0.200"]] and len(tables["after the stage"].head) == 2)
-    is_true("points over the stages", tables["points"].rows
-            == [["crest", "weight", "0; 4.00; 20.0", "−0.0500"], ["crest", "water", "0; 4.00; 20.0", "−0.100"]])
-    is_true("stresses over the stages", [row[:3] for row in tables["face stresses"].rows[:2]]
-            == [["upstream face", "weight", "1.00"], ["upstream face", "water", "2.00"]])
+            == [["weight", "100"], ["usual", "200"]] and tables["after the stage"].head[1:] == ["largest displacement [mm]"])
+    is_true("points over the stages, their position first", tables["points"].rows
+            == [["crest", "weight", "0; 4.00; 20.0", "−50.0"], ["crest", "usual", "0; 4.00; 20.0", "−100"]])
+    is_true("stresses over the stages, with their places", [row[:3] for row in tables["face stresses"].rows[:2]]
+            == [["upstream face", "weight", "1.00 at 3.00; 0; 5.00"], ["upstream face", "usual", "2.00 at 3.00; 0; 5.00"]]
+            and tables["face stresses"].head[2:4] == ["largest arch stress [MPa] at x; y; z [m]", "value [MPa]"])
     is_true("objects in objects, values that are not finite, round-off", tables["face stresses"].rows[2]
             == ["upstream face, smallest", "weight", "–", "–", "0; 2.00; 3.00"])
-    is_true("a joint that is not there yet has no line", tables["interfaces"].rows == [["joint", "water", "3.00"]])
+    is_true("a joint that is not there yet has no line", tables["interfaces"].rows == [["joint", "usual", "3.00"]])
     again = stages.stages_section([run, run])
     is_true("stages common to all runs are there once", again.parts[0] == "They are the same in all runs."
             and [part.rows for part in again.parts[2:]] == [part.rows for part in stages.stages_section([run]).parts[1:]])
@@ -455,6 +481,7 @@ def main():
         check_records(scratch)
         check_study_evaluations()
         check_verdicts(scratch)
+        check_openings(scratch)
         check_study(scratch)
         check_page(scratch)
     verdicts.end()

@@ -99,12 +99,13 @@ def loads_table(run):
     rows = []
 
     def force(values):
-        return "; ".join(number(1e-6 * value if abs(value) >= 500. else 0.) for value in values) if values else "–"
+        return "; ".join(number(1e-6 * value if abs(value) >= 500. else 0., 4) for value in values) if values else "–"
 
     for n, stage in enumerate(stages):
         result = found[n] if n < len(found) else {}
-        names = [name.strip() for name in stage.split(",")]
-        rows.append([f"static {n + 1}", listed(load_in_words(run, name) for name in names),
+        combination, _, loads = stage.rpartition(":")
+        names = [name.strip() for name in loads.split(",")]
+        rows.append([f"static {n + 1}" + (f", {combination.strip()}" if combination else ""), listed(load_in_words(run, name) for name in names),
                      force(result.get("sum of loads so far [N]")), force(result.get("sum of reactions [N]")),
                      number(100. * result["largest displacement [m]"]) if "largest displacement [m]" in result else "–"])
     if run.entry("Ground motion/Type", "none") != "none":

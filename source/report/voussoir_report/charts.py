@@ -117,14 +117,17 @@ def legend_above(axes):
     rows = -(-len(names) // columns)
     forward, back = axes.yaxis.get_transform(), axes.yaxis.get_transform().inverted()
     low, high = forward.transform(axes.get_ylim())
-    axes.set_ylim(top=back.transform(high + 0.09 * rows * (high - low)))
+    line = 1.5 * matplotlib.rcParams["legend.fontsize"] * axes.figure.dpi / 72.
+    share = min(rows * line / axes.bbox.height, 0.6)
+    axes.set_ylim(top=back.transform(high + share / (1. - share) * (high - low)))
     axes.legend(ncols=columns, edgecolor="none", loc="upper left", borderaxespad=0.1)
 
 
 def cycle_colours(axes, n):
-    """Colours for more curves than matplotlib has colours."""
+    """Colours for more curves than matplotlib has colours; neighbours differ by dashes, too."""
     if n > 10:
-        axes.set_prop_cycle(color=matplotlib.colormaps["turbo"](np.linspace(0.05, 0.95, n)))
+        axes.set_prop_cycle(color=matplotlib.colormaps["turbo"](np.linspace(0.05, 0.95, n)),
+                            linestyle=[("-", "--")[i % 2] for i in range(n)])
 
 
 NOISE = 1e-6  # below it a stress [MPa], an opening [mm] or a time [s] is zero

@@ -71,7 +71,8 @@ def face_stress_section(runs):
             at_rest, f"{field}_at_start_MPa", f"static {title}", not field.startswith("smallest"))]
         title = "Static state" + (", the same in all runs" if len(at_rest) == 1 < len(runs) else "")
         parts.append(Pictures(pictures, columns, title))
-    for field, title in STRESSES.items():
+    runs = [run for run in runs if run.summary.get("steps", 1)]  # else all is in the static state
+    for field, title in STRESSES.items() if runs else ():
         pictures = [picture for which in ("largest", "smallest") for picture in stress_maps(
             runs, f"{which}_{field}_MPa", f"{which} {title} during the run", which == "largest")]
         parts.append(Pictures(pictures, columns, f"Envelopes of the {title}"))

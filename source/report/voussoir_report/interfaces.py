@@ -258,7 +258,7 @@ def planes_section(runs):
     text = ("Factor of safety of a block: resistance of its planes over the driving forces (weight, water, uplift, "
             "thrust of the dam and its inertia as if it went with its base), by limit equilibrium; below one it "
             "slides, and slip and slip rate show how far. The mobilised ratio is the shear of the contact forces over "
-            "the resistance of the planes: at most one, as friction caps them. Sliding safety of a plane: resistance "
+            "the resistance of the planes: about one at most, as friction caps them. Sliding safety of a plane: resistance "
             "by friction and cohesion over its shear force, point by point, which does not fall below one either. A "
             "gap in a curve means that the block has no driving force, or that other planes prevent its slip.")
     parts = [text, planes_picture(runs), blocks_table(runs), forces_table(runs), surfaces_table(runs, planes_of),

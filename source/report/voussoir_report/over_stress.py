@@ -33,7 +33,10 @@ def over_stress_section(runs):
             "linear analysis suffices while the ratio, the share of the face above one, and the time that "
             "any point spends above each ratio stay within their limits; the dashed line is the time "
             "allowed.")
-    parts = [text, verdicts, figures_table(runs), Pictures([curves(run) for run in runs])]
+    parts = [text, verdicts, figures_table(runs)]
+    runs = [run for run in runs if run.summary.get("steps", 1)]  # else no time passes
+    if runs:
+        parts.append(Pictures([curves(run) for run in runs]))
     drawn = [run for run in runs if run.has(FILE) and dam_of(run)
              and face_panels(run, "time_above_1_s", FILE)]
     if drawn:

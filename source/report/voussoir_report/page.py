@@ -142,8 +142,16 @@ def to_html(runs, sections):
                        ("scene", Scene), ("digest", Digest), ("judged", Judged)):
         environment.tests[name] = lambda part, kind=kind: isinstance(part, kind)
     return environment.get_template("page.html").render(
-        runs=runs, sections=sections, date=datetime.date.today().isoformat(),
+        runs=runs, sections=sections, folders=folders_of(runs), date=datetime.date.today().isoformat(),
         program=scene_program(sections))
+
+
+def folders_of(runs):
+    """Where the results are, a folder of several runs once."""
+    parents = {str(pathlib.Path(run.folder).parent) for run in runs}
+    if len(runs) > 1 and len(parents) == 1:
+        return f"{parents.pop()}: {', '.join(pathlib.Path(run.folder).name for run in runs)}"
+    return ", ".join(str(run.folder) for run in runs)
 
 
 def scene_program(sections):

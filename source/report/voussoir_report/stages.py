@@ -11,14 +11,14 @@ from .structure import magnified
 FILE, FIELD = "static_stages.vtu", "displacement after "
 
 # what the solver did, and what the table of the load cases has
-LEFT_OUT = ("names", "iterations", "load increments", "found by multigrid", "steps of dynamic relaxation",
+LEFT_OUT = ("name", "names", "iterations", "load increments", "found by multigrid", "steps of dynamic relaxation",
             "loads", "sum of loads so far [N]", "sum of reactions [N]")
 
 
 def stages_of(run):
     """Names and values of the static stages."""
     stages = run.summary.get("static state", {}).get("stages", [])
-    return [(", ".join(stage.get("names", [])) or f"static {n}",
+    return [(stage.get("name") or ", ".join(stage.get("names", [])) or f"static {n}",
              {key: value for key, value in stage.items() if key not in LEFT_OUT}) for n, stage in enumerate(stages, 1)]
 
 
@@ -36,25 +36,47 @@ def amounts(value):
     return [abs(v) for v in (value if isinstance(value, list) else [value]) if v is not None and v == v]
 
 
+def place_of(key, keys):
+    """The quantity whose place a key is, or None."""
+    if not key.startswith("place of the "):
+        return None
+    what = key.removeprefix("place of the ").removesuffix("[m]")
+    return next((other for other in keys if other.startswith(what + "[")), None)
+
+
 def table_of(heads, rows):
-    """A table of (words, quantities), the same quantities below each other."""
+    """A table of (words, quantities), the same quantities below each other, each with
+    its place; positions first, displacements in mm."""
     keys = dict.fromkeys(key for _, quantities in rows for key in quantities)
-    places = [key for key in keys if key.startswith(("position", "at "))]
+    placed = {place_of(key, keys): key for key in keys if place_of(key, keys)}
+    places = [key for key in keys if key in placed.values() or key.startswith(("position", "at "))]
     # what is so small against the others is round-off
     noise = {key: max(1e-9 if key.endswith("[m]") else 1e-6, 1e-6 * max(
         (amount for _, quantities in rows for amount in amounts(quantities.get(key))), default=0.)) for key in keys}
+    shown = sorted((key for key in keys if key not in placed.values()), key=lambda key: not key.startswith("position"))
+
+    def small(key):
+        return "displacement" in key and key.endswith("[m]") and key not in places
 
     def text(key, value):
         if isinstance(value, list):
             return "; ".join(text(key, part) for part in value)
-        return number(0. if value is not None and abs(value) < noise[key] else value)
+        value = 0. if value is not None and abs(value) < noise[key] else value
+        return number(1e3 * value if small(key) and value is not None else value)
+
+    def cell(key, quantities):
+        if key not in quantities:
+            return "–"
+        place = quantities.get(placed.get(key))
+        return text(key, quantities[key]) + (f" at {text(placed[key], place)}" if place else "")
 
     def acts(quantities):
         return any(quantities[key] is None or any(amount >= noise[key] for amount in amounts(quantities[key]))
                    for key in quantities if key not in places)
 
-    return Table([*heads, *keys], [[*words, *(text(key, quantities[key]) if key in quantities else "–" for key in keys)]
-                                   for words, quantities in rows if acts(quantities)])
+    titles = [(f"{key[:-3]}[mm]" if small(key) else key) + (" at x; y; z [m]" if key in placed else "") for key in shown]
+    return Table([*heads, *titles], [[*words, *(cell(key, quantities) for key in shown)]
+                                     for words, quantities in rows if acts(quantities)])
 
 
 def different(runs):

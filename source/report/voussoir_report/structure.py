@@ -169,7 +169,8 @@ def modes_section(runs):
             pictures = mode_pictures(run)
             parts.append(Pictures(pictures, 2 if len(pictures) in (2, 4) else 3))
     parts.insert(0, "Damping achieved is that of the damping model at the frequency of the mode, interpolated "
-                    "between those that the log names; what leaves through the boundary comes on top of it.")
+                    "between those that the log names; what leaves through the boundary comes on top of it. Pictures are "
+                    "from downstream and above; their colours go from no displacement (dark) to the largest of the mode.")
     return Section("Natural modes", parts)
 
 

@@ -76,8 +76,14 @@ def short(path):
 
 def titled(path):
     """The last name with what it is of, as "left wedge: smallest safety"."""
-    place = path.rsplit(short(path), 1)[0].strip("/")
-    return f"{place.rsplit('/', 1)[-1]}: {short(path)}" if place else short(path)
+    *_, above, place = ("", "", *path.rsplit(short(path), 1)[0].strip("/").split("/"))
+    of = f"{above} *" if place == "*" else place
+    return f"{of}: {short(path)}" if of else short(path)
+
+
+def criterion_in_words(text):
+    """Criteria with the names of tables, as "left wedge: slip [mm] > 100"."""
+    return "; ".join(titled(part.strip()) for part in text.split(";"))
 
 
 def numeric(text):
@@ -164,7 +170,7 @@ def study_section(_, studies):
         head = [*map(short, study.entries), *map(titled, study.quantities), *met, "verdict"]
         rows = [[*(run["values"].get(entry, "–") for entry in study.entries),
                  *(number(run["quantities"][q]) if q in run.get("quantities", {}) else "–"
-                   for q in study.quantities), *(run.get(key, "–") for key in met),
+                   for q in study.quantities), *(criterion_in_words(run.get(key, "–")) for key in met),
                  run["verdict"].split(". ")[0]] for run in study.runs]
         tables = [judged_runs(study, verdict.ACCEPTANCE), Table(
             head, rows, f"The runs of {study.folder.name}; each number as study.csv has it."),
@@ -172,9 +178,9 @@ def study_section(_, studies):
         parts += [table for table in tables if table]
         for limit in study.limits:
             others = ", ".join(f"{short(entry)} {value}" for entry, value in limit["values"].items())
-            parts.append(f"{others + ': ' if others else ''}the limit of {short(limit['of'])} lies between "
-                         f"{number(limit['not met at'])} and {number(limit['met at'])} "
-                         f"(criterion: {limit['criterion']}).")
+            parts.append(f"{others + ': the' if others else 'The'} limit of {short(limit['of'])} lies between "
+                         f"{limit['not met at']:g} and {limit['met at']:g} "
+                         f"(criterion: {criterion_in_words(limit['criterion'])}).")
         parts.extend(evaluations(study.evaluations))
         over = abscissa(study)
         if over:

@@ -1,6 +1,7 @@
 """Two verdicts and the acceptance table, as the program's own tables have them."""
 
 import dataclasses
+import fnmatch
 import math
 import re
 
@@ -105,7 +106,7 @@ def numerical_checks(run):
 
 def engineering_results(run):
     """What the run says of the dam, by what its summary has."""
-    lines = [line for line in (*lines_of(run, RESULTS), tension_line(run), pressure_line(run), opening_line(run))
+    lines = [line for line in (*lines_of(run, RESULTS), tension_line(run), pressure_line(run), *opening_lines(run))
              if line]
     judged = worst(lines)
     title = {MET: "What was looked at is met", NOT_MET: "Not all of it is met",
@@ -167,31 +168,28 @@ def surfaces_of(run):
     return run.summary.get("interfaces", {}).get("surfaces", {})
 
 
-def largest_of(run, key):
-    """The largest number of a surface, and its name; infinity where there is none."""
-    values = [(math.inf if surface[key] is None else surface[key], name)
-              for name, surface in surfaces_of(run).items() if key in surface]
-    return max(values, default=(None, ""))
+def key_depth(run, surface):
+    """Depth of the keys of a surface [mm]; 0 without keys."""
+    return next((1e3 * run.number(f"Interfaces/{name}/Key depth") for name, _ in run.objects("Interfaces")
+                 if any(fnmatch.fnmatch(surface, pattern) for pattern in run.list(f"Interfaces/{name}/Face sets"))), 0.)
 
 
-def key_depth(run):
-    """The least depth of the keys of joints [mm]; 0 without keys."""
-    depths = [1e3 * run.number(f"Interfaces/{name}/Key depth") for name, _ in run.objects("Interfaces")]
-    return min((depth for depth in depths if depth > 0.), default=0.)
-
-
-def opening_line(run):
-    opening, name = largest_of(run, "largest opening [mm]")
-    if opening is None:
-        return None
-    if opening < VISIBLE:
-        return Line("largest opening of a joint or plane", f"{number(clean(opening))} mm", "closed", MET)
-    depth = key_depth(run)
-    if depth:
-        return Line("largest opening of a joint or plane", f"{number(opening)} mm",
-                    f"{number(depth)} mm, depth of the keys", MET if opening < depth else NOT_MET, name)
-    return Line("largest opening of a joint or plane", f"{number(opening)} mm", "no limit in the case",
-                TO_JUDGE, name)
+def opening_lines(run):
+    """The largest opening of what has no keys, and of joints against the depth of theirs."""
+    openings = {name: math.inf if surface["largest opening [mm]"] is None else surface["largest opening [mm]"]
+                for name, surface in surfaces_of(run).items() if "largest opening [mm]" in surface}
+    keyed = {name: key_depth(run, name) for name in openings if key_depth(run, name)}
+    if keyed:
+        name = max(keyed, key=lambda joint: openings[joint] / keyed[joint])
+        yield Line("largest opening of a joint with keys", f"{number(clean(openings[name]))} mm",
+                   f"{number(keyed[name])} mm, depth of the keys", MET if openings[name] < keyed[name] else NOT_MET, name)
+    others = {name: opening for name, opening in openings.items() if name not in keyed}
+    if others:
+        name = max(others, key=others.get)
+        closed = others[name] < VISIBLE
+        yield Line("largest opening of a joint or plane" + (" without keys" if keyed else ""),
+                   f"{number(clean(others[name]))} mm", "closed" if closed else "no limit in the case",
+                   MET if closed else TO_JUDGE, "" if closed else name)
 
 
 def verdicts_of(run):

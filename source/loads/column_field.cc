@@ -143,6 +143,10 @@ namespace Voussoir
     const auto is_lateral = [](const auto &item) {
       return std::abs(item.area[2]) < 0.9 * item.area.norm();
     };
+    // linear elements have one stress each
+    const auto stress_key = [&](const double z) -> double {
+      return column.has_uniform_stress() ? 0. : key(z);
+    };
     if (geometry.reproducible)
       {
         // in the order of their positions, in which a node sums them up
@@ -151,7 +155,7 @@ namespace Voussoir
           if (is_lateral(item))
             {
               const auto at = column.stress_point(item.point[2], item.middle);
-              all[{at.element, key(item.point[2])}] = at;
+              all[{at.element, stress_key(item.point[2])}] = at;
             }
         for (const auto &[place, at] : all)
           {
@@ -168,7 +172,7 @@ namespace Voussoir
             const auto at = column.stress_point(item.point[2], item.middle);
             const auto [place, is_new] =
               stress_numbers.emplace(std::make_pair(at.element,
-                                                    key(item.point[2])),
+                                                    stress_key(item.point[2])),
                                      stress_points.size());
             if (is_new)
               stress_points.push_back(at);

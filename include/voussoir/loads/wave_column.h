@@ -74,6 +74,13 @@ namespace Voussoir
     StressPoint
     stress_point(const double z, const double middle) const;
 
+    /** Whether all points of an element have the same stress. */
+    bool
+    has_uniform_stress() const
+    {
+      return degree == 1;
+    }
+
     /** sigma_xz, sigma_yz, sigma_zz [Pa]. */
     dealii::Tensor<1, 3>
     stress(const StressPoint &at) const;

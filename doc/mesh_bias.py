@@ -266,7 +266,7 @@ def result(output):
             "lost": energy["material [J]"][-1] / thickness / (FRACTURE_ENERGY * (SIDE - NOTCH)),
             "left": load[-10:].mean() / thickness,
             "kinetic": energy["kinetic [J]"].max() / work.max(),
-            "unaccounted": np.abs(energy["unaccounted [J]"]).max() / work.max(),
+            "unaccounted": np.abs(energy["energy-balance error [J]"]).max() / work.max(),
             "slope": np.degrees(np.arctan(slope)),
             "time": 0.5 * (time[1:] + time[:-1]),
             "load": load / thickness,

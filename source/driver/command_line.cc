@@ -180,6 +180,8 @@ namespace Voussoir
       const Estimate found = estimate(parameters, options, communicator);
       if (Utilities::MPI::this_mpi_process(communicator) > 0)
         return;
+      for (const std::string &note : parameters.notes)
+        std::cout << "note: " << note << '\n';
       for (const std::string &warning : found.warnings)
         std::cout << "Warning: " << warning << '\n';
       std::cout << description("Numerical checks known before", found.checks);

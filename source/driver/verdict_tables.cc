@@ -440,7 +440,12 @@ namespace Voussoir
             line.at("at the time [s]").is_number())
           text << ", at " << text_of(line, "at the time [s]") << " s";
         if (line.contains("at [m]"))
-          text << ", at " << line.at("at [m]").dump() << " m";
+          {
+            text << ", at (";
+            for (unsigned int d = 0; d < 3; ++d)
+              text << (d > 0 ? " " : "") << number_text(line.at("at [m]")[d]);
+            text << ") m";
+          }
         if (line.contains("remedy"))
           text << "; " << text_of(line, "remedy");
         text << '\n';

@@ -35,13 +35,13 @@ namespace Voussoir
     entry("strain [J]", part.terms.strain);
     entry("damping memory [J]", part.terms.memory);
     entry("lost in damping [J]", part.terms.damping);
-    entry("gone through the boundary [J]", part.terms.boundary);
+    entry("radiated through the boundary [J]", part.terms.boundary);
     entry("lost to cracks and plastic flow [J]", part.terms.material);
     entry("lost by cracks that closed [J]", part.terms.closing);
     entry("input [J]", part.terms.input);
     entry("work of constraints [J]", part.terms.constraints);
     entry("initial [J]", part.initial);
-    entry("unaccounted [J]", part.unaccounted);
+    entry("energy-balance error [J]", part.error);
     entry("energy-balance error, share of the input", part.error_of_input);
     entry("largest energy-balance error", part.largest_error);
     entry("energy-balance error, share of the losses", part.error_of_losses);
@@ -100,7 +100,7 @@ namespace Voussoir
                 "closing cracks [J]",
                 "input [J]",
                 "constraints [J]",
-                "unaccounted [J]"},
+                "energy-balance error [J]"},
                time_step,
                start_time,
                restarted);
@@ -342,7 +342,7 @@ namespace Voussoir
         std::ostringstream text;
         text << std::setprecision(3) << 100. * relative_error()
              << " % of the energy that came in are the energy-balance error ("
-             << terms_now.error(initial) << " J unaccounted for, "
+             << terms_now.error(initial) << " J residual, "
              << given_back(terms_now, most_damping)
              << " J of negative loss by damping, " << made_by_closing(terms_now)
              << " J gained by cracks that close)";

@@ -48,8 +48,8 @@ namespace Voussoir
           "meet, zero if the block lifts off, infinite without a driving "
           "force or if other planes prevent the slip. The mobilised ratio is "
           "the shear of the contact forces over the resistance of the planes, "
-          "at most one. Both are means over 0.443 of the shortest period that "
-          "the mesh carries.");
+          "one where the block slides. Both are means over 0.443 of the shortest "
+          "period that the mesh carries.");
         declare_interval(
           prm,
           "Time between two lines of interfaces.csv [s]. In it "

@@ -125,7 +125,7 @@ namespace Voussoir
                             std::stod(told) * crack_energy,
                             0.01,
                             "J");
-              const double unaccounted = summary.unaccounted;
+              const double unaccounted = summary.error;
               verdicts.below(name + "unaccounted less what is not told, over "
                                     "the crack's energy",
                              unaccounted / crack_energy -

@@ -54,7 +54,7 @@ namespace Voussoir
   struct EnergySummary
   {
     EnergyTerms terms;
-    double      initial = 0., unaccounted = 0.; // [J]
+    double      initial = 0., error = 0.; // [J]
 
     /** Energy-balance errors: see relative_error(), the largest of them, and
      *  error_of_losses() of the balance [1]. */

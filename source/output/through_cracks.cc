@@ -110,7 +110,8 @@ namespace Voussoir
             shares_in_eighths(run().solid.discretization.points(m)));
         find_touching();
         paths.emplace(run().solid.discretization, touching);
-        n_active = 0;
+        n_active    = 0;
+        active_path = false;
         open_table({"opening from face to face now [mm]",
                     "largest openings ever from face to face [mm]"});
       }
@@ -192,23 +193,23 @@ namespace Voussoir
       bool
       has_active_path()
       {
-        // cells by their numbers, and shares of the point
-        std::vector<std::pair<unsigned int, const std::array<double, 8> *>>
-          active;
-        for_each_active_point(
-          run(), [&](const Discretization::Cell &cell, const unsigned int q) {
-            active.emplace_back(paths->number_of(cell), &shares_of(cell)[q]);
-          });
-        const std::size_t n =
-          Utilities::MPI::sum(active.size(), communicator());
+        std::size_t n = 0;
+        for_each_active_point(run(),
+                              [&](const Discretization::Cell &,
+                                  const unsigned int) { ++n; });
+        n = Utilities::MPI::sum(n, communicator());
         if (n == n_active)
           return active_path;
         n_active = n;
-        std::vector<double> is_active(paths->n_eighths());
-        for (const auto &[cell, share] : active)
-          for (unsigned int corner = 0; corner < 8; ++corner)
-            if ((*share)[corner] > 0.)
-              is_active[8 * cell + corner] = 1.;
+        std::vector<double> is_active;
+        for_each_active_point(
+          run(), [&](const Discretization::Cell &cell, const unsigned int q) {
+            const unsigned int first = 8 * paths->number_of(cell);
+            is_active.resize(paths->n_eighths());
+            for (unsigned int corner = 0; corner < 8; ++corner)
+              if (shares_of(cell)[q][corner] > 0.)
+                is_active[first + corner] = 1.;
+          });
         active_path = paths->widest(is_active, 0.).opening > 0.;
         return active_path;
       }

@@ -95,6 +95,7 @@ namespace Voussoir
                                const Additions                     &additions)
     : discretization(discretization)
     , internal_force(internal_force)
+    , single_corners(discretization.single_corners())
     , springs(additions.springs)
     , constraints(constraints)
     , ties(additions.ties)

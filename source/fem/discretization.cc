@@ -157,14 +157,21 @@ namespace Voussoir
         data.cell_vectorization_category[cell->active_cell_index()] =
           grid.material(cell);
 
-    std::vector<Quadrature<1>> quadratures;
-    if (parameters.one_point(true)) // everywhere
-      quadratures = {QGauss<1>(1)};
-    else if (parameters.quadrature == QuadratureRule::gauss_lobatto)
-      quadratures = {QGaussLobatto<1>(degree + 1)};
-    else
-      quadratures = {QGauss<1>(degree + 1)};
-    crack_share = share_of_crack(quadratures[0], degree);
+    // hanging nodes are resolved in all cells
+    data.store_plain_indices = false;
+
+    const Quadrature<1> points =
+      parameters.one_point(true) ? // everywhere
+        Quadrature<1>(QGauss<1>(1)) :
+        parameters.quadrature == QuadratureRule::gauss_lobatto ?
+        Quadrature<1>(QGaussLobatto<1>(degree + 1)) :
+        Quadrature<1>(QGauss<1>(degree + 1));
+    crack_share            = share_of_crack(points, degree);
+    matrix_free.quadrature = Quadrature<3>(points);
+    // Trilinear cells need no Jacobian matrices of the library: one point for
+    // each cell takes the least memory.
+    const std::vector<Quadrature<1>> quadratures{
+      degree == 1 ? Quadrature<1>(QGauss<1>(1)) : points};
     matrix_free.reinit(mapping,
                        std::vector<const DoFHandler<3> *>{&dof_handler},
                        std::vector<const AffineConstraints<double> *>{
@@ -190,13 +197,14 @@ namespace Voussoir
           places[grid.owned_cell(matrix_free.get_cell_iterator(batch, lane))] =
             {batch, lane};
       }
+    matrix_free.node_entries.assign(matrix_free.n_cell_batches(), nullptr);
     if (degree == 1)
       {
         keep_corners_only();
         find_node_entries();
       }
-    if (has_singles && degree == 1 && !reproducible)
-      make_single_corners();
+    if (single_precision)
+      kept_single_corners = single_corners();
 
     node_positions.resize(n_owned_nodes());
     FEValues<3> nodes(mapping,
@@ -229,7 +237,7 @@ namespace Voussoir
   const Quadrature<3> &
   Discretization::points(const unsigned int material) const
   {
-    return has_one_point(material) ? centre : matrix_free.get_quadrature();
+    return has_one_point(material) ? centre : matrix_free.quadrature;
   }
 
 
@@ -258,46 +266,98 @@ namespace Voussoir
   Discretization::find_node_entries()
   {
     using namespace internal::MatrixFreeFunctions;
-    matrix_free.node_entries.assign(matrix_free.n_cell_batches(), nullptr);
-    const DoFInfo     &dof_info = matrix_free.get_dof_info();
-    const auto        &masks    = dof_info.hanging_node_constraint_masks;
-    const auto        &layout   = *matrix_free.get_vector_partitioner();
+    const unsigned int n_batches = matrix_free.n_cell_batches(),
+                       n_lanes = Lanes::size(), n_entries = 8 * n_lanes;
+    DoFInfo    &dof_info = const_cast<DoFInfo &>(matrix_free.get_dof_info());
+    const auto &masks    = dof_info.hanging_node_constraint_masks;
+    const auto &layout   = *matrix_free.get_vector_partitioner();
     const unsigned int size =
       layout.locally_owned_size() + layout.n_ghost_indices();
-    for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
+    std::vector<bool> whole(n_batches, false);
+    for (unsigned int batch = 0; batch < n_batches; ++batch)
       {
         if (dof_info.index_storage_variants[DoFInfo::dof_access_cell][batch] !=
             DoFInfo::IndexStorageVariants::interleaved)
           continue;
         bool hanging = false;
         if (!masks.empty())
-          for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-            hanging = hanging || masks[batch * Lanes::size() + lane] !=
+          for (unsigned int lane = 0; lane < n_lanes; ++lane)
+            hanging = hanging || masks[batch * n_lanes + lane] !=
                                    unconstrained_compressed_constraint_kind;
         // the entries of the first component; those of the others follow them,
         // of ghost nodes too
         const unsigned int *entries =
           dof_info.dof_indices_interleaved.data() +
-          dof_info.row_starts[3 * batch * Lanes::size()].first;
+          dof_info.row_starts[3 * batch * n_lanes].first;
         if (!hanging &&
-            *std::max_element(entries, entries + 8 * Lanes::size()) + 4 <= size)
-          matrix_free.node_entries[batch] = entries;
+            *std::max_element(entries, entries + n_entries) + 4 <= size)
+          {
+            whole[batch] = true;
+            matrix_free.entries.insert(matrix_free.entries.end(),
+                                       entries,
+                                       entries + n_entries);
+          }
       }
+    matrix_free.entries.shrink_to_fit();
+    const unsigned int *next = matrix_free.entries.data();
+    for (unsigned int batch = 0; batch < n_batches; ++batch)
+      {
+        matrix_free.node_entries[batch] = whole[batch] ? next : nullptr;
+        next += whole[batch] ? n_entries : 0;
+      }
+
+    // the library's entries stay for the other batches only
+    const auto keep_others = [&](std::vector<unsigned int> &indices) {
+      std::vector<unsigned int> kept;
+      for (unsigned int batch = 0; batch < n_batches && !indices.empty();
+           ++batch)
+        if (!whole[batch])
+          {
+            const auto row = dof_info.row_starts.begin() + 3 * batch * n_lanes;
+            kept.insert(kept.end(),
+                        indices.begin() + row->first,
+                        indices.begin() + (row + 3 * n_lanes)->first);
+          }
+      indices = std::move(kept);
+    };
+    keep_others(dof_info.dof_indices);
+    keep_others(dof_info.dof_indices_interleaved);
+    unsigned int dropped = 0;
+    for (unsigned int batch = 0; batch < n_batches; ++batch)
+      {
+        const auto row   = dof_info.row_starts.begin() + 3 * batch * n_lanes;
+        const auto first = row->first, end = (row + 3 * n_lanes)->first;
+        for (unsigned int i = 0; i < 3 * n_lanes; ++i)
+          (row + i)->first =
+            (whole[batch] ? first : (row + i)->first) - dropped;
+        dropped += whole[batch] ? end - first : 0;
+      }
+    for (auto row = dof_info.row_starts.begin() + 3 * n_batches * n_lanes;
+         row != dof_info.row_starts.end();
+         ++row)
+      row->first = dof_info.dof_indices.size(); // ghost cells are not read
   }
 
 
-  void
-  Discretization::make_single_corners()
+  std::shared_ptr<const Discretization::MatrixFree::SingleCorners>
+  Discretization::single_corners() const
   {
-    matrix_free.single_corners.resize(matrix_free.n_cell_batches());
+    if (!has_singles || degree > 1 || reproducible)
+      return nullptr;
+    if (const auto held = matrix_free.single_corners.lock())
+      return held;
+    const auto result =
+      std::make_shared<MatrixFree::SingleCorners>(matrix_free.n_cell_batches());
     for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
       {
         const auto &corners = matrix_free.corners[batch];
         for (unsigned int v = 0; v < 8; ++v)
           for (unsigned int d = 0; d < 3; ++d)
-            matrix_free.single_corners[batch][8 * d + v] =
+            (*result)[batch][8 * d + v] =
               rounded(corners[v][d] - corners[0][d]);
       }
+    matrix_free.single_corners = result;
+    return result;
   }
 
 

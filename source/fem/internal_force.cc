@@ -35,8 +35,8 @@ namespace Voussoir
                         factors[material],
                         discretization.reproducible,
                         rounding,
-                        single_precision &&
-                          !discretization.matrix_free.single_corners.empty()});
+                        single_precision && !discretization.matrix_free
+                                               .single_corners.expired()});
           begin = end;
         }
     }

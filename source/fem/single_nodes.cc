@@ -52,32 +52,31 @@ namespace Voussoir
         // what the next two batches will read
         if (entries[i] != nullptr)
           for (unsigned int k = 0; k < 8 * width; k += 16)
-            __builtin_prefetch(entries[i] + 48 * width + k);
+            __builtin_prefetch(entries[i] + 16 * width + k);
       }
-    const auto *corners = matrix_free.single_corners.data() + batch + 2;
-    for (unsigned int k = 0; k < 2 * sizeof(*corners); k += 64)
-      __builtin_prefetch(reinterpret_cast<const char *>(corners) + k);
+    const auto *next = corners->data() + batch + 2;
+    for (unsigned int k = 0; k < 2 * sizeof(*next); k += 64)
+      __builtin_prefetch(reinterpret_cast<const char *>(next) + k);
   }
 
 
   void
-  SingleNodes::read_corners(Values &corners) const
+  SingleNodes::read_corners(Values &values) const
   {
-    const auto &first = matrix_free.single_corners[first_batch],
-               &second =
-                 matrix_free.single_corners[first_batch + n_batches - 1];
+    const auto &first  = (*corners)[first_batch],
+               &second = (*corners)[first_batch + n_batches - 1];
     for (unsigned int k = 0; k < 24; ++k)
-      corners[k] = singles_of(first[k], second[k]);
+      values[k] = singles_of(first[k], second[k]);
   }
 
 
   SingleNodes::Half
   SingleNodes::half_of(const Vector &vector, const unsigned int half)
   {
-    by_entries.reinit(first_batch + (half < n_batches ? half : 0));
-    by_entries.read_dof_values(vector);
+    by_batch.reinit(first_batch + (half < n_batches ? half : 0));
+    by_batch.read_dof_values(vector);
     Half result;
-    std::copy_n(by_entries.begin_dof_values(), 24, result.begin());
+    std::copy_n(by_batch.begin_dof_values(), 24, result.begin());
     return result;
   }
 
@@ -164,10 +163,10 @@ namespace Voussoir
                         const Values      &values,
                         const unsigned int half)
   {
-    by_entries.reinit(first_batch + half);
+    by_batch.reinit(first_batch + half);
     for (unsigned int k = 0; k < 24; ++k)
-      by_entries.begin_dof_values()[k] = half_of_singles(values[k], half);
-    by_entries.distribute_local_to_global(vector);
+      by_batch.begin_dof_values()[k] = half_of_singles(values[k], half);
+    by_batch.distribute_local_to_global(vector);
   }
 
 

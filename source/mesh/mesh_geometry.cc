@@ -3,6 +3,7 @@
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/tensor.h>
+#include <deal.II/grid/grid_tools.h>
 
 #include <algorithm>
 #include <sstream>
@@ -80,20 +81,10 @@ namespace Voussoir
   double
   cell_volume(const CoarseMesh &mesh, const unsigned int cell)
   {
-    const QGauss<3> quadrature(2);
-
-    double volume = 0;
-    for (unsigned int q = 0; q < quadrature.size(); ++q)
-      {
-        Tensor<2, 3> jacobian;
-        for (unsigned int v = 0; v < 8; ++v)
-          jacobian +=
-            outer_product(mesh.vertices[mesh.cells[cell][v]],
-                          GeometryInfo<3>::d_linear_shape_function_gradient(
-                            quadrature.point(q), v));
-        volume += quadrature.weight(q) * determinant(jacobian);
-      }
-    return volume;
+    const auto &vertices = mesh.cells[cell];
+    return GridTools::cell_measure<3>(
+      mesh.vertices,
+      ArrayView<const unsigned int>(vertices.data(), vertices.size()));
   }
 
 

@@ -70,7 +70,7 @@ namespace Voussoir
         run.initial.displacement.update_ghost_values();
         run.initial.temperature.update_ghost_values();
       }
-    Evaluation              cells(matrix_free);
+    BatchNodes              cells(matrix_free);
     const std::vector<bool> tagged = run.solid.grid().tags_in(sets);
     for (unsigned int b = 0; b < matrix_free.n_cell_batches(); ++b)
       {
@@ -97,7 +97,7 @@ namespace Voussoir
                              SweepInput::Damping::by_material :
                              SweepInput::Damping::common,
                            memory};
-    Evaluation       cells(matrix_free);
+    BatchNodes       cells(matrix_free);
     for (Batch &batch : batches)
       {
         cells.reinit(batch.number);
@@ -197,7 +197,7 @@ namespace Voussoir
   StressEnvelope::make_batch(const unsigned int number,
                              const LaneSet     &watched,
                              const bool         is_static,
-                             Evaluation        &cells) const
+                             BatchNodes        &cells) const
   {
     Batch batch;
     batch.number  = number;
@@ -237,7 +237,7 @@ namespace Voussoir
 
 
   SymmetricTensor3<Lanes>
-  StressEnvelope::strain(const Evaluation  &cells,
+  StressEnvelope::strain(const BatchNodes  &cells,
                          const Batch       &batch,
                          const unsigned int point) const
   {

@@ -171,7 +171,7 @@ namespace Voussoir
                       simulation.static_state.initial.temperature);
         FEValues<3>                        values(discretization.mapping,
                            discretization.fe,
-                           discretization.matrix_free.get_quadrature(),
+                           discretization.matrix_free.quadrature,
                            update_values | update_gradients);
         const FEValuesExtractors::Vector   all(0);
         std::vector<SymmetricTensor<2, 3>> strains(values.n_quadrature_points);

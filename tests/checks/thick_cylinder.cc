@@ -113,7 +113,7 @@ namespace Voussoir
           *simulation->run.state.material_memory.of(0);
         FEValues<3>  values(discretization.mapping,
                            discretization.fe,
-                           discretization.matrix_free.get_quadrature(),
+                           discretization.matrix_free.quadrature,
                            update_gradients | update_JxW_values |
                              update_quadrature_points);
         const double expected = plastic_radius();

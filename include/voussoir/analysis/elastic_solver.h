@@ -107,8 +107,11 @@ namespace Voussoir
     Vector
     diagonal() const;
 
-    const Discretization                    &discretization;
-    const InternalForce                     &internal_force;
+    const Discretization &discretization;
+    const InternalForce  &internal_force;
+    // of the smoother
+    const std::shared_ptr<const Discretization::MatrixFree::SingleCorners>
+                                             single_corners;
     const NodalTerms                        *springs;
     const dealii::AffineConstraints<double> &constraints;
     const TiedNodes                         *ties;

@@ -129,15 +129,22 @@ namespace Voussoir
       dealii::AlignedVector<std::array<dealii::Point<3, Lanes>, 8>> corners;
 
       /** The same in single precision, relative to the first corner, component
-       *  by component; none if cells are of higher degree or sums reproducible.
-       */
-      dealii::AlignedVector<std::array<HalfSingles, 24>> single_corners;
+       *  by component. */
+      using SingleCorners = dealii::AlignedVector<std::array<HalfSingles, 24>>;
+
+      /** What Discretization::single_corners() has given, while it is held. */
+      mutable std::weak_ptr<const SingleCorners> single_corners;
+
+      /** Integration points of cells that have more than one. */
+      dealii::Quadrature<3> quadrature;
 
       /** Of each batch of trilinear cells the first vector entry of each node
        *  in each lane, if the nodes can be read and written whole, four entries
        *  of the vector at once; else null. That takes a third of the time that
        *  the library needs entry by entry. */
       std::vector<const unsigned int *> node_entries;
+
+      std::vector<unsigned int> entries; // to which node_entries point
     };
 
     /**
@@ -195,6 +202,14 @@ namespace Voussoir
     /** Integration points of the cells of a material. */
     const dealii::Quadrature<3> &
     points(const unsigned int material) const;
+
+    /**
+     * Corners of trilinear cells in single precision; forces can be computed
+     * in single precision as long as somebody holds them. Null if they cannot:
+     * cells of higher degree, reproducible sums.
+     */
+    std::shared_ptr<const MatrixFree::SingleCorners>
+    single_corners() const;
 
     /**
      * Hanging nodes, these supports, and all nodes of the cells of the
@@ -269,13 +284,10 @@ namespace Voussoir
     void
     keep_corners_only();
 
-    /** Sets MatrixFree::node_entries. */
+    /** Sets MatrixFree::node_entries, and frees what the library has in their
+     *  place. */
     void
     find_node_entries();
-
-    /** Sets MatrixFree::single_corners. */
-    void
-    make_single_corners();
 
     std::vector<dealii::types::global_dof_index> first_dof_of_rank;
     std::vector<Place>                           places; // of owned cells
@@ -283,6 +295,9 @@ namespace Voussoir
     const DiscretizationParameters parameters;
     const std::vector<bool>        has_memory; // of each material
     const dealii::QMidpoint<3>     centre;
+
+    // where the time loop needs them
+    std::shared_ptr<const MatrixFree::SingleCorners> kept_single_corners;
   };
 
 

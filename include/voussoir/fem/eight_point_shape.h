@@ -22,7 +22,7 @@ namespace Voussoir
   public:
     /** @param matrix_free whose quadrature has the points */
     explicit EightPointShape(const Discretization::MatrixFree &matrix_free)
-      : coordinate(2. * matrix_free.get_quadrature().point(7)[0] - 1.)
+      : coordinate(2. * matrix_free.quadrature.point(7)[0] - 1.)
     {}
 
     /** Components one by one, in the order of the nodes: of node v entry

@@ -1,9 +1,7 @@
 #ifndef voussoir_fem_single_nodes_h
 #define voussoir_fem_single_nodes_h
 
-#include <voussoir/fem/discretization.h>
-
-#include <deal.II/matrix_free/fe_evaluation.h>
+#include <voussoir/fem/batch_nodes.h>
 
 #include <array>
 
@@ -23,7 +21,8 @@ namespace Voussoir
 
     explicit SingleNodes(const MatrixFree &matrix_free)
       : matrix_free(matrix_free)
-      , by_entries(matrix_free)
+      , by_batch(matrix_free)
+      , corners(matrix_free.single_corners.lock())
     {}
 
     /** Components one by one: of node v entry 8 d + v. */
@@ -36,7 +35,7 @@ namespace Voussoir
 
     /** Corners of the cells relative to their first one [m]. */
     void
-    read_corners(Values &corners) const;
+    read_corners(Values &values) const;
 
     void
     read(Values &values, const Vector &vector);
@@ -60,18 +59,19 @@ namespace Voussoir
     using Half = std::array<Lanes, 24>;
 
     /** load(i) are the four entries of a vector that begin at i, load_half(i)
-     *  the values of a batch by its entries. */
+     *  the values of a batch. */
     template <typename Load, typename LoadHalf>
     void
     read_relative(Values &values, const Load &load, const LoadHalf &load_half);
 
-    /** Values of a batch, entry by entry. */
+    /** Values of a batch. */
     Half
     half_of(const Vector &vector, const unsigned int half);
 
-    const MatrixFree                         &matrix_free;
-    dealii::FEEvaluation<3, -1, 0, 3, double> by_entries;
-    unsigned int                              first_batch = 0, n_batches = 0;
+    const MatrixFree                                      &matrix_free;
+    BatchNodes                                             by_batch;
+    const std::shared_ptr<const MatrixFree::SingleCorners> corners;
+    unsigned int first_batch = 0, n_batches = 0;
 
     // MatrixFree::node_entries of the batches
     std::array<const unsigned int *, 2> entries{{nullptr, nullptr}};

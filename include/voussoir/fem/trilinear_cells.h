@@ -28,7 +28,10 @@ namespace Voussoir
     reinit(const unsigned int batch);
 
     void
-    read_dof_values(const Vector &vector);
+    read_dof_values(const Vector &vector)
+    {
+      nodes.read_dof_values(vector);
+    }
 
     Lanes *
     begin_dof_values()
@@ -61,7 +64,10 @@ namespace Voussoir
     }
 
     void
-    distribute_local_to_global(Vector &vector);
+    distribute_local_to_global(Vector &vector)
+    {
+      nodes.distribute_local_to_global(vector);
+    }
 
     void
     integrate_scatter(const dealii::EvaluationFlags::EvaluationFlags flags,
@@ -72,11 +78,8 @@ namespace Voussoir
     }
 
   private:
-    const MatrixFree                         &matrix_free;
-    dealii::FEEvaluation<3, -1, 0, 3, double> nodes;
-
-    // MatrixFree::node_entries
-    const unsigned int *entries = nullptr;
+    const MatrixFree &matrix_free;
+    BatchNodes        nodes;
   };
 
 

@@ -1,6 +1,7 @@
 #ifndef voussoir_output_stress_envelope_h
 #define voussoir_output_stress_envelope_h
 
+#include <voussoir/fem/batch_nodes.h>
 #include <voussoir/output/filtered_displacement.h>
 #include <voussoir/output/law_stress.h>
 
@@ -39,8 +40,6 @@ namespace Voussoir
                                            StressExtremes &)> &visit);
 
   private:
-    using Evaluation = dealii::FEEvaluation<3, -1, 0, 3, double>;
-
     /** Whether neither bound leaves these values in any lane; not if one is a
      *  NaN. */
     static bool
@@ -80,11 +79,11 @@ namespace Voussoir
     make_batch(const unsigned int number,
                const LaneSet     &watched,
                const bool         is_static,
-               Evaluation        &cells) const;
+               BatchNodes        &cells) const;
 
     /** Strain at a point from the values that @p cells has read. */
     SymmetricTensor3<Lanes>
-    strain(const Evaluation  &cells,
+    strain(const BatchNodes  &cells,
            const Batch       &batch,
            const unsigned int point) const;
 

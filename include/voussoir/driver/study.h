@@ -83,11 +83,11 @@ namespace Voussoir
     std::string
     folder_of(const StudyValues &values) const;
 
-    /** What tables and messages say of the values of a run. */
+    /** The values of a run as tables and messages have them. */
     StudyValues
     shown(const StudyValues &values) const;
 
-    /** How many runs there will be, and what they leave out. */
+    /** Number of runs, and what they leave out. */
     void
     introduce() const;
 

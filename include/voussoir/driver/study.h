@@ -21,10 +21,9 @@ namespace Voussoir
 
   /**
    * Many runs of one parameter file with some entries varied, the search for
-   * the value of one at which something happens, or each number moved by a
-   * little. Each run has a folder in
-   * that of the study; a study that is started again does only the missing
-   * runs.
+   * the value of one at which a criterion is met, or each number moved by a
+   * little. Each run has a folder in that of the study; a study that is started
+   * again does only the missing runs.
    */
   class Study
   {

@@ -29,7 +29,7 @@ KINDS = {
     "published": "a published figure",
     "other program": "another program's result, or another way of computing the "
     "same that is written for the test alone and shares nothing with Voussoir",
-    "ourselves": "Voussoir itself: two ways to the same result, a balance by its "
+    "Voussoir": "the program itself: two ways to the same result, a balance by its "
     "own account, or a bound that it sets itself",
 }
 BOUNDED = re.compile(rf"^(?P<what>.*) below {NUMBER}  ok$")
@@ -165,7 +165,7 @@ def page():
             "",
             "Of each test the comparison that uses most of what is allowed. A "
             "difference of 0 means: none in the digits printed; with ≤, these digits do "
-            "not tell it from what is allowed, which the test holds in full "
+            "not distinguish it from what is allowed, which the test holds in full "
             "precision. By reference: "
             f"{counts(kinds_compared)}.",
             "",

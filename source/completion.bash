@@ -18,7 +18,7 @@ _voussoir_choices() { # program, option
 }
 
 _voussoir() {
-  local program=${COMP_WORDS[0]} current=${COMP_WORDS[COMP_CWORD]} option="" case="" word quote="" IFS=$'\n'
+  local program=${COMP_WORDS[0]%-run} current=${COMP_WORDS[COMP_CWORD]} option="" case="" word quote="" IFS=$'\n'
   for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
     case $word in
       -*) option=$word ;;
@@ -55,4 +55,4 @@ _voussoir() {
     mapfile -t COMPREPLY < <(compgen -f -X '!*.prm' -- "$current"; compgen -d -- "$current")
   fi
 }
-complete -F _voussoir voussoir
+complete -F _voussoir voussoir voussoir-run

@@ -137,7 +137,7 @@ namespace Voussoir
             parse_number(strength).value_or(0.) > 0.)
           strengths += (strengths.empty() ? "" : "; ") + name + ": " + strength;
         cracks = cracks ||
-                 tells_of_cracks(*Registry<Material>::entries()[type].create());
+                 reports_cracks(*Registry<Material>::entries()[type].create());
       }
     std::vector<std::string> changes;
     const auto               wants = [&](const std::string &name) {

@@ -91,11 +91,12 @@ namespace Voussoir
         verdict = "diverges: its changes do not become smaller";
       }
     else if (*order < least_order)
-      verdict = "order below " + number_text(least_order) +
-                ", as at corners and the ends of cracks: no limit can be told";
+      verdict =
+        "order below " + number_text(least_order) +
+        ", as at corners and the ends of cracks: no limit can be determined";
     else if (*order > method_order + order_margin)
       verdict = "order above that of the method, " + number_text(method_order) +
-                ": the sizes are too large to tell";
+                ": the sizes are too large for a band";
     else
       {
         converges = true;

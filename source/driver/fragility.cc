@@ -116,7 +116,7 @@ namespace Voussoir
       {
         verdict = "the median is within " + number_text(largest_not) + " and " +
                   number_text(least_met) +
-                  ", the dispersion cannot be told; put more levels or runs "
+                  ", the dispersion is unknown; put more levels or runs "
                   "there";
         return;
       }

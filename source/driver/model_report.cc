@@ -1,4 +1,4 @@
-// What the log says of the boundary and the materials of a model.
+// Boundary and materials of a model in the log.
 
 #include <voussoir/driver/model.h>
 

@@ -262,7 +262,8 @@ namespace Voussoir
     // a search for a limit goes on from a run that was stopped only if that one
     // has met the criterion
     if (n_stopped > 0 && !parameters.seeks_limit())
-      throw IncompleteStudy(count + "; the verdicts in study.csv say why.");
+      throw IncompleteStudy(count +
+                            "; the verdicts in study.csv give the reasons.");
     if (my_group == 0)
       report(count);
   }

@@ -32,7 +32,7 @@ namespace Voussoir
         where + "the run in \"" + outcome.folder + "\" was " +
         summary.short_verdict() +
         ", before the criterion of section \"Study/Limit\" was met; whether it "
-        "would have been nobody knows: add \"; stopped\" to it if that "
+        "would have been is unknown: add \"; stopped\" to it if that "
         "counts as failure.");
     return false;
   }

@@ -48,7 +48,7 @@ namespace Voussoir
     }
 
 
-    /** What a table that is evaluated from the runs says, for the log. */
+    /** A table that is evaluated from the runs in sentences, for the log. */
     std::vector<std::string>
     in_words(const std::vector<nlohmann::ordered_json> &lines)
     {

@@ -332,7 +332,7 @@ namespace Voussoir
               result.back().first <= result[result.size() - 2].first)
           throw UserError(place +
                           ": the first numbers of the pairs must begin at 0 "
-                          "and grow; look at \"" +
+                          "and grow; correct \"" +
                           item + "\".");
         if (result.back().second < 0. ||
             (result.size() == 1 && result[0].second == 0.))

@@ -236,7 +236,7 @@ namespace Voussoir
       }
     throw UserError(
       "The bank is too flat for the \"Dip\" in section \"" + ledge.place +
-      "\": the base plane of the wedge does not come out of it everywhere; "
+      "\": the base plane of the wedge does not meet its surface everywhere; "
       "choose a smaller one or another \"Elevation\".");
   }
 

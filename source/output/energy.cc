@@ -156,8 +156,8 @@ namespace Voussoir
   }
 
 
-  const EnergyTerms &
-  EnergyBalance::evaluate(State &state, const bool end)
+  void
+  EnergyBalance::sum_up(State &state)
   {
     const InitialState &initial_state = equation.initial;
     moved                             = state.displacement;
@@ -231,28 +231,42 @@ namespace Voussoir
         terms.constraints -=
           product(initial_state.contact_force, moved, is_exact);
       }
-    if (first)
-      initial = terms.stored() + terms.lost() - terms.input - terms.constraints;
-    first        = false;
-    most_damping = std::max(most_damping, terms.damping);
+  }
 
+
+  double
+  EnergyBalance::least_scale(const unsigned long long step) const
+  {
     // the energy of waves that pass through the rock is a thousand times the
     // one that stays; the balance cannot be more accurate than the round-off of
     // that and of the static energy
-    const double net = terms.input - terms.boundary;
+    const bool   is_exact = equation.discretization.reproducible;
+    const double net      = terms_now.input - terms_now.boundary;
     const double round_off =
       equation.discretization.single_precision ? 5e-4 : 1e-12;
     // which grows with each step, as the last digits of exact sums do
     const double of_step =
       std::numeric_limits<double>::epsilon() * static_work +
       (is_exact ? 0x1p-62 * equation.discretization.owned_dofs.size() : 0.);
-    came_in       = std::max({came_in,
-                              std::abs(net),
-                              std::abs(net + terms.constraints),
-                              1e-6 * terms.boundary,
-                              initial,
-                              round_off * static_work,
-                              100. * of_step * (state.step + 1.)});
+    return std::max({std::abs(net),
+                     std::abs(net + terms_now.constraints),
+                     1e-6 * terms_now.boundary,
+                     initial,
+                     round_off * static_work,
+                     100. * of_step * (step + 1.)});
+  }
+
+
+  const EnergyTerms &
+  EnergyBalance::evaluate(State &state, const bool end)
+  {
+    sum_up(state);
+    if (first)
+      initial = terms_now.stored() + terms_now.lost() - terms_now.input -
+                terms_now.constraints;
+    first         = false;
+    most_damping  = std::max(most_damping, terms_now.damping);
+    came_in       = std::max(came_in, least_scale(state.step));
     largest_error = std::max(largest_error, relative_error());
     if (!lines.due(state.step) && !end)
       return terms_now;

@@ -101,7 +101,7 @@ namespace Voussoir
         keep("envelope", largest);
         keep("envelope accelerations", accelerations);
         keep("envelope velocity", previous);
-        keep("envelope velocity of the last look", last_sample);
+        keep("envelope velocity of the last sample", last_sample);
         keep("last step", last_step, 0);
         stress.reset();
         if (!wants_stress)

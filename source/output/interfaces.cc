@@ -179,7 +179,7 @@ namespace Voussoir
              std::vector<std::array<double, 2>>(n_surfaces, {{0., 0.}}));
         keep("time at one", time_at_one, std::vector<double>(n_surfaces, 0.));
         keep("energies at start", energies_at_start, energies());
-        keep("last look", last_sample, 0.);
+        keep("last sample", last_sample, 0.);
         open_table(columns());
       }
 

@@ -60,7 +60,7 @@ namespace Voussoir
     names_of(const Material &material)
     {
       auto names = material.output_names();
-      if (tells_of_cracks(material))
+      if (reports_cracks(material))
         names.push_back(opening_now);
       return names;
     }
@@ -87,7 +87,7 @@ namespace Voussoir
                                const std::vector<double> &)> &visit)
     {
       const std::vector<double> nothing(names_of(material).size());
-      const bool                cracks = tells_of_cracks(material);
+      const bool                cracks = reports_cracks(material);
       const std::size_t         largest =
         output_number(material, OutputName::largest_opening);
       std::vector<double> values;
@@ -112,7 +112,7 @@ namespace Voussoir
 
 
   bool
-  tells_of_cracks(const Material &material)
+  reports_cracks(const Material &material)
   {
     return output_number(material, OutputName::largest_opening) <
            material.output_names().size();
@@ -131,7 +131,7 @@ namespace Voussoir
         {
           const Material     &material = *run.solid.materials[m];
           const PointHistory *history  = run.material_memory.of(m);
-          if (history == nullptr || !tells_of_cracks(material))
+          if (history == nullptr || !reports_cracks(material))
             continue;
           for (const auto &[cell, place] : history->cells())
             for (unsigned int q = 0; q < history->n_points(); ++q)

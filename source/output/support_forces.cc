@@ -196,7 +196,7 @@ namespace Voussoir
             if (Utilities::MPI::logical_or(meets_interface, communicator))
               throw UserError(supports_entry + " names \"" + set +
                               "\", whose nodes an interface touches, the "
-                              "forces of which cannot be told apart there; "
+                              "forces of which cannot be separated there; "
                               "name faces away from interfaces.");
             result.emplace_back(set, nodes);
           }

@@ -77,11 +77,11 @@ namespace Voussoir
         if (std::none_of(model.solid.materials.begin(),
                          model.solid.materials.end(),
                          [](const Material *material) {
-                           return tells_of_cracks(*material);
+                           return reports_cracks(*material);
                          }))
           throw UserError(
             "No material of the case cracks, but " + cracks_section +
-            " looks for cracks; remove the observer \"through cracks\", or "
+            " records cracks; remove the observer \"through cracks\", or "
             "give a material a law that cracks.");
       }
 

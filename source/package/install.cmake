@@ -23,7 +23,9 @@ install(PROGRAMS source/voussoir-run source/report/voussoir-report source/report
 install(DIRECTORY source/report/voussoir_report DESTINATION ${_data} PATTERN __pycache__ EXCLUDE)
 install(FILES source/report/voussoir_paraview.py DESTINATION ${_data})
 install(DIRECTORY prm DESTINATION ${_data} FILES_MATCHING PATTERN *.prm PATTERN *.txt PATTERN *.msh)
-install(FILES source/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME voussoir)
+foreach(_program voussoir voussoir-run)
+  install(FILES source/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ${_program})
+endforeach()
 # if they are there, by "bootstrap manual" or "bootstrap package"
 install(DIRECTORY ${CMAKE_BINARY_DIR}/manual/html DESTINATION ${_doc} OPTIONAL PATTERN .buildinfo EXCLUDE)
 install(FILES ${CMAKE_SOURCE_DIR}/build/vtk.js/package/vtk.js ${CMAKE_SOURCE_DIR}/build/vtk.js/package/LICENSE
@@ -74,4 +76,5 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR})
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
   "openmpi-bin, python3, python3-numpy, python3-matplotlib, python3-vtk9 | python3-paraview, python3-jinja2, xvfb")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "paraview, weasyprint, bash-completion")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/source/package/prerm)
 include(CPack)

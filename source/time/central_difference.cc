@@ -261,26 +261,26 @@ namespace Voussoir
 
   namespace
   {
-    /** Advances n Maxwell branches, and sets @p w to their sum times
-     *  @p factor, in one pass over the vectors. */
-    template <unsigned int n>
+    /** Advances n Maxwell branches from number @p first on, and sets @p w to
+     *  their sum times @p factor or adds it, in one pass over the vectors. */
+    template <unsigned int n, bool adds = false>
     void
-    advance_branches(std::vector<Vector>       &branches,
-                     const std::vector<double> &decay,
-                     const std::vector<double> &gain,
-                     const double               factor,
-                     const double              *v,
-                     double                    *w,
-                     const unsigned int         begin,
-                     const unsigned int         end)
+    advance_branches(std::vector<Vector> &branches,
+                     const MaxwellStep   &maxwell,
+                     const unsigned int   first,
+                     const double         factor,
+                     const double        *v,
+                     double              *w,
+                     const unsigned int   begin,
+                     const unsigned int   end)
     {
       std::array<double *, n> of_branch;
       std::array<double, n>   a, b;
       for (unsigned int k = 0; k < n; ++k)
         {
-          of_branch[k] = branches[k].begin();
-          a[k]         = decay[k];
-          b[k]         = gain[k];
+          of_branch[k] = branches[first + k].begin();
+          a[k]         = maxwell.decay[first + k];
+          b[k]         = maxwell.gain[first + k];
         }
 #pragma GCC ivdep
       for (unsigned int i = begin; i < end; ++i)
@@ -288,7 +288,7 @@ namespace Voussoir
           double sum = 0.;
           for (unsigned int k = 0; k < n; ++k)
             sum += of_branch[k][i] = a[k] * of_branch[k][i] + b[k] * v[i];
-          w[i] = factor * sum;
+          w[i] = adds ? w[i] + factor * sum : factor * sum;
         }
     }
   } // namespace
@@ -308,11 +308,9 @@ namespace Voussoir
     // sum of the branches, or beta v
     const double factor =
       uniform ? equation.internal_force.damping_factor() : 1.;
-    const auto &[decay, gain] = maxwell;
-    const auto advance        = [&](const auto n) {
-      advance_branches<n>(state.memory, decay, gain, factor, v, w, begin, end);
-    };
-    switch (decay.size())
+    auto      &branches   = state.memory;
+    const auto n_branches = branches.size();
+    switch (n_branches)
       {
         case 0:
 #pragma GCC ivdep
@@ -320,27 +318,16 @@ namespace Voussoir
             w[i] = factor * stiffness_coefficient * v[i];
           break;
         case 1:
-          advance(std::integral_constant<unsigned int, 1>());
+          advance_branches<1>(branches, maxwell, 0, factor, v, w, begin, end);
           break;
         case 2:
-          advance(std::integral_constant<unsigned int, 2>());
-          break;
-        case 3:
-          advance(std::integral_constant<unsigned int, 3>());
+          advance_branches<2>(branches, maxwell, 0, factor, v, w, begin, end);
           break;
         default:
-          std::fill(w + begin, w + end, 0.);
-          for (unsigned int k = 0; k < decay.size(); ++k)
-            {
-              double      *wk = state.memory[k].begin();
-              const double ak = decay[k], bk = gain[k];
-#pragma GCC ivdep
-              for (unsigned int i = begin; i < end; ++i)
-                {
-                  wk[i] = ak * wk[i] + bk * v[i];
-                  w[i] += factor * wk[i];
-                }
-            }
+          advance_branches<3>(branches, maxwell, 0, factor, v, w, begin, end);
+          for (unsigned int k = 3; k < n_branches; ++k)
+            advance_branches<1, true>(
+              branches, maxwell, k, factor, v, w, begin, end);
       }
 
     const double viscosity = equation.damping.mesh_viscosity;

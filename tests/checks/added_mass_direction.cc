@@ -11,8 +11,8 @@ namespace Voussoir
     /**
      * A wall that may be turned in plan and lean: its vertices lie at
      *   u t + (s z - d) m + z e_z
-     * with the way u along it, t = (cos b, sin b, 0), the height z, the depth d
-     * behind its face and m = (-sin b, cos b, 0).
+     * with the distance u along it, t = (cos b, sin b, 0), the height z, the
+     * depth d behind its face and m = (-sin b, cos b, 0).
      */
     class TurnedWall : public MeshGenerator
     {

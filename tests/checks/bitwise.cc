@@ -166,7 +166,7 @@ namespace Voussoir
       double      cracked = 0., slip = 0., most_cracked = 0., most_slip = 0.;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<Bitwise>
       registered("bitwise", "Reproducible sums hold bit for bit.");
   } // namespace

@@ -89,7 +89,7 @@ namespace Voussoir
       double      penetration = 0.;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<Bonded>
       registered("contact bonded", "Bonded against uncut, ranks against one.");
   } // namespace

@@ -82,7 +82,7 @@ namespace Voussoir
       double pressed = 0., stretched = 0.;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<ContinuousResponse>
       registered("continuous response",
                  "Stress of concrete that is pressed and stretched.");

@@ -73,7 +73,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<CrackBegins>
       registered("crack begins", "Energy as damped points begin to crack.");
   } // namespace

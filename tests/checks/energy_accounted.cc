@@ -89,7 +89,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<EnergyAccounted>
       registered("energy accounted", "Energy balance of a driven model.");
   } // namespace

@@ -159,7 +159,7 @@ namespace Voussoir
       std::set<std::string> excepted, met;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<EntryRanges>
       registered("entry ranges",
                  "Every number of a class has a range, allowed or usual.");

@@ -235,7 +235,7 @@ namespace Voussoir
       std::ostringstream said;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<FailedWrites>
       registered("failed writes", "Results on a full disk.");
   } // namespace

@@ -133,7 +133,7 @@ namespace Voussoir
           reported, simulation.model.solid.discretization.grid.communicator());
         // with lee-fenves the opening by damage follows the modulus
         if (curve != "lee-fenves" &&
-            tells_of_cracks(*simulation.model.solid.materials[1]))
+            reports_cracks(*simulation.model.solid.materials[1]))
           verdicts.near(name + "opening reported",
                         1e3 * reported,
                         1e3 * wanted,

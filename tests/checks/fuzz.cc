@@ -416,7 +416,7 @@ namespace Voussoir
       Progress    *progress = nullptr;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<Fuzz> registered("fuzz",
                                                 "Damaged files of one format.");
   } // namespace

@@ -120,7 +120,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<KeptState>
       registered("kept state", "A static state that is kept and found again.");
   } // namespace

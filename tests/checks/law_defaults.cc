@@ -67,7 +67,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<LawDefaultsCheck>
       registered("law defaults", "A law with none of the optional members.");
   } // namespace

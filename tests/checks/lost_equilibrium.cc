@@ -58,7 +58,7 @@ namespace Voussoir
       std::string named;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<LostStage>
       registered("lost equilibrium", "A static stage without equilibrium.");
   } // namespace

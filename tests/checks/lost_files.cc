@@ -228,7 +228,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<LostFiles>
       registered("lost files", "Results that are taken away during a run.");
   } // namespace

@@ -74,7 +74,7 @@ namespace Voussoir
       }
 
     private:
-      /** On to a shear strain gamma after cracking. */
+      /** Proceeds to a shear strain gamma after cracking. */
       static void
       advance(PointTest                   &test,
               const SymmetricTensor<2, 3> &cracked,

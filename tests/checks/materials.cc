@@ -424,7 +424,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<Materials>
       registered("materials", "Properties of all materials.");
   } // namespace

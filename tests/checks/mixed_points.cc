@@ -137,7 +137,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<MixedPoints>
       registered("mixed points",
                  "One integration point where elastic, eight elsewhere.");

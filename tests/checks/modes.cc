@@ -275,7 +275,7 @@ namespace Voussoir
       double dam_mass = 0.;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<FoundationModes>
       registered_foundation("modes and foundation", "Rigid, massless, massed.");
 

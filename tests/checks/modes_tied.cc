@@ -84,7 +84,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<TiedModes>
       registered_tied("tied modes", "Against those of the uncut body.");
 

@@ -62,7 +62,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<NothingMoves>
       registered("nothing moves", "A case without earthquake and load.");
   } // namespace

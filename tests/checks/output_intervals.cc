@@ -121,7 +121,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<EqualIntervals>
       registered("equal intervals", "Of the lines of histories.csv.");
 

@@ -164,7 +164,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<NamesInResults>
       names_in_results("names in results", "One table of names.");
 
@@ -268,7 +268,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<ObserversAgain>
       observers_again("observers again", "Observers of two runs.");
   } // namespace

@@ -105,7 +105,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<ParameterText>
       registered("parameter text", "Parameter files in all sorts of writing.");
   } // namespace

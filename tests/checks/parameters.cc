@@ -106,7 +106,7 @@ namespace Voussoir
       std::string name;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<Parameters>
       registered("parameters", "Printing and reading of a case.");
   } // namespace

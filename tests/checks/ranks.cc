@@ -100,7 +100,7 @@ namespace Voussoir
       double      tolerance = 1e-9, stress_tolerance = 0.;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<Ranks>
       registered("ranks", "Any number of ranks gives the same motion.");
   } // namespace

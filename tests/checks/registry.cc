@@ -38,7 +38,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<RegistryCheck>
       registered("registry", "Registration of classes by name.");
   } // namespace

@@ -69,7 +69,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<RequiredRefinement>
       registered("required refinement",
                  "Cells whose length the fracture energy allows.");

@@ -325,7 +325,7 @@ namespace Voussoir
     // Reference: closed form
     const Registry<Check>::Add<ReservoirEnergy>
       energy("reservoir energy", "Energy of the water by itself.");
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<ReservoirRanks>
       ranks("reservoir ranks", "Any number of ranks computes the same.");
   } // namespace

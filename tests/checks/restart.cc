@@ -432,7 +432,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<Restart>
       registered("restart", "Interrupted and continued runs.");
   } // namespace

@@ -145,7 +145,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<RestartCrack>
       registered("restart crack", "On from the middle of a crack that closes.");
   } // namespace

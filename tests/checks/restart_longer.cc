@@ -114,7 +114,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<RestartLonger>
       registered("restart longer", "Runs that go on to a later end time.");
   } // namespace

@@ -109,7 +109,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<ResultFolders>
       registered("result folders", "Who may write to which folder.");
   } // namespace

@@ -67,7 +67,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<RigidBase>
       registered("rigid base", "Inertial input against a moving base.");
   } // namespace

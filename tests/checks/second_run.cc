@@ -100,7 +100,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<SecondRun>
       registered("second run", "Two runs on one model, in turn, are as alone.");
   } // namespace

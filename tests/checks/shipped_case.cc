@@ -147,7 +147,7 @@ namespace Voussoir
       std::string name, changes, warnings, not_met_lines, results, events;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<ShippedCase>
       registered("shipped case", "A case of prm/ gives its expected results.");
   } // namespace

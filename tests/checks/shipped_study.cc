@@ -85,7 +85,7 @@ namespace Voussoir
       unsigned int n_limits = 0;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<ShippedStudy>
       registered("shipped study",
                  "A study of prm/ gives its expected results.");

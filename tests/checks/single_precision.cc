@@ -110,7 +110,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<SinglePrecision>
       registered("single precision",
                  "Internal forces in single and in double precision.");

@@ -67,7 +67,7 @@ namespace Voussoir
       bool                linear = true;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<SmallMotion> registered("small motion",
                                                        "Motions of any size.");
   } // namespace

@@ -75,7 +75,7 @@ namespace Voussoir
       unsigned int steps = 1500;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<Stability>
       registered("stability limit", "Bounded below, growing above the limit.");
   } // namespace

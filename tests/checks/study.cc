@@ -388,10 +388,10 @@ namespace Voussoir
     const Registry<Check>::Add<StudyOfStrengths>
       strengths("study of strengths",
                 "Strengths that a reduction divides and leaves.");
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<FailingRun> failing("study with a failing run",
                                                    "One run that slides away.");
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<FailedLimit>
       failed_limit("study of failed runs",
                    "Runs that fail meet no criterion of a limit.");

@@ -70,7 +70,7 @@ namespace Voussoir
       std::string settings;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<TransientFrequency>
       registered("transient frequency",
                  "A damped block over time against its mode.");

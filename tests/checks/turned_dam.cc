@@ -158,7 +158,7 @@ namespace Voussoir
       }
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<WaterOnTurnedDam>
       registered("water on turned dam", "A river of any direction.");
   } // namespace

@@ -53,7 +53,7 @@ namespace Voussoir
       std::string mistakes;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<Warnings>
       registered("warnings", "Values outside their usual range are warned of.");
   } // namespace

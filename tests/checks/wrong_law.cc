@@ -21,7 +21,7 @@ namespace Voussoir
       // largest norm so far and that of the last step [Pa]
       static constexpr unsigned int n_history = 2;
 
-      double strength = 2e6, fracture_energy = 200., told = 1.;
+      double strength = 2e6, fracture_energy = 200., reported = 1.;
 
       void
       declare_parameters(ParameterHandler &prm)
@@ -29,7 +29,7 @@ namespace Voussoir
         IsotropicElasticity::declare_parameters(prm);
         prm.add_parameter("Strength", strength, "ft [Pa].");
         prm.add_parameter("Fracture energy", fracture_energy, "Gf [N/m].");
-        prm.add_parameter("Told", told, "Share of the dissipation.");
+        prm.add_parameter("Reported", reported, "Share of the dissipation.");
       }
 
       template <typename Number>
@@ -77,7 +77,7 @@ namespace Voussoir
         PointResponse<Number> response(strain);
         response.stress = intact(now) * elastic;
         // of the trapezoidal rule along a straight path
-        response.dissipation = told * 0.5 * (intact(before) - intact(now)) *
+        response.dissipation = reported * 0.5 * (intact(before) - intact(now)) *
                                last * at_end / young_modulus;
         response.damping_share = intact(now);
         return response;
@@ -109,27 +109,29 @@ namespace Voussoir
           const MPI_Comm       communicator) override
       {
         for (const std::string ratio : {"0", "0.05", "0.12"})
-          for (const std::string told : {"1", "0.7", "1.2"})
+          for (const std::string reported : {"1", "0.7", "1.2"})
             {
-              const auto parameters = make_case(file.with(
-                {"Damping/Ratio=" + ratio, "Materials/weak/Told=" + told}));
+              const auto parameters =
+                make_case(file.with({"Damping/Ratio=" + ratio,
+                                     "Materials/weak/Reported=" + reported}));
               const auto simulation =
                 make_simulation(*parameters, communicator);
               Run &run = simulation->run;
               march_with_energy(run, [](const bool) {});
               const auto        summary = run.energy.summary();
               const std::string name =
-                "damping " + ratio + ", told " + told + ": ";
-              verdicts.near(name + "told",
+                "damping " + ratio + ", reported " + reported + ": ";
+              verdicts.near(name + "reported",
                             summary.terms.material,
-                            std::stod(told) * crack_energy,
+                            std::stod(reported) * crack_energy,
                             0.01,
                             "J");
               const double unaccounted = summary.error;
-              verdicts.below(name + "unaccounted less what is not told, over "
-                                    "the crack's energy",
+              verdicts.below(name +
+                               "unaccounted less what is not reported, over "
+                               "the crack's energy",
                              unaccounted / crack_energy -
-                               (1. - std::stod(told)),
+                               (1. - std::stod(reported)),
                              0.01);
             }
       }
@@ -138,7 +140,7 @@ namespace Voussoir
       double crack_energy = 0.;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<WrongLaw>
       registered("wrong law",
                  "A law that loses more than it reports is found.");

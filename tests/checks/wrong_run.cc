@@ -108,7 +108,7 @@ namespace Voussoir
       double            expected = 0.;
     };
 
-    // Reference: ourselves
+    // Reference: Voussoir
     const Registry<Check>::Add<WrongRun>
       registered("wrong run",
                  "An energy-balance error is warned of, or stops the run.");

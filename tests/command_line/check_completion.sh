@@ -29,4 +29,6 @@ proposes "Time/End time=" --set '"Time/En'
 proposes "Materials/concrete/Young\\'s\\ modulus=" "$case" --set Materials/concrete/You
 proposes "Mesh/box/Cells=" "$case" --set "Time/End time=3" Mesh/box/Ce
 proposes "$case" "${case%.prm}"
+program=$program-run # the launcher
+proposes "--restart" --re
 exit $failed

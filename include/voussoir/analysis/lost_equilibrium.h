@@ -23,9 +23,9 @@ namespace Voussoir
   };
 
   /**
-   * Which parts move without end, as far as can be told: the surfaces none of
-   * whose points sticks, by how much they have slipped and opened, and where
-   * the model has moved most. Called on all ranks.
+   * Which parts move without end, as far as can be determined: the surfaces
+   * none of whose points sticks, by how much they have slipped and opened, and
+   * where the model has moved most. Called on all ranks.
    *
    * @param contact null without interfaces
    * @param cracks  whether materials have cracked or yielded

@@ -75,7 +75,7 @@ namespace Voussoir
     std::string
     folder() const;
 
-    /** @p name as seen from the folder of this file. */
+    /** @p name relative to the folder of this file. */
     std::string
     resolve(const std::string &name) const;
 

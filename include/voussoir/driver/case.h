@@ -211,7 +211,7 @@ namespace Voussoir
     void
     declare();
 
-    /** Adds those observers. */
+    /** Adds the observers that "Observers" names. */
     void
     add_observers();
 

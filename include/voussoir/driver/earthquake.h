@@ -8,7 +8,7 @@
 
 namespace Voussoir
 {
-  /** The motion of the ground that a case gives or has made. */
+  /** The motion of the ground by the entries of a case. */
   struct EarthquakeMotion
   {
     /** Reads or makes the motion and reports it. Throws UserError for a motion

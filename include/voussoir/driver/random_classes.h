@@ -10,8 +10,8 @@
 namespace Voussoir
 {
   /** A file in which each material with a random field is replaced by its
-   *  classes, "concrete 1" and so on, with their own moduli and strengths. All
-   *  else sees materials as any others. */
+   *  classes, "concrete 1" and so on, with their own moduli and strengths,
+   *  which the rest of the program treats like any other materials. */
   ParameterFile
   with_random_classes(const ParameterFile &file);
 

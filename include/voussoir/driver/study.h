@@ -21,10 +21,9 @@ namespace Voussoir
 
   /**
    * Many runs of one parameter file with some entries varied, the search for
-   * the value of one at which something happens, or each number moved by a
-   * little. Each run has a folder in
-   * that of the study; a study that is started again does only the missing
-   * runs.
+   * the value of one at which a criterion is met, or each number moved by a
+   * little. Each run has a folder in that of the study; a study that is started
+   * again does only the missing runs.
    */
   class Study
   {
@@ -83,11 +82,11 @@ namespace Voussoir
     std::string
     folder_of(const StudyValues &values) const;
 
-    /** What tables and messages say of the values of a run. */
+    /** The values of a run as tables and messages have them. */
     StudyValues
     shown(const StudyValues &values) const;
 
-    /** How many runs there will be, and what they leave out. */
+    /** Number of runs, and what they leave out. */
     void
     introduce() const;
 

@@ -18,8 +18,8 @@ namespace Voussoir
                 const EnergyBalance &energy,
                 const double         energy_limit);
 
-    /** Looks at the energy balance of a state. If the run must stop this is the
-     *  reason, else it is empty, and the state is the last good one. */
+    /** Evaluates the energy balance of a state. If the run must stop the result
+     *  is the reason, else it is empty, and the state is the last good one. */
     std::string
     check_energy(const State &state);
 

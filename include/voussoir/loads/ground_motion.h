@@ -88,6 +88,11 @@ namespace Voussoir
 
     double overload_factor = 1.;
 
+    /** As entries and messages have them. */
+    static inline const std::array<std::string, 3> axis_names{{"x", "y", "z"}};
+    static inline const std::array<std::string, 3> axis_meanings{
+      {"across the valley", "along the river", "vertical"}};
+
     /** The value that leaves the peak of a record unscaled. */
     static constexpr const char *as_recorded = "as recorded";
 

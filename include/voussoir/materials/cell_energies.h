@@ -67,114 +67,152 @@ namespace Voussoir
     }
 
 
-    /** Adds the share of a Maxwell branch to the energy of damping,
-     *   k/2 s (sum w_i : D : w_i / D_i - w : D : w / sum D_i) ,
-     *  and its strain w_i to w. */
-    template <typename Law, typename Cell>
-    void
-    add_branch(const Law                            &law,
-               const double                          factor,
-               Cell                                 &cell,
-               const unsigned int                    batch,
-               PointHistory                         &history,
-               std::vector<SymmetricTensor3<Lanes>> &filter)
+    /** The energy of the elastic points of a run of cells. */
+    template <typename Law>
+    class ElasticEnergySum
     {
-      for (const unsigned int q : cell.quadrature_point_indices())
-        {
-          const auto strain = cell.get_symmetric_gradient(q);
-          history.imbalance(batch, q) += factor * (law.stress(strain) * strain);
-          filter[q] += strain;
-        }
-    }
-
-
-    /**
-     * Adds the energy of a batch, or of two in single precision.
-     *
-     * @param read   reads a vector into a cell and evaluates its gradients
-     * @param reduce makes a number of one number per cell
-     */
-    template <typename Law, typename Cell, typename Read, typename Reduce>
-    void
-    add_elastic_energy(ElasticEnergy      &total,
-                       const Law          &law,
+    public:
+      ElasticEnergySum(const Law          &law,
                        const CellRange    &cells,
                        const double        damping_factor,
                        const DampedMotion &motion,
-                       const MaxwellStep  &maxwell,
-                       const unsigned int  batch,
-                       PointHistory       *history,
-                       Cell               &cell,
-                       Cell               &moving, // at v+
-                       const Read         &read,
-                       const Reduce       &reduce)
-    {
-      const double   stress_factor = cells.stress_factor;
-      const double   dt            = motion.time_step;
-      const Damping &damping       = motion.damping;
-      const double   branches      = damping.branch_stiffness();
-      const double   viscosity =
-        damping_factor * damping.stiffness_coefficient + damping.mesh_viscosity;
-      using Number = decltype(reduce(cell.JxW(0)));
+                       PointHistory       *history)
+        : law(law)
+        , cells(cells)
+        , damping_factor(damping_factor)
+        , motion(motion)
+        , maxwell(motion.damping, motion.time_step)
+        , history(history)
+        , total(cells.exact_sums)
+      {}
 
-      const auto products = [&](Cell &field) {
-        const auto sums =
-          elastic_products(law, stress_factor, field, moving, history, batch);
-        return std::array<Number, 2>{{reduce(sums[0]), reduce(sums[1])}};
-      };
-      const auto products_of = [&](const Vector &vector) {
-        read(cell, vector);
-        return products(cell);
-      };
+      /**
+       * Adds the energy of a batch, or of two in single precision.
+       *
+       * @param cell,moving of the batch; for u, and for v+
+       * @param read   reads a vector into a cell and evaluates its gradients
+       * @param reduce makes a number of one number per cell
+       */
+      template <typename Cell, typename Read, typename Reduce>
+      void
+      add(const unsigned int batch,
+          Cell              &cell,
+          Cell              &moving,
+          const Read        &read,
+          const Reduce      &reduce)
+      {
+        const double   dt      = motion.time_step;
+        const Damping &damping = motion.damping;
+        const double   viscosity =
+          damping_factor * damping.stiffness_coefficient +
+          damping.mesh_viscosity;
+        using Number = decltype(reduce(cell.JxW(0)));
 
-      std::vector<SymmetricTensor3<Lanes>> filter(
-        history == nullptr || maxwell.gain.empty() ?
-          0 :
-          cell.quadrature_point_indices().size());
+        const auto products = [&](Cell &field) {
+          const auto sums = elastic_products(
+            law, cells.stress_factor, field, moving, history, batch);
+          return std::array<Number, 2>{{reduce(sums[0]), reduce(sums[1])}};
+        };
+        const auto products_of = [&](const Vector &vector) {
+          read(cell, vector);
+          return products(cell);
+        };
 
-      read(moving, motion.velocity);
-      const auto [uu, uv] = products_of(motion.displacement);
-      add_cells(total.strain, cells, batch, Number(0.5 * (uu - dt * uv)));
-      if (viscosity > 0.)
-        {
-          const auto [bb, bv] = products_of(motion.velocity_before);
-          add_cells(total.last_loss,
-                    cells,
-                    batch,
-                    Number(0.5 * dt * viscosity * (bb + bv)));
-        }
-      const Number vv = maxwell.gain.empty() ? Number(0.) : products(moving)[0];
-      for (unsigned int q = 0; q < filter.size(); ++q)
-        history->imbalance(batch, q) = 0.;
-      for (unsigned int i = 0; i < maxwell.gain.size(); ++i)
-        if (const double a = maxwell.decay[i], b = maxwell.gain[i]; b > 0.)
+        read(moving, motion.velocity);
+        const auto [uu, uv] = products_of(motion.displacement);
+        add_cells(total.strain, cells, batch, Number(0.5 * (uu - dt * uv)));
+        if (viscosity > 0.)
           {
-            const auto [ww, wv] = products_of(motion.memory[i]);
-            const double factor = damping_factor * dt / (2. * b);
-            const Number across = a * ww + b * wv, // w_i^T K w_i+
-              next              = a * across + b * (a * wv + b * vv);
-            if constexpr (std::is_same_v<std::decay_t<decltype(cell.JxW(0))>,
-                                         Lanes>)
-              if (history != nullptr)
-                add_branch(law,
-                           0.5 * stress_factor * damping_factor /
-                             damping.coefficients[i],
-                           cell,
-                           batch,
-                           *history,
-                           filter);
-            add_cells(total.memory, cells, batch, Number(factor * across));
-            add_cells(total.next_loss,
+            const auto [bb, bv] = products_of(motion.velocity_before);
+            add_cells(total.last_loss,
                       cells,
                       batch,
-                      Number(factor * (1. - a) * (next + across)));
+                      Number(0.5 * dt * viscosity * (bb + bv)));
           }
-      if (branches > 0.)
+        if (maxwell.gain.empty())
+          return;
+
+        const Number vv = products(moving)[0];
+        begin_imbalance(batch, cell);
+        for (unsigned int i = 0; i < maxwell.gain.size(); ++i)
+          if (const double a = maxwell.decay[i], b = maxwell.gain[i]; b > 0.)
+            {
+              const auto [ww, wv] = products_of(motion.memory[i]);
+              const double factor = damping_factor * dt / (2. * b);
+              const Number across = a * ww + b * wv, // w_i^T K w_i+
+                next              = a * across + b * (a * wv + b * vv);
+              add_to_imbalance(i, batch, cell);
+              add_cells(total.memory, cells, batch, Number(factor * across));
+              add_cells(total.next_loss,
+                        cells,
+                        batch,
+                        Number(factor * (1. - a) * (next + across)));
+            }
+        end_imbalance(batch);
+      }
+
+      const ElasticEnergy &
+      sum() const
+      {
+        return total;
+      }
+
+    private:
+      /** The imbalance of the branches at each point,
+       *   k/2 s (sum w_i : D : w_i / D_i - w : D : w / sum D_i) ,
+       *  is summed up over the branches i with w = sum w_i. */
+      template <typename Cell>
+      void
+      begin_imbalance(const unsigned int batch, Cell &cell)
+      {
+        if (history == nullptr)
+          return;
+        filter.assign(cell.quadrature_point_indices().size(),
+                      SymmetricTensor3<Lanes>());
         for (unsigned int q = 0; q < filter.size(); ++q)
-          history->imbalance(batch, q) -= 0.5 * stress_factor * damping_factor /
-                                          branches *
-                                          (law.stress(filter[q]) * filter[q]);
-    }
+          history->imbalance(batch, q) = 0.;
+      }
+
+      template <typename Cell>
+      void
+      add_to_imbalance(const unsigned int branch,
+                       const unsigned int batch,
+                       Cell              &cell)
+      {
+        // cells in single precision have no internal variables
+        if constexpr (std::is_same_v<std::decay_t<decltype(cell.JxW(0))>,
+                                     Lanes>)
+          for (unsigned int q = 0; q < filter.size(); ++q)
+            {
+              const auto strain = cell.get_symmetric_gradient(q);
+              history->imbalance(batch, q) +=
+                0.5 * cells.stress_factor * damping_factor /
+                motion.damping.coefficients[branch] *
+                (law.stress(strain) * strain);
+              filter[q] += strain;
+            }
+      }
+
+      void
+      end_imbalance(const unsigned int batch)
+      {
+        const double branches = motion.damping.branch_stiffness();
+        if (branches > 0.)
+          for (unsigned int q = 0; q < filter.size(); ++q)
+            history->imbalance(batch, q) -= 0.5 * cells.stress_factor *
+                                            damping_factor / branches *
+                                            (law.stress(filter[q]) * filter[q]);
+      }
+
+      const Law                           &law;
+      const CellRange                     &cells;
+      const double                         damping_factor;
+      const DampedMotion                  &motion;
+      const MaxwellStep                    maxwell;
+      PointHistory                        *history; // null: none
+      std::vector<SymmetricTensor3<Lanes>> filter;  // w of the batch
+      ElasticEnergy                        total;
+    };
 
 
     /** CellKernel::elastic_energy. */
@@ -186,27 +224,8 @@ namespace Voussoir
                    const DampedMotion &motion,
                    PointHistory       *history)
     {
-      const auto       &matrix_free = cells.matrix_free;
-      const MaxwellStep maxwell(motion.damping, motion.time_step);
-      ElasticEnergy     total(cells.exact_sums);
-      const auto        add = [&](const unsigned int batch,
-                           auto              &cell,
-                           auto              &moving,
-                           const auto        &read,
-                           const auto        &reduce) {
-        add_elastic_energy(total,
-                           law,
-                           cells,
-                           damping_factor,
-                           motion,
-                           maxwell,
-                           batch,
-                           history,
-                           cell,
-                           moving,
-                           read,
-                           reduce);
-      };
+      const auto           &matrix_free = cells.matrix_free;
+      ElasticEnergySum<Law> energy(law, cells, damping_factor, motion, history);
       with_cells(cells, [&](auto &&cell) {
         if (cells.single_precision && history == nullptr)
           {
@@ -220,14 +239,15 @@ namespace Voussoir
                 const unsigned int n = std::min(2U, cells.end - batch);
                 two.reinit(batch, n);
                 moving.reinit(batch, n);
-                add(batch, two, moving, read, [&](const Singles &values) {
-                  double sum = 0.;
-                  for (unsigned int half = 0; half < n; ++half)
-                    sum += sum_of_cells(matrix_free,
-                                        batch + half,
-                                        half_of_singles(values, half));
-                  return sum;
-                });
+                energy.add(
+                  batch, two, moving, read, [&](const Singles &values) {
+                    double sum = 0.;
+                    for (unsigned int half = 0; half < n; ++half)
+                      sum += sum_of_cells(matrix_free,
+                                          batch + half,
+                                          half_of_singles(values, half));
+                    return sum;
+                  });
               }
             return;
           }
@@ -241,13 +261,13 @@ namespace Voussoir
             {
               cell.reinit(batch);
               moving.reinit(batch);
-              add(batch, cell, moving, read, [&](const Lanes &values) {
+              energy.add(batch, cell, moving, read, [&](const Lanes &values) {
                 return reduce(batch, values);
               });
             }
         });
       });
-      return total;
+      return energy.sum();
     }
 
 

@@ -10,18 +10,18 @@
 namespace Voussoir
 {
   /**
-   * Response of a point of a law with internal variables under a damping model.
-   * With
-   *
-   *   u    displacement [m], B u its strain [1]
-   *   w    damping memory [m]: filters that follow u, times the damping factor,
-   *        and the mesh viscosity D    elastic stiffness of the law [Pa]
-   *   k    factor on the stress that makes the moduli hold at the reference
-   *        frequency
-   *   e_0  strain offset [1] by static factor and temperature e_s  elastic
-   * strain of the static state [1], which damping leaves out e_p  plastic
-   * strain of the law [1] r    share of the stiffness that damage has left
-   * before this step [1]
+   * Response of a point of a law with internal variables under a damping
+   * model. With
+   * - u: displacement [m], B u its strain [1],
+   * - w: damping memory [m], which are filters that follow u, times the damping
+   *   factor, and the mesh viscosity,
+   * - D: elastic stiffness of the law [Pa],
+   * - k: factor on the stress that makes the moduli hold at the reference
+   *   frequency,
+   * - e_0: strain offset [1] by static factor and temperature,
+   * - e_s: elastic strain of the static state [1], which damping leaves out,
+   * - e_p: plastic strain of the law [1],
+   * - r: share of the stiffness that damage has left before this step [1],
    *
    * the law gets the strain of which the elastic stress is the total stress of
    * an elastic point,
@@ -52,13 +52,14 @@ namespace Voussoir
    *   sigma : e_e / 2 of the elastic strain e_e, it loses exactly
    *     (sigma_a : e_e,b - sigma_b : e_e,a)/2 + (sigma_a + sigma_b) : de_p/2 .
    *   The loss that the law itself reports goes into the balance instead, so
-   * that the balance shows a law that reports less or more. Where no internal
+   *   that the balance shows a law that reports less or more. Where no internal
    *   variable has changed the law is elastic and loses nothing: the remainder
-   * is then the error of the rule where cracks open and close, which is added
-   * to the loss of closing.
+   *   is then the error of the rule where cracks open and close, which is added
+   *   to the loss of closing.
    * - (s_a + s_b) n . B du . n / 2 on the viscosity of closing, all of it lost.
    * - (sigma_a + sigma_b) : (B du - de)/2 on damping. Of this work, summed up
-   * since the static state, damping stores (1/k_r - 1) sigma : e_e / 2
+   *   since the static state, damping stores
+   *     (1/k_r - 1) sigma : e_e / 2
    *     + r^4 [ k (1 + 1/(s sum D_i)) w : D : w / 2 - sigma : w + j ] .
    *   Here j is the imbalance of the branches, the energy that they store above
    *   the least one for their sum w, k w : D : w / (2 s sum D_i): with that of
@@ -145,23 +146,8 @@ namespace Voussoir
       now.plastic = now.law_strain - response.elastic_strain;
       now.stress  = response.stress;
 
-      // the law's numbers stay zero while it is elastic
-      Lanes begins = 0.;
-      for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-        if (last.band[lane] == 0.)
-          {
-            // by itself, this cell would not have been evaluated
-            if (history.lanes_are_alone() && !(level[lane] > 1.))
-              for (unsigned int i = 0; i < Law::n_history; ++i)
-                values[i][lane] = 0.;
-            bool is_elastic = true;
-            for (unsigned int i = 0; i < Law::n_history; ++i)
-              is_elastic = is_elastic && values[i][lane] == 0.;
-            if (is_elastic)
-              now.band[lane] = 0.;
-            else
-              begins[lane] = 1.;
-          }
+      const Lanes begins =
+        find_beginning(last, level, history.lanes_are_alone(), values, now);
 
       const SymmetricTensor3<Lanes> change = own_strain - last.strain;
       if (was_active)
@@ -200,24 +186,12 @@ namespace Voussoir
         }
       if (any_above(begins, 0.))
         {
-          // as at an elastic point
-          const SymmetricTensor3<Lanes> law_strain_then =
-            elastic_static + offset;
-          const SymmetricTensor3<Lanes> elastic_strain =
-            k * (own_strain - now.plastic - elastic_static + filter);
           const Lanes imbalance = history.imbalance(batch, q);
           now.filter_imbalance =
             dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
               begins, Lanes(1.), imbalance, now.filter_imbalance);
           const Lanes brought =
-            filter_energy(filter,
-                          law.stress(elastic_strain),
-                          imbalance,
-                          Lanes(1.)) +
-            0.5 * (1. / k - 1.) *
-              (law.stress(elastic_strain) * elastic_strain) +
-            law.stress(law_strain_then) *
-              (own_strain - now.law_strain - elastic_static + law_strain_then);
+            work_while_elastic(now, elastic_static, offset, imbalance);
           taken_by_damping =
             dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
               begins, Lanes(1.), brought, taken_by_damping);
@@ -437,6 +411,53 @@ namespace Voussoir
       return fourth_power(share) *
              (0.5 * memory_factor * (law.stress(filter) * filter) -
               stress * filter + imbalance);
+    }
+
+    /** 1 in cells whose law leaves the elastic range in this step, else 0; the
+     *  internal variables stay zero and @p now has no band while it is elastic.
+     */
+    static Lanes
+    find_beginning(const ActivePoint &last,
+                   const Lanes       &level,
+                   const bool         lanes_are_alone,
+                   Lanes             *values,
+                   ActivePoint       &now)
+    {
+      Lanes begins = 0.;
+      for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+        if (last.band[lane] == 0.)
+          {
+            // by itself, this cell would not have been evaluated
+            if (lanes_are_alone && !(level[lane] > 1.))
+              for (unsigned int i = 0; i < Law::n_history; ++i)
+                values[i][lane] = 0.;
+            bool is_elastic = true;
+            for (unsigned int i = 0; i < Law::n_history; ++i)
+              is_elastic = is_elastic && values[i][lane] == 0.;
+            if (is_elastic)
+              now.band[lane] = 0.;
+            else
+              begins[lane] = 1.;
+          }
+      return begins;
+    }
+
+    /** Work on damping since the static state of a point that has been elastic
+     *  until now [J/m3]. */
+    Lanes
+    work_while_elastic(const ActivePoint             &now,
+                       const SymmetricTensor3<Lanes> &elastic_static,
+                       const SymmetricTensor3<Lanes> &offset,
+                       const Lanes                   &imbalance) const
+    {
+      const SymmetricTensor3<Lanes> law_strain_then = elastic_static + offset;
+      const SymmetricTensor3<Lanes> elastic_strain =
+        k * (now.strain - now.plastic - elastic_static + now.filter);
+      const SymmetricTensor3<Lanes> stress = law.stress(elastic_strain);
+      return filter_energy(now.filter, stress, imbalance, Lanes(1.)) +
+             0.5 * (1. / k - 1.) * (stress * elastic_strain) +
+             law.stress(law_strain_then) *
+               (now.strain - now.law_strain - elastic_static + law_strain_then);
     }
 
     /** Relative change of damage and plastic strain. */

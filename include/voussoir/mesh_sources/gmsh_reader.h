@@ -12,7 +12,7 @@ namespace Voussoir
    * sets; a physical group without a name is called "volume 3", "surface 3",
    * "curve 3" or "point 3" after its number. Throws UserError. (Gmsh's library
    * crashes on damaged files, takes a shortened binary file for a small mesh
-   * and says of no error in which line it is.)
+   * and reports no line of an error.)
    */
   FileMesh
   read_gmsh(MeshFile &file);

@@ -35,7 +35,7 @@ namespace Voussoir
     void
     skip_line();
 
-    /** Go to where @p text comes next; false, and stay, if it does not. */
+    /** Moves to the next @p text; false, and unmoved, if there is none. */
     bool
     go_to(const std::string &text);
 

@@ -16,9 +16,9 @@ namespace Voussoir
    * "material 3" of the hexahedra and face sets "boundary 3" of the
    * quadrilaterals. Without such an array there are no sets, and @p report
    * (may be null) notes it. Throws UserError. (deal.II's GridIn::read_vtk()
-   * reads neither binary files nor version 5, knows one name of the array only
-   * and refuses quadrilaterals inside the mesh, which name interfaces here;
-   * VTK's own reader: see doc/architecture.md.)
+   * reads neither binary files nor version 5, accepts one name of the array
+   * only and refuses quadrilaterals inside the mesh, which name interfaces
+   * here; VTK's own reader: see doc/architecture.md.)
    */
   FileMesh
   read_vtk(MeshFile &file, std::ostream *report);

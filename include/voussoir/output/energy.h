@@ -145,6 +145,14 @@ namespace Voussoir
     load(const nlohmann::json &saved);
 
   private:
+    /** Sums up the terms at the state. */
+    void
+    sum_up(State &state);
+
+    /** Least energy to which the error is to be compared [J]. */
+    double
+    least_scale(const unsigned long long step) const;
+
     /** Losses of the elastic cells until now, and those in the next step and in
      *  the last one [J]. */
     double

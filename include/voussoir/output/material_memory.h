@@ -17,7 +17,7 @@ namespace Voussoir
 
   /** Whether the law of a material has crack openings. */
   bool
-  tells_of_cracks(const Material &material);
+  reports_cracks(const Material &material);
 
   /** Opening of the crack of an integration point [m]. */
   struct CrackOpening

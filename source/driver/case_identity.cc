@@ -50,6 +50,19 @@ namespace Voussoir
     }
 
 
+    template <typename Iterator>
+    std::string
+    checksum_of(Iterator byte, const Iterator end)
+    {
+      std::uint64_t sum = 0xcbf29ce484222325;
+      for (; byte != end; ++byte)
+        sum = (sum ^ static_cast<unsigned char>(*byte)) * 0x100000001b3;
+      std::ostringstream text;
+      text << std::hex << std::setw(16) << std::setfill('0') << sum;
+      return text.str();
+    }
+
+
     /** Checksum of the contents of a file; empty if there is no such file. */
     std::string
     checksum_of_file(const std::string &name)
@@ -58,7 +71,7 @@ namespace Voussoir
       if (!std::filesystem::is_regular_file(name, none))
         return "";
       std::ifstream in(name, std::ios::binary);
-      return checksum({std::istreambuf_iterator<char>(in), {}});
+      return checksum_of(std::istreambuf_iterator<char>(in), {});
     }
 
 
@@ -170,12 +183,7 @@ namespace Voussoir
   std::string
   checksum(const std::string &bytes)
   {
-    std::uint64_t sum = 0xcbf29ce484222325;
-    for (const char byte : bytes)
-      sum = (sum ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
-    std::ostringstream text;
-    text << std::hex << std::setw(16) << std::setfill('0') << sum;
-    return text.str();
+    return checksum_of(bytes.begin(), bytes.end());
   }
 
 

@@ -83,7 +83,7 @@ namespace Voussoir
                       0.5e-3 * friction * mass * gravity * std::cos(angle) *
                         acceleration * time * time,
                       0.005);
-        verdicts.below("unaccounted energy over input [%]",
+        verdicts.below("energy-balance error over input [%]",
                        100. * simulation->run.energy.relative_error(),
                        0.5);
         verdicts.below("penetration over cell size",

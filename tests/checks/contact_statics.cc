@@ -7,7 +7,7 @@ namespace Voussoir
   namespace
   {
     /**
-     * A cube on a frictional base (physics B9): in the static state the contact
+     * A cube on a frictional base: in the static state the contact
      * carries its weight; on an incline, the plane of which is level and the
      * weight tilted, it stays up to tan(theta) = f and then slides with g (sin
      * - f cos).

@@ -266,7 +266,7 @@ def result(output):
             "lost": energy["material [J]"][-1] / thickness / (FRACTURE_ENERGY * (SIDE - NOTCH)),
             "left": load[-10:].mean() / thickness,
             "kinetic": energy["kinetic [J]"].max() / work.max(),
-            "unaccounted": np.abs(energy["energy-balance error [J]"]).max() / work.max(),
+            "error": np.abs(energy["energy-balance error [J]"]).max() / work.max(),
             "slope": np.degrees(np.arctan(slope)),
             "time": 0.5 * (time[1:] + time[:-1]),
             "load": load / thickness,
@@ -309,7 +309,7 @@ def main(program, folder):
         print(f"| {title} | {abs(values['slope']):.0f}° | {1e-3 * values['peak']:.0f} kN/m "
               f"| {values['peak'] / first['peak']:.2f} | {values['lost']:.2f} "
               f"| {100. * values['left'] / values['peak']:.0f} % |")
-    for name in ("kinetic", "unaccounted"):
+    for name in ("kinetic", "error"):
         print(f"{name} energy over the work, at most "
               f"{max(values[name] for values in results.values()):.4f}")
     draw(results, os.path.join(ROOT, "doc", "mesh_bias.png"))

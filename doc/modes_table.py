@@ -23,12 +23,12 @@ VARIANTS = {
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
-def frequencies(program, ranks, case, held, massless, water, *changes):
+def frequencies(program, ranks, case, fixed, massless, water, *changes):
     with tempfile.TemporaryDirectory() as scratch:
         folder = os.path.join(scratch, "run")
         subprocess.run(
             ["mpirun", "-np", ranks, program, f"{ROOT}/prm/{case}.prm",
-             "--set", f"Modes/Fixed materials={held}",
+             "--set", f"Modes/Fixed materials={fixed}",
              "--set", f"Modes/Massless materials={massless}",
              "--set", f"Modes/Water={water}",
              "--set", f"Output/Folder={folder}"]

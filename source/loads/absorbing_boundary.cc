@@ -72,7 +72,7 @@ namespace Voussoir
       const double G = rock.shear_modulus();
       const double E = rock.young_modulus;
       const double M = rock.lame_lambda() + 2. * G;
-      // physics A2: normal spring r, tangential spring r, factor on rho c
+      // normal spring r, tangential spring r, factor on rho c
       const std::map<SpringCoefficients, std::array<double, 3>> sets{
         {SpringCoefficients::paper, {{E / 2., G / 2., 1.}}},
         {SpringCoefficients::liu_3d, {{4. / 3. * G, 2. / 3. * G, 1.}}},

@@ -66,7 +66,7 @@ namespace Voussoir
   std::array<double, n_surface_columns>
   surface_values(const double *sum, const double *largest, const double area)
   {
-    // Of the plane as a whole, (c A + f N) / T. Infinite without shear, as in
+    // Of the plane as a whole, (c A + mu N) / T. Infinite without shear, as in
     // an open joint without keys or one whose keys prevent slip, or with nearly
     // none.
     const Tensor<1, 3> shear({sum[shear_x], sum[shear_y], sum[shear_z]}),

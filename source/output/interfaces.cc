@@ -53,7 +53,7 @@ namespace Voussoir
         declare_interval(
           prm,
           "Time between two lines of interfaces.csv [s]. In it "
-          "the sliding safety of a surface is (c A + f N) / T, "
+          "the sliding safety of a surface is (c A + mu N) / T, "
           "the resistance by friction and cohesion over the "
           "resultant of the shear, both where no keys prevent slip. "
           "Extremes in summary.json are those of all steps.");

@@ -65,7 +65,7 @@ namespace Voussoir
                       momentum / mass,
                       force * time / (mass + sum[1][1]),
                       0.02);
-        verdicts.below("energy unaccounted for",
+        verdicts.below("energy-balance error",
                        (simulation->run.energy.evaluate(simulation->run.state),
                         simulation->run.energy.relative_error()),
                        1e-9);

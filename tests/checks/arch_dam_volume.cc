@@ -141,7 +141,7 @@ namespace Voussoir
 
 
     /**
-     * Two dams of an own shape, by their entries: a cylinder of constant
+     * Two dams of a custom shape, by their entries: a cylinder of constant
      * thickness between straight banks, in closed form, and parabolas with an
      * upright middle surface, by quadrature. In both all arches are normal to
      * the same upright sections.
@@ -347,6 +347,6 @@ namespace Voussoir
 
     // Reference: closed form
     const Registry<Check>::Add<CustomArchDam>
-      registered("custom arch dam", "Measures of an own shape.");
+      registered("custom arch dam", "Measures of a custom shape.");
   } // namespace
 } // namespace Voussoir

@@ -7,7 +7,7 @@ namespace Voussoir
   namespace
   {
     /**
-     * A cube on a frictional base (physics B9): in the static state the contact
+     * A cube on a frictional base: in the static state the contact
      * carries its weight; on an incline, the plane of which is level and the
      * weight tilted, it stays up to tan(theta) = f and then slides with g (sin
      * - f cos).
@@ -83,7 +83,7 @@ namespace Voussoir
                       0.5e-3 * friction * mass * gravity * std::cos(angle) *
                         acceleration * time * time,
                       0.005);
-        verdicts.below("unaccounted energy over input [%]",
+        verdicts.below("energy-balance error over input [%]",
                        100. * simulation->run.energy.relative_error(),
                        0.5);
         verdicts.below("penetration over cell size",

@@ -173,7 +173,7 @@ namespace Voussoir
                        1e-15);
 
         // to first order in the step
-        double unaccounted = 0.;
+        double error = 0.;
         for (unsigned int repetition = 0; repetition < 5; ++repetition)
           {
             std::vector<double> history(material.n_history());
@@ -186,7 +186,7 @@ namespace Voussoir
                 0.5 * (response.stress + last_stress) * (strain - last_strain);
               dissipated += response.dissipation;
               largest = std::max({largest, stored(response), dissipated});
-              keep_largest(unaccounted,
+              keep_largest(error,
                            std::abs(work - dissipated - stored(response)) /
                              largest);
               last_strain = strain;
@@ -194,7 +194,7 @@ namespace Voussoir
             });
           }
         verdicts.below(name + ": work less what is stored and lost",
-                       unaccounted,
+                       error,
                        0.01);
 
         // elastic waves of all directions are no faster than the P wave

@@ -122,7 +122,7 @@ namespace Voussoir
                          incident_velocity.norm(),
                        residual);
         simulation->run.energy.evaluate(simulation->run.state);
-        verdicts.below("energy unaccounted for",
+        verdicts.below("energy-balance error",
                        simulation->run.energy.relative_error(),
                        0.005);
       }

@@ -126,13 +126,12 @@ namespace Voussoir
                             std::stod(reported) * crack_energy,
                             0.01,
                             "J");
-              const double unaccounted = summary.error;
-              verdicts.below(name +
-                               "unaccounted less what is not reported, over "
-                               "the crack's energy",
-                             unaccounted / crack_energy -
-                               (1. - std::stod(reported)),
-                             0.01);
+              const double error = summary.error;
+              verdicts.below(
+                name + "energy-balance error less what is not reported, over "
+                       "the crack's energy",
+                error / crack_energy - (1. - std::stod(reported)),
+                0.01);
             }
       }
 

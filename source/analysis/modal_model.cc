@@ -1,3 +1,4 @@
+#include <voussoir/analysis/measured_shapes.h>
 #include <voussoir/analysis/modal_model.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
@@ -41,6 +42,17 @@ namespace Voussoir
       "if these were incompressible. Incompressible: these cells, whatever the "
       "model. Compressible: these cells as compressible water; the reservoir "
       "then ends at a rigid wall, and has modes of its own.");
+    prm.add_parameter("Measured points",
+                      points,
+                      "Places of \"Measured shapes\", named points \"name: x y "
+                      "z\" [m] within the dam or rock, separated by \";\".");
+    prm.add_parameter(
+      "Measured shapes",
+      shapes,
+      "Measured mode shapes, separated by \";\", each with amplitudes in x, y or "
+      "z at some of the points in any common unit, as in \"symmetric: crest y "
+      "1, quarter y 0.6\". The summary has, for each, the mode of the largest "
+      "modal assurance criterion and its frequency.");
     prm.add_parameter(
       "Relative tolerance",
       tolerance,
@@ -67,6 +79,7 @@ namespace Voussoir
   {
     if (number == 0)
       return;
+    measured_shapes(*this);
     const auto check_names = [&](const std::string &entry,
                                  const std::string &names) {
       for (const std::string &name : split_list(names))

@@ -1,4 +1,5 @@
 #include <voussoir/analysis/eigensolver.h>
+#include <voussoir/analysis/measured_shapes.h>
 #include <voussoir/analysis/modal_system.h>
 #include <voussoir/analysis/modes.h>
 #include <voussoir/base/error.h>
@@ -141,6 +142,8 @@ namespace Voussoir
            {"cumulative effective mass [-]", to_json(share(sum, moving_mass))},
            {"residual", mode.residual}});
       }
+    if (!measured_shapes.empty())
+      result["measured shapes"] = measured_shapes;
     return result;
   }
 
@@ -149,6 +152,7 @@ namespace Voussoir
   check_modes(const ModalModel &model, const ModeParameters &parameters)
   {
     block_size(ModalSystem(model, parameters), parameters.number);
+    MeasuredShapes(model, parameters);
     if (model.reservoir == nullptr)
       return;
     bool surface = false;
@@ -262,6 +266,9 @@ namespace Voussoir
                                      momenta,
                                      orientation));
 
+    modes.measured_shapes =
+      MeasuredShapes(model, parameters).nearest(modes.list);
+
     std::ostringstream text;
     text << std::setprecision(4) << "Modes: " << modes.list.size() << " in "
          << pairs.iterations << " iterations, "
@@ -273,6 +280,13 @@ namespace Voussoir
       text << ", the moving water included";
     log.line(text.str());
     log(table(modes));
+    for (const auto &[name, found] : modes.measured_shapes.items())
+      log.line("Modes: the measured shape \"",
+               name,
+               "\" is nearest to mode ",
+               found.at("mode").get<unsigned int>(),
+               ", with a modal assurance criterion of ",
+               found.at("modal assurance criterion [-]").get<double>());
     return modes;
   }
 } // namespace Voussoir

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iomanip>
+#include <map>
 #include <numeric>
 
 namespace Voussoir
@@ -217,6 +218,45 @@ namespace Voussoir
     }
 
 
+    // The more rock there is below the dam, the weaker the motion of an outcrop
+    // at its bottom arrives.
+    void
+    report_loss(const Model                              &model,
+                const std::array<std::vector<double>, 3> &accelerations,
+                Log                                      &log)
+    {
+      constexpr double noteworthy = 0.05;
+      const auto      &damping    = model.parameters.damping;
+      if (damping.model == DampingModel::none)
+        return;
+      const double frequency = middle_frequency(accelerations);
+      // of each level, which several faces have
+      std::map<double, double> damped_times;
+      for (const SideFace &face : model.boundary.side_faces())
+        {
+          const Material &material = *model.solid.materials[face.material];
+          damped_times[face.lower] =
+            damping.ratio * material.damping_factor() *
+            (face.upper - face.lower) /
+            material.elastic_constants().s_wave_speed();
+        }
+      double exponent = 0.;
+      for (const auto &level : damped_times)
+        exponent += 2. * numbers::PI * frequency * level.second;
+      const double share =
+        Utilities::MPI::max(-std::expm1(-exponent), log.communicator());
+      if (share > noteworthy)
+        log.line(std::setprecision(2),
+                 "Ground motion: damping takes ",
+                 100. * share,
+                 " % of an S wave of ",
+                 frequency,
+                 " Hz on its way from the bottom of the model, where the "
+                 "outcrop is, to its surface; \"Given at = level rock\" makes "
+                 "up for it");
+    }
+
+
     // A vertical wave is computed in one column of layers.
     void
     check_layers(const Model &model, Log &log)
@@ -293,7 +333,8 @@ namespace Voussoir
                           "inertial force; set it to 1 for the dam.");
         return;
       }
-    if (ground_motion.given_at == MotionPlace::free_surface)
+    if (ground_motion.given_at == MotionPlace::free_surface ||
+        ground_motion.given_at == MotionPlace::level_rock)
       for (const auto &component : signals)
         if (component && std::isinf(component->end()))
           followed_to = end_time;
@@ -303,7 +344,11 @@ namespace Voussoir
                ground_motion.given_at,
                signals);
     if (parameters.wave.type == WaveType::vertical)
-      check_layers(model, log);
+      {
+        check_layers(model, log);
+        if (end_time > 0. && ground_motion.given_at == MotionPlace::outcrop)
+          report_loss(model, accelerations, log);
+      }
   }
 
 

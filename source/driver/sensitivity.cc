@@ -3,23 +3,11 @@
 #include <voussoir/driver/sensitivity.h>
 
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 
 namespace Voussoir
 {
   namespace
   {
-    /** With so many digits that small changes are seen. */
-    std::string
-    fine_text(const double value)
-    {
-      std::ostringstream text;
-      text << std::setprecision(12) << value;
-      return text.str();
-    }
-
-
     /** Whether an entry is part of the case, not of what is shown of it. */
     bool
     is_of_the_case(const std::string &entry)
@@ -57,7 +45,7 @@ namespace Voussoir
               if (value != 0.)
                 {
                   std::vector<std::string> texts = given;
-                  texts[i] = fine_text(value * (1. + change));
+                  texts[i] = number_text(value * (1. + change), fine_digits);
                   result.push_back(
                     {entry,
                      value,

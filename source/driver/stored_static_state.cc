@@ -127,6 +127,7 @@ namespace Voussoir
     Modes copy(modes);
     write_state(file,
                 {{"moving mass", numbers_of(modes.moving_mass)},
+                 {"measured shapes", modes.measured_shapes},
                  {"modes", list}},
                 content_of(model, copy),
                 model.grid.communicator());
@@ -139,7 +140,8 @@ namespace Voussoir
     const MPI_Comm       communicator = model.grid.communicator();
     const nlohmann::json header       = read_state_header(file, communicator);
     Modes                modes;
-    modes.moving_mass = vector_of(header.at("moving mass"));
+    modes.moving_mass     = vector_of(header.at("moving mass"));
+    modes.measured_shapes = header.value("measured shapes", nlohmann::json());
     for (const nlohmann::json &mode : header.at("modes"))
       modes.list.push_back({mode.at(0),
                             model.solid.discretization.create_vector(),

@@ -84,7 +84,10 @@ namespace Voussoir
   {
     std::vector<ParameterFile> result;
     for (const StudyValues &values : combinations)
-      if (!parameters.seeks_limit())
+      if (parameters.calibrates())
+        result.push_back(file_of(fitted_values(
+          values, dealii::Vector<double>(parameters.fitted_entries().size()))));
+      else if (!parameters.seeks_limit())
         result.push_back(file_of(values));
       else
         for (const double value : {parameters.from, parameters.to})
@@ -106,6 +109,7 @@ namespace Voussoir
                                      "Study/Extrapolation/Over=",
                                      "Study/Fragility/Intensity=",
                                      "Study/Sensitivity/Change=0",
+                                     "Study/Calibration/Fitted=",
                                      "Output/Folder=" + folder_of(values)};
     for (const auto &[entry, value] : values)
       if (entry != strength_reduction)
@@ -204,6 +208,8 @@ namespace Voussoir
     for (std::size_t i = my_group; i < combinations.size(); i += n_groups)
       if (parameters.seeks_limit())
         seek_limit(combinations[i]);
+      else if (parameters.calibrates())
+        calibrate(combinations[i]);
       else
         outcome_of(combinations[i]);
     gather();

@@ -188,13 +188,46 @@ namespace Voussoir
                       "semicolons; a star stands for any letters, as in "
                       "\"Materials/*\".");
     prm.leave_subsection();
+
+    prm.enter_subsection("Calibration");
+    prm.add_parameter(
+      "Fitted",
+      fitted,
+      "Entries that are fitted to measured numbers, separated by semicolons, as "
+      "\"Materials/concrete/Young's modulus; Materials/rock/Young's modulus\", "
+      "in each combination. The search begins at their values in this file; "
+      "study_calibration.csv has what was found. Empty: no calibration.");
+    prm.add_parameter(
+      "Measured",
+      measured,
+      "Measured numbers, separated by semicolons, \"PATH = VALUE\" by their "
+      "paths in summary.json, as \"modes/modes/0/frequency [Hz] = 5.45\", at "
+      "least as many as fitted entries. The sum of the squares of relative "
+      "differences becomes smallest.");
+    prm.add_parameter(
+      "Error",
+      measurement_error,
+      "Relative standard error of a measured number, from which "
+      "those of the fitted entries follow [-].",
+      Patterns::Double(1e-6, 1.));
+    prm.add_parameter(
+      "Accuracy",
+      calibration_accuracy,
+      "Relative change of the fitted entries at which the search ends [-].",
+      Patterns::Double(1e-6, 0.1));
+    prm.add_parameter("Iterations",
+                      max_iterations,
+                      "Most steps of the search, each of which takes one run "
+                      "and one for each fitted entry.",
+                      Patterns::Integer(1, 100));
+    prm.leave_subsection();
   }
 
 
   bool
   StudyParameters::wanted() const
   {
-    return !vary.empty() || seeks_limit() || moves_numbers();
+    return !vary.empty() || seeks_limit() || moves_numbers() || calibrates();
   }
 
 
@@ -209,6 +242,13 @@ namespace Voussoir
   StudyParameters::moves_numbers() const
   {
     return change > 0.;
+  }
+
+
+  bool
+  StudyParameters::calibrates() const
+  {
+    return !fitted.empty();
   }
 
 
@@ -237,7 +277,29 @@ namespace Voussoir
     if (reduces_strengths() && reduced.empty())
       throw UserError("Section \"Study\" has a " + strength_reduction +
                       ", but \"Reduced strengths\" names no entries.");
+    check_calibration();
     check_evaluations();
+  }
+
+
+  void
+  StudyParameters::check_calibration() const
+  {
+    if (!calibrates())
+      return;
+    if (seeks_limit() || moves_numbers() || !refined.empty() ||
+        !intensity.empty())
+      throw UserError(
+        "\"Fitted\" in section \"Study/Calibration\" goes with \"Vary\" only; "
+        "leave the entries of sections \"Limit\", \"Sensitivity\", "
+        "\"Extrapolation\" and \"Fragility\" of section \"Study\" empty.");
+    const auto n_numbers = measured_numbers().size(),
+               n_entries = fitted_entries().size();
+    if (n_numbers < n_entries)
+      throw UserError("\"Measured\" in section \"Study/Calibration\" has " +
+                      counted(n_numbers, "number", "numbers") + " for " +
+                      counted(n_entries, "fitted entry", "fitted entries") +
+                      "; give at least as many numbers as entries.");
   }
 
 
@@ -353,6 +415,37 @@ namespace Voussoir
   }
 
 
+  std::vector<std::string>
+  StudyParameters::fitted_entries() const
+  {
+    return split_list(fitted, ';');
+  }
+
+
+  std::vector<std::pair<SummaryNumber, double>>
+  StudyParameters::measured_numbers() const
+  {
+    std::vector<std::pair<SummaryNumber, double>> result;
+    for (const std::string &text : split_list(measured, ';'))
+      {
+        const auto                  equals = text.rfind('=');
+        const std::optional<double> value =
+          equals == std::string::npos ?
+            std::optional<double>() :
+            parse_number(Utilities::trim(text.substr(equals + 1)));
+        if (!value || !(*value > 0.))
+          throw UserError(
+            "\"Measured\" in section \"Study/Calibration\" has \"" + text +
+            "\"; write \"PATH = VALUE\" with the path of a "
+            "number in summary.json and a value above zero, as "
+            "\"modes/modes/0/frequency [Hz] = 5.45\".");
+        result.emplace_back(
+          SummaryNumber(Utilities::trim(text.substr(0, equals))), *value);
+      }
+    return result;
+  }
+
+
   std::vector<SummaryNumber>
   StudyParameters::numbers() const
   {
@@ -369,6 +462,12 @@ namespace Voussoir
       "through cracks/largest opening from face to face at one moment [mm];"
       "energy balance/lost to cracks and plastic flow [J]";
     std::vector<SummaryNumber> result;
+    if (quantities.empty() && calibrates())
+      {
+        for (const auto &number : measured_numbers())
+          result.push_back(number.first);
+        return result;
+      }
     for (const std::string &path :
          split_list(quantities.empty() ? usual : quantities, ';'))
       result.emplace_back(path);

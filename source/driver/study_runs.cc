@@ -101,6 +101,8 @@ namespace Voussoir
     const auto        n     = combinations.size();
     const std::size_t mine  = n / n_groups + (my_group < n % n_groups);
     const double      width = parameters.to - parameters.from;
+    if (parameters.calibrates()) // three steps or so
+      return mine * (1 + 3 * (1 + parameters.fitted_entries().size()));
     return parameters.seeks_limit() ?
              mine * static_cast<std::size_t>(
                       2 + std::max(0.,
@@ -208,7 +210,8 @@ namespace Voussoir
   Study::gather()
   {
     nlohmann::json mine{{"outcomes", nlohmann::json::array()},
-                        {"limits", nlohmann::json::array()}};
+                        {"limits", nlohmann::json::array()},
+                        {"calibrations", nlohmann::json::array()}};
     if (Utilities::MPI::this_mpi_process(group) == 0)
       {
         for (const Outcome &outcome : outcomes)
@@ -216,9 +219,13 @@ namespace Voussoir
             {outcome.values, outcome.folder, outcome.summary});
         for (const Limit &limit : limits)
           mine["limits"].push_back({limit.values, limit.fails, limit.meets});
+        // as text, which keeps the order of the columns
+        for (const nlohmann::ordered_json &line : calibrations)
+          mine["calibrations"].push_back(line.dump());
       }
     outcomes.clear();
     limits.clear();
+    calibrations.clear();
     for (const std::string &part :
          Utilities::MPI::all_gather(communicator, mine.dump()))
       {
@@ -229,6 +236,8 @@ namespace Voussoir
                                 outcome.at(2).get<RunSummary>());
         for (const nlohmann::json &limit : theirs.at("limits"))
           limits.push_back({limit.at(0), limit.at(1), limit.at(2)});
+        for (const std::string line : theirs.at("calibrations"))
+          calibrations.push_back(nlohmann::ordered_json::parse(line));
       }
     // runs of a search come in the order of its steps
     if (parameters.seeks_limit())

@@ -67,6 +67,11 @@ namespace Voussoir
                        " to " + value("median to") + "), dispersion " +
                        value("dispersion") + " (" + value("dispersion from") +
                        " to " + value("dispersion to") + ")";
+          else if (line.contains("found"))
+            text = line.at("number").get<std::string>() + ": " +
+                   line.at("verdict").get<std::string>() + ", " +
+                   value("found") + " within a standard error of " +
+                   value("standard error [%]") + " %";
           else if (line.contains("number"))
             text = line.at("number").get<std::string>() + ": " +
                    line.at("quantity").get<std::string>() + " changes by " +
@@ -115,7 +120,8 @@ namespace Voussoir
     for (const auto &[name, lines] :
          {std::pair("/study_convergence.csv", convergence()),
           std::pair("/study_fragility.csv", fragility()),
-          std::pair("/study_sensitivity.csv", sensitivities())})
+          std::pair("/study_sensitivity.csv", sensitivities()),
+          std::pair("/study_calibration.csv", calibrations)})
       if (!lines.empty())
         {
           files[name] = csv_of(lines);
@@ -241,6 +247,9 @@ namespace Voussoir
                           {"criterion", parameters.fragility_criterion},
                           {"confidence", parameters.confidence},
                           {"levels", lines}};
+    if (!calibrations.empty())
+      all["calibration"] = {{"error", parameters.measurement_error},
+                            {"lines", calibrations}};
     if (const Table lines = sensitivities(); !lines.empty())
       all["sensitivity"] = {{"change", parameters.change},
                             {"refused", refused_moves},

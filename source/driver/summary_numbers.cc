@@ -95,10 +95,10 @@ namespace Voussoir
 
 
   std::string
-  number_text(const double value)
+  number_text(const double value, const int digits)
   {
     std::ostringstream text;
-    text << std::setprecision(6) << value;
+    text << std::setprecision(digits) << value;
     return text.str();
   }
 

@@ -1,3 +1,4 @@
+#include <voussoir/analysis/measured_shapes.h>
 #include <voussoir/analysis/static_outline.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
@@ -61,7 +62,13 @@ namespace Voussoir
       if (!run.model.parameters.static_state.stage_names().empty())
         summary.march->static_state = outline_of(run.model);
       if (const unsigned int n = run.model.parameters.modes.number; n > 0)
-        summary.march->modes = Modes{std::vector<Mode>(n), {}}.summary();
+        {
+          Modes modes{std::vector<Mode>(n), {}, {}};
+          for (const MeasuredShape &shape :
+               measured_shapes(run.model.parameters.modes))
+            modes.measured_shapes[shape.name] = nearest_mode(1, 0., 0.);
+          summary.march->modes = modes.summary();
+        }
       for (const auto &observer : run.setup->plan.observers)
         {
           observer.second->begin(observed);
@@ -102,6 +109,9 @@ namespace Voussoir
                               std::string("\"Criterion\" in section "
                                           "\"Study/") +
                                 section + "\"");
+    for (const auto &number : parameters.study.measured_numbers())
+      wanted.emplace_back(number.first,
+                          "\"Measured\" in section \"Study/Calibration\"");
     if (wanted.empty())
       return;
 

@@ -22,8 +22,11 @@ namespace Voussoir
       prm,
       "Given at",
       given_at,
-      "Where the motion belongs. outcrop: on bare rock, twice the incident "
-      "wave in the rock below; as in most codes. free surface: on top of the "
+      "Where the motion belongs. outcrop: on bare rock at the bottom of the "
+      "model, twice the incident wave there, as in most codes; damping of the "
+      "rock then weakens it on its way up. level rock: on the rock of the "
+      "bottom, if that reached up to the surface of the model, whatever its "
+      "damping. free surface: on top of the "
       "modelled ground without dam and canyon, from where the wave is "
       "deconvolved. incident wave: the upgoing wave itself at the bottom of "
       "the model.");

@@ -41,8 +41,8 @@ namespace Voussoir
     prm.add_parameter(
       "Maximum frequency",
       maximum_frequency,
-      "For motions given at the free surface: frequencies above are removed "
-      "when the wave at the base is computed [Hz].",
+      "For motions given on level rock or at the free surface: frequencies "
+      "above are removed when the wave at the base is computed [Hz].",
       Patterns::Double(1.));
   }
 
@@ -86,6 +86,38 @@ namespace Voussoir
       std::unique_ptr<Signal> signal;
       const double            factor;
     };
+
+
+    /** The lowest rock up to the top, in elements no thinner than its own,
+     *  which are stable. */
+    std::vector<WaveColumn::Layer>
+    lowest_rock(const std::vector<WaveColumn::Layer> &layers)
+    {
+      const WaveColumn::Layer &lowest   = layers.front();
+      double                   thinnest = lowest.upper - lowest.lower;
+      for (const WaveColumn::Layer &layer : layers)
+        if (layer.constants.p_wave_speed() == lowest.constants.p_wave_speed())
+          thinnest = std::min(thinnest, layer.upper - layer.lower);
+      const auto is_thin = [&](const WaveColumn::Layer &layer) {
+        return layer.upper - layer.lower < (1. - 1e-9) * thinnest;
+      };
+      std::vector<WaveColumn::Layer> result;
+      for (const WaveColumn::Layer &layer : layers)
+        if (!result.empty() && is_thin(result.back()))
+          result.back().upper = layer.upper;
+        else
+          result.push_back({layer.lower,
+                            layer.upper,
+                            lowest.constants,
+                            lowest.damping_factor});
+      if (result.size() > 1 && is_thin(result.back()))
+        {
+          const double top = result.back().upper;
+          result.pop_back();
+          result.back().upper = top;
+        }
+      return result;
+    }
 
 
     /** Rock of an oblique wave, the same along the whole boundary. */
@@ -154,9 +186,11 @@ namespace Voussoir
       throw UserError("\"Type\" in section \"Wave field\" is an oblique wave, "
                       "which needs one material along the whole absorbing "
                       "boundary; use \"vertical\" for layered rock.");
-    if (given_at == MotionPlace::free_surface)
-      throw UserError("\"Given at\" in section \"Ground motion\" cannot be "
-                      "\"free surface\" with an oblique wave; give the "
+    if (given_at == MotionPlace::free_surface ||
+        given_at == MotionPlace::level_rock)
+      throw UserError("\"Given at\" in section \"Ground motion\" cannot be \"" +
+                      option_name(given_at) +
+                      "\" with an oblique wave; give the "
                       "incident wave or the motion of an outcrop.");
 
     const auto n_given =
@@ -216,18 +250,22 @@ namespace Voussoir
         constants.push_back(material->elastic_constants());
         factors.push_back(material->damping_factor());
       }
-    WaveColumn column(layers_of_sides(boundary.side_faces(),
-                                      constants,
-                                      factors,
-                                      discretization.degree,
-                                      leap_frog.time_step,
-                                      damping),
-                      discretization.degree,
-                      field.quadrature,
-                      damping,
-                      leap_frog);
-    if (field.given_at == MotionPlace::free_surface)
-      motion = incident_for_surface(column,
+    const auto layers    = layers_of_sides(boundary.side_faces(),
+                                        constants,
+                                        factors,
+                                        discretization.degree,
+                                        leap_frog.time_step,
+                                        damping);
+    const auto column_of = [&](const std::vector<WaveColumn::Layer> &list) {
+      return WaveColumn(
+        list, discretization.degree, field.quadrature, damping, leap_frog);
+    };
+    WaveColumn column = column_of(layers);
+    if (field.given_at == MotionPlace::free_surface ||
+        field.given_at == MotionPlace::level_rock)
+      motion = incident_for_surface(field.given_at == MotionPlace::level_rock ?
+                                      column_of(lowest_rock(layers)) :
+                                      column,
                                     motion,
                                     leap_frog.time_step,
                                     field.duration,

@@ -27,6 +27,7 @@ namespace Voussoir
                           "Acceleration of the base upwards over that along "
                           "it.");
         prm.add_parameter("Cohesion", cohesion, "Over mass per area [m/s2].");
+        prm.add_parameter("Direction", direction, "Of the slip.");
         prm.add_parameter("Cycles", cycles, "To compare.");
       }
 
@@ -94,13 +95,13 @@ namespace Voussoir
                               rest = 0.1; // before the shaking [s]
 
       /** Slip of the block, mean over its base. */
-      static double
-      slip(const Simulation &simulation)
+      double
+      slip(const Simulation &simulation) const
       {
         std::vector<double> sums(2);
         for (const ContactPoint &point : simulation.run.contact->points())
           {
-            sums[0] += point.area * (point.gap * point.frame)[0];
+            sums[0] += point.area * (point.gap * point.frame)[direction];
             sums[1] += point.area;
           }
         sums = sum_over_ranks(sums, simulation.model.grid.communicator());
@@ -108,8 +109,8 @@ namespace Voussoir
       }
 
       /** Largest slip of a case in its first cycle. */
-      static double
-      largest_slip(const ParameterFile &file, const MPI_Comm communicator)
+      double
+      largest_slip(const ParameterFile &file, const MPI_Comm communicator) const
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
@@ -157,7 +158,7 @@ namespace Voussoir
       }
 
       double       push = 0., friction = 0.3, cohesion = 0., vertical = 0.;
-      unsigned int cycles = 3;
+      unsigned int direction = 0, cycles = 3;
     };
 
     // Reference: other program

@@ -23,8 +23,11 @@ namespace Voussoir
         prm.add_parameter(
           "Uniform",
           uniform,
-          "One undamped material: the surface then moves as the "
-          "outcrop, later by the travel time.");
+          "One material: the surface then moves as the outcrop, if it is not "
+          "damped, and as level rock, later by the travel time.");
+        prm.add_parameter("Place",
+                          place,
+                          "Where the motion is given in the uniform rock.");
         prm.add_parameter(
           "Thicknesses",
           thicknesses,
@@ -45,7 +48,7 @@ namespace Voussoir
         double delay = 0.;
         if (uniform)
           {
-            evaluate_uniform(file, given, verdicts, communicator);
+            evaluate_uniform(file, place, given, verdicts, communicator);
             return;
           }
         const auto at_surface =
@@ -110,13 +113,14 @@ namespace Voussoir
       template <typename Given>
       static void
       evaluate_uniform(const ParameterFile &file,
+                       const std::string   &place,
                        const Given         &given,
                        Verdicts            &verdicts,
                        const MPI_Comm       communicator)
       {
         double     delay = 0.;
         const auto motion =
-          surface(file.with({"Ground motion/Given at=outcrop"}),
+          surface(file.with({"Ground motion/Given at=" + place}),
                   delay,
                   communicator);
         const auto parameters      = make_case(file);
@@ -127,8 +131,10 @@ namespace Voussoir
         for (unsigned int d = 0; d < 3; ++d)
           {
             const double travel =
-              (upper[2] - lower[2]) /
-              (d == 2 ? rock.p_wave_speed() : rock.s_wave_speed());
+              place == "outcrop" ?
+                (upper[2] - lower[2]) /
+                  (d == 2 ? rock.p_wave_speed() : rock.s_wave_speed()) :
+                delay;
             double error = 0., peak = 0.;
             for (std::size_t i = 0; i < motion.times.size(); ++i)
               {
@@ -171,6 +177,7 @@ namespace Voussoir
       }
 
       bool                uniform = false;
+      std::string         place   = "outcrop";
       std::vector<double> thicknesses, frequencies;
     };
 

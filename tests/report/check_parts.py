@@ -376,7 +376,7 @@ def check_study_evaluations():
                "probability": None, "median": 2., "median from": 1.5, "median to": 3., "dispersion": 0.4,
                "dispersion from": 0.2, "dispersion to": 0.8, "verdict": "found"} for intensity, met in ((1., 1), (2., 3))]
     sizes = {"coarse": 1.16, "middle": 1.04, "fine": 1.01}
-    table, fragility, curve, moves = study_evaluations.evaluations({
+    table, fragility, curve, moves, fits = study_evaluations.evaluations({
         "convergence": [{"quantity": "crest [m]", **sizes, "observed order": 2., "extrapolated": 1.,
                          "band about the fine one": 0.0125, "verdict": "converges"},
                         {"quantity": "heel [MPa]", **sizes, "observed order": None, "extrapolated": None,
@@ -385,7 +385,11 @@ def check_study_evaluations():
                       "levels": levels},
         "sensitivity": {"change": 0.01, "numbers": [
             {"number": f"number {i}", "value": 1., "quantity": "crest [m]", "as given": 1., "largest change [%]": 1.,
-             "change over that of the number": 1.} for i in range(40)]}})
+             "change over that of the number": 1.} for i in range(40)]},
+        "calibration": {"error": 0.01, "lines": [
+            {"number": "Materials/rock/Young's modulus", "in the file": 12e9, "found": 20e9, "standard error [%]": 3.,
+             "quantity": "frequency [Hz]", "measured": 5.45, "with the file": 5., "with what was found": 5.46,
+             "off by [%]": 0.2, "change over that of the number": 0.1, "verdict": "found"}]}})
     is_true("a number that converges has a band", table.rows[0][-2:] == [f"± {page.number(0.0125)}", "converges"])
     is_true("one that does not has none", table.rows[1][-3:] == ["–", "–", "diverges"])
     is_true("a fragility curve is of its combination", fragility.rows[0][0] == "Density 2600")
@@ -394,6 +398,8 @@ def check_study_evaluations():
     is_true("  and a picture", curve.pictures[0].kind == "svg")
     is_true("of many sensitivities the first ones, and how many there are",
             len(moves.rows) == study_evaluations.MOST and "of 40 lines" in moves.caption)
+    is_true("what was fitted, and to which number", fits.rows[0][:2] == ["Materials/rock/Young's modulus", "–"]
+            and fits.rows[0][-1] == "found" and page.number(1.) in fits.caption)
 
 
 def make_page(folder, file, **environment):

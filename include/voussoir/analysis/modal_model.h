@@ -47,6 +47,7 @@ namespace Voussoir
   {
     unsigned int      number = 0;
     std::string       fixed_materials, massless_materials;
+    std::string       points, shapes; // that were measured
     InterfacesInModes interfaces = InterfacesInModes::tied_where_closed;
     WaterInModes      water      = WaterInModes::by_reservoir;
     double            tolerance  = 1e-5;

@@ -33,6 +33,9 @@ namespace Voussoir
      *  sum of the effective masses of all modes [kg]. */
     dealii::Tensor<1, 3> moving_mass;
 
+    /** By the name of a measured shape, the mode that is nearest to it. */
+    nlohmann::json measured_shapes;
+
     /** [Hz] */
     std::vector<double>
     frequencies() const;

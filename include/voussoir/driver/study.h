@@ -7,6 +7,8 @@
 #include <voussoir/driver/sensitivity.h>
 #include <voussoir/driver/study_parameters.h>
 
+#include <deal.II/lac/vector.h>
+
 namespace Voussoir
 {
   /** Of a study of which some runs stand, and others were stopped or failed. */
@@ -21,9 +23,10 @@ namespace Voussoir
 
   /**
    * Many runs of one parameter file with some entries varied, the search for
-   * the value of one at which a criterion is met, or each number moved by a
-   * little. Each run has a folder in that of the study; a study that is started
-   * again does only the missing runs.
+   * the value of one at which a criterion is met, for those with which the
+   * model is nearest to measured numbers, or each number moved by a little.
+   * Each run has a folder in that of the study; a study that is started again
+   * does only the missing runs.
    */
   class Study
   {
@@ -115,6 +118,20 @@ namespace Voussoir
     void
     seek_limit(const StudyValues &values);
 
+    /** A combination, with the fitted entries moved from their values in the
+     *  file. */
+    StudyValues
+    fitted_values(StudyValues                   values,
+                  const dealii::Vector<double> &logarithms) const;
+
+    /** Logarithms of computed over measured numbers in a run. */
+    dealii::Vector<double>
+    misfit(const StudyValues &values);
+
+    /** Finds the fitted entries that are nearest to what was measured. */
+    void
+    calibrate(const StudyValues &values);
+
     void
     report(const std::string &text) const;
 
@@ -171,6 +188,7 @@ namespace Voussoir
 
     std::vector<Outcome> outcomes;
     std::vector<Limit>   limits;
+    Table                calibrations;
     unsigned int         n_done          = 0; // runs that were computed now
     double               seconds_of_runs = 0.;
   };

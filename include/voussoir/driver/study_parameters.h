@@ -40,6 +40,11 @@ namespace Voussoir
     double      change = 0.;
     std::string moved  = "*";
 
+    // of the calibration to measured numbers
+    std::string  fitted, measured;
+    double       measurement_error = 0.01, calibration_accuracy = 1e-3;
+    unsigned int max_iterations = 10;
+
     void
     declare(dealii::ParameterHandler &prm);
 
@@ -53,6 +58,10 @@ namespace Voussoir
     /** Whether each number of the file is moved. */
     bool
     moves_numbers() const;
+
+    /** Whether entries are fitted to measured numbers. */
+    bool
+    calibrates() const;
 
     /** Whether strengths are divided in some of the runs. */
     bool
@@ -89,7 +98,19 @@ namespace Voussoir
     std::vector<Criterion>
     fragility_criteria() const;
 
+    std::vector<std::string>
+    fitted_entries() const;
+
+    /** Numbers of the summary with their measured values. */
+    std::vector<std::pair<SummaryNumber, double>>
+    measured_numbers() const;
+
   private:
+    /** Refuses fewer numbers than entries, and what calibration cannot go
+     *  with. */
+    void
+    check_calibration() const;
+
     /** Refuses what extrapolation, fragility and sensitivity cannot go with. */
     void
     check_evaluations() const;

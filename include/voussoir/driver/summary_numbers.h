@@ -66,9 +66,12 @@ namespace Voussoir
   bool
   is_smallest(const std::string &path);
 
-  /** With six digits, as studies write numbers. */
+  /** As many digits as studies write where small changes are to be seen. */
+  constexpr int fine_digits = 12;
+
+  /** With six digits, as studies write numbers, or others. */
   std::string
-  number_text(const double value);
+  number_text(const double value, const int digits = 6);
 
   /** Whether something has happened in a run: "PATH > VALUE" or "PATH < VALUE"
    *  of a number of the summary, or "stopped", see RunStopped. */

@@ -47,6 +47,7 @@ namespace Voussoir
   enum class MotionPlace
   {
     outcrop,
+    level_rock,
     free_surface,
     incident_wave
   };
@@ -55,6 +56,7 @@ namespace Voussoir
   option_names(const MotionPlace)
   {
     return {{MotionPlace::outcrop, "outcrop"},
+            {MotionPlace::level_rock, "level rock"},
             {MotionPlace::free_surface, "free surface"},
             {MotionPlace::incident_wave, "incident wave"}};
   }

@@ -6,7 +6,7 @@ from . import charts, verdict
 from .files import NUMBER, TEXT, Group, csv_rows, is_number, read_json, refuse
 from .page import Judged, Pictures, Section, Table, number
 from .run import Run
-from .study_evaluations import CONVERGENCE, FRAGILITY, SENSITIVITY, evaluations
+from .study_evaluations import CALIBRATION, CONVERGENCE, FRAGILITY, SENSITIVITY, evaluations
 
 MOST = 6  # runs of a study that are shown in detail
 
@@ -16,7 +16,8 @@ STUDY = Group(
                     {"quantities": Group(others=NUMBER), "criterion met": TEXT})]},
     {"limits": [Group({"of": TEXT, "criterion": TEXT, "not met at": NUMBER, "met at": NUMBER,
                        "values": VALUES})],
-     "convergence": CONVERGENCE, "fragility": FRAGILITY, "sensitivity": SENSITIVITY})
+     "convergence": CONVERGENCE, "fragility": FRAGILITY, "sensitivity": SENSITIVITY,
+     "calibration": CALIBRATION})
 
 
 class Study:
@@ -26,7 +27,8 @@ class Study:
         self.folder = pathlib.Path(folder)
         data = read_json(self.folder / "study.json", STUDY, "start the study again, which writes it anew")
         self.runs, self.limits = data["runs"], data.get("limits", [])
-        self.evaluations = {name: data.get(name) for name in ("convergence", "fragility", "sensitivity")}
+        self.evaluations = {name: data.get(name) for name in
+                            ("convergence", "fragility", "sensitivity", "calibration")}
         if not self.in_detail:
             refuse(self.folder / "study.json", "names no run that has a summary.json beside it",
                    "do the study again with --overwrite")

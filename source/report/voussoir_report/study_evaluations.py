@@ -1,4 +1,4 @@
-"""What a study evaluates from its runs: convergence, fragility, sensitivity."""
+"""What a study evaluates from its runs: convergence, fragility, sensitivity, calibration."""
 
 import math
 
@@ -20,6 +20,10 @@ FRAGILITY = Group({"intensity": TEXT, "criterion": TEXT, "confidence": NUMBER, "
 SENSITIVITY = Group({"change": NUMBER, "numbers": [
     Group({"number": TEXT, "value": NUMBER, "quantity": TEXT, "as given": NUMBER,
            "largest change [%]": NUMBER, "change over that of the number": NUMBER})]})
+CALIBRATION = Group({"error": NUMBER, "lines": [
+    Group({"number": TEXT, "in the file": NUMBER, "found": NUMBER, "standard error [%]": NUMBER, "quantity": TEXT,
+           "measured": NUMBER, "with the file": NUMBER, "with what was found": NUMBER, "off by [%]": NUMBER,
+           "change over that of the number": NUMBER, "verdict": TEXT})]})
 
 
 def others(line):
@@ -94,6 +98,17 @@ def sensitivity_table(sensitivity):
                  + (f"; {MOST} of {len(lines)} lines, the rest in study_sensitivity.csv" if len(lines) > MOST else ""))
 
 
+def calibration_table(calibration):
+    rows = [[line["number"], others(line) or "–", number(line["in the file"]), number(line["found"]),
+             number(line["standard error [%]"]), line["quantity"], number(line["measured"]),
+             number(line["with the file"]), number(line["with what was found"]), number(line["off by [%]"]),
+             number(line["change over that of the number"]), line["verdict"]] for line in calibration["lines"]]
+    return Table(["number", "of", "in the file", "found", "standard error [%]", "quantity", "measured", "with the file",
+                  "with what was found", "off by [%]", "change over that of the number", "verdict"], rows,
+                 "Numbers fitted to what was measured; standard errors for measured numbers of "
+                 f"{number(100 * calibration['error'])} %")
+
+
 def evaluations(data):
     """Parts of a report, by what study.json has."""
     parts = []
@@ -103,4 +118,6 @@ def evaluations(data):
         parts.extend(fragility_parts(data["fragility"]))
     if data.get("sensitivity"):
         parts.append(sensitivity_table(data["sensitivity"]))
+    if data.get("calibration"):
+        parts.append(calibration_table(data["calibration"]))
     return parts

@@ -93,13 +93,16 @@ namespace Voussoir
           return judged(none, found).verdict();
         };
         const auto over = [](const double ratio, const double at_rest) {
-          return nlohmann::json({{"over-stress",
-                                  {{"verdict", "linear analysis suffices"},
-                                   {"upstream face",
-                                    {{"largest ratio", ratio},
-                                     {"largest ratio at rest", at_rest},
-                                     {"at the time [s]", 2.},
-                                     {"at [m]", {1., 2., 3.}}}}}}});
+          return nlohmann::json(
+            {{"over-stress",
+              {{"verdict", "linear analysis suffices"},
+               {"upstream face",
+                {{"largest ratio", ratio},
+                 {"largest ratio at rest", at_rest},
+                 {"time of the largest ratio at rest [s]", 0.},
+                 {"place of the largest ratio at rest [m]", {4., 5., 6.}},
+                 {"at the time [s]", 2.},
+                 {"at [m]", {1., 2., 3.}}}}}}});
         };
         verdicts.same_text("demand below strength",
                            verdict(over(0.9, 0.5)),
@@ -111,6 +114,11 @@ namespace Voussoir
                          judged(none, over(3.7, 0.5))
                              .results.at("demand over tensile strength")
                              .at("at [m]") == nlohmann::json({1., 2., 3.}));
+        verdicts.is_true(
+          "  that of the static state has its own",
+          judged(none, over(3.7, 0.5))
+              .results.at("demand over tensile strength in the static state")
+              .at("at [m]") == nlohmann::json({4., 5., 6.}));
         verdicts.same_text(
           "a demand that is no number",
           verdict(over(std::numeric_limits<double>::quiet_NaN(), 0.5)),

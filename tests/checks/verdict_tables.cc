@@ -24,6 +24,7 @@ namespace Voussoir
         const auto parameters = make_case(file);
         criteria(parameters->acceptance, verdicts);
         results(parameters->acceptance, verdicts);
+        observers(file, verdicts);
         intensity(verdicts);
       }
 
@@ -150,6 +151,25 @@ namespace Voussoir
         verdicts.same_text("it slides on",
                            verdict(slid(441., 92.)),
                            "not met: slip rate at the end [mm/s]");
+      }
+
+
+      /** Interfaces are observed for the verdict whatever the case asks for. */
+      static void
+      observers(const ParameterFile &file, Verdicts &verdicts)
+      {
+        const auto observed = [&file](const std::string &active) {
+          const auto parameters =
+            make_case(file.with({"Interfaces/Names=plane",
+                                 "Interfaces/plane/Face sets=top",
+                                 "Interfaces/plane/Active=" + active}));
+          const auto &added = parameters->added_observers;
+          return std::find(added.begin(), added.end(), "interfaces") !=
+                 added.end();
+        };
+        verdicts.is_true("interfaces are observed for the verdict",
+                         observed("true"));
+        verdicts.is_true("  not those that are left out", !observed("false"));
       }
 
 

@@ -213,8 +213,11 @@ namespace Voussoir
   {
     std::ostringstream text;
     text << std::setprecision(4);
+    // what is less is round-off [mm, MPa, MN]
+    constexpr double least = 1e-9;
     const auto number = [](const nlohmann::json &values, const auto &name) {
-      return values.at(name).template get<double>();
+      const double value = values.at(name);
+      return std::abs(value) < least ? 0. : value;
     };
     if (report.contains("points"))
       for (const auto &[name, point] : report.at("points").items())

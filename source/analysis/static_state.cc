@@ -18,9 +18,13 @@ namespace Voussoir
     std::string
     meganewtons(const Tensor<1, 3> &force)
     {
+      const double       round_off = 1e-12 * force.norm();
       std::ostringstream text;
-      text << std::setprecision(5) << "(" << 1e-6 * force[0] << ", "
-           << 1e-6 * force[1] << ", " << 1e-6 * force[2] << ") MN";
+      text << std::setprecision(5);
+      for (unsigned int d = 0; d < 3; ++d)
+        text << (d == 0 ? "(" : ", ")
+             << (std::abs(force[d]) < round_off ? 0. : 1e-6 * force[d]);
+      text << ") MN";
       return text.str();
     }
 

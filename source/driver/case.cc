@@ -126,6 +126,36 @@ namespace Voussoir
               "\"rotating\"");
         });
     }
+
+
+    /** Entries of the shapes of a design spectrum that it has not. */
+    void
+    note_unused_spectrum(Case &parameters)
+    {
+      const std::string place = "Ground motion/Spectrum",
+                        code  = "hydropower code";
+      for (const auto &[section, usual] :
+           {std::pair(place, code),
+            std::pair(place + "/Vertical", std::string("as horizontal"))})
+        {
+          const std::string shape =
+            parameters.file.given(section + "/Shape", usual);
+          for (const auto &[entry, own_shape] :
+               {std::pair<std::string, std::string>("Maximum amplification",
+                                                    code),
+                {"Characteristic period", code},
+                {"Decay exponent", code},
+                {"Periods", "table"},
+                {"Amplifications", "table"}})
+            if (shape != own_shape &&
+                !parameters.file.given(section + "/" + entry).empty())
+              parameters.notes.push_back("\"" + entry + "\" in section \"" +
+                                         section +
+                                         "\" is not used, as \"Shape\" there "
+                                         "is \"" +
+                                         shape + "\"");
+        }
+    }
   } // namespace
 
 
@@ -146,6 +176,7 @@ namespace Voussoir
     find_water_of_uplift();
     add_points_of_histories(*this);
     note_unused_crack_friction(*this);
+    note_unused_spectrum(*this);
     check();
     for (const std::string &warning : ground_motion.warnings())
       warnings.push_back(warning);

@@ -54,8 +54,9 @@ namespace Voussoir
       "Observers for the verdict",
       for_verdict,
       "Adds over-stress where a linear elastic material has a tensile "
-      "strength, and through cracks where a material cracks, if the observers "
-      "do not name them and the mesh has an upstream and a downstream face.");
+      "strength, through cracks where a material cracks, both if the mesh has "
+      "an upstream and a downstream face, and interfaces where the case has "
+      "some, if the observers do not name them.");
     prm.add_parameter(
       "Energy interval",
       energy_interval,
@@ -119,8 +120,11 @@ namespace Voussoir
   void
   Case::add_observers()
   {
-    const std::string setting = file.given("Output/Observers for the verdict");
-    if (setting == "false" || setting == "no")
+    const auto is_off = [this](const std::string &entry) {
+      const std::string setting = file.given(entry);
+      return setting == "false" || setting == "no";
+    };
+    if (is_off("Output/Observers for the verdict"))
       return;
     std::string              strengths;
     bool                     cracks = false;
@@ -159,6 +163,9 @@ namespace Voussoir
       changes.push_back(section + "Strengths of materials=" + strengths);
     if (cracks)
       add("through cracks");
+    for (const std::string &name : split_list(file.given("Interfaces/Names")))
+      if (!is_off("Interfaces/" + name + "/Active"))
+        add("interfaces");
     if (!added_observers.empty())
       changes.push_back("Output/Observers=" + join(observers, ", "));
     file = file.with(changes);

@@ -299,6 +299,48 @@ namespace Voussoir
   } // namespace
 
 
+  namespace
+  {
+    /** Criteria for the time after the earthquake want its strong part to be
+     *  over at the end of the run. */
+    void
+    check_strong_part(const GroundMotionSignals  &signals,
+                      const AcceptanceParameters &acceptance,
+                      const double                end_time,
+                      Log                        &log)
+    {
+      constexpr double resolution = EarthquakeMotion::sample_interval,
+                       most_left  = 5.; // [% of the Arias intensity]
+      for (const AcceptanceCriterion &criterion : acceptance.of_the_run())
+        if (criterion.load_case == LoadCase::after_earthquake)
+          {
+            double whole = 0., left = 0.;
+            for (const auto &signal : signals)
+              if (signal && std::isfinite(signal->end()))
+                for (std::size_t i = 0; i * resolution <= signal->end(); ++i)
+                  {
+                    const double power =
+                      std::pow(signal->acceleration(i * resolution), 2);
+                    whole += power;
+                    left += i * resolution > end_time ? power : 0.;
+                  }
+            if (const double share = 100. * left / whole; share > most_left)
+              log.warn(std::setprecision(3),
+                       "the criterion \"",
+                       criterion.name,
+                       "\" in section \"Acceptance\" is for the time after the "
+                       "earthquake, but ",
+                       share,
+                       " % of the Arias intensity of the motion come after the "
+                       "\"End time\" of ",
+                       end_time,
+                       " s in section \"Time\"; make that longer");
+            return;
+          }
+    }
+  } // namespace
+
+
   EarthquakeMotion::EarthquakeMotion(const Model &model, Log &log)
   {
     const Case         &parameters    = model.parameters;
@@ -319,6 +361,7 @@ namespace Voussoir
       {
         check_peaks(signals, ground_motion, end_time, log);
         check_frequencies(model, accelerations, log);
+        check_strong_part(signals, parameters.acceptance, end_time, log);
       }
     if (model.rigid_base())
       {

@@ -227,8 +227,13 @@ namespace Voussoir
            name);
       const auto [other, still] = with_largest(faces, "largest ratio at rest");
       if (!still.is_null())
-        results["demand over tensile strength in the static state"] =
-          of(at_most(number_in(still, "largest ratio at rest"), 1.), other);
+        {
+          nlohmann::json &line =
+            results["demand over tensile strength in the static state"];
+          line =
+            of(at_most(number_in(still, "largest ratio at rest"), 1.), other);
+          line["at [m]"] = still.at("place of the largest ratio at rest [m]");
+        }
     }
 
 

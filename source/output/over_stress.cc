@@ -342,24 +342,26 @@ namespace Voussoir
       {
         const auto          communicator = mesh->communicator();
         std::vector<double> ratio, ever(n_areas()), accumulated(n_areas()),
-          beyond_rest(n_areas()), resting(n_areas()),
-          most_at_rest(names.size());
-        // of each set: largest ratio, time, place
-        std::vector<std::array<double, 5>> most(
-          names.size(), {{-std::numeric_limits<double>::max()}});
+          beyond_rest(n_areas()), resting(n_areas());
+        // of each set: largest ratio, time, place; that of the static state
+        constexpr double none = -std::numeric_limits<double>::max();
+        std::vector<std::array<double, 5>> most(names.size(), {{none}});
+        std::vector<std::array<double, 4>> most_at_rest(names.size(), {{none}});
         for (unsigned int node = 0; node < mesh->n_nodes(); ++node)
           {
             const unsigned int set   = mesh->sets_and_nodes()[node].first;
             const Point<3>    &where = mesh->position(node);
             const auto         above = accumulated_times(node);
             ratio.push_back(largest[2 * node]);
-            most[set]         = std::max(most[set],
+            most[set] = std::max(most[set],
                                  {{largest[2 * node],
-                                           largest[2 * node + 1],
-                                           where[0],
-                                           where[1],
-                                           where[2]}});
-            most_at_rest[set] = std::max(most_at_rest[set], at_rest[node]);
+                                   largest[2 * node + 1],
+                                   where[0],
+                                   where[1],
+                                   where[2]}});
+            most_at_rest[set] =
+              std::max(most_at_rest[set],
+                       {{at_rest[node], where[0], where[1], where[2]}});
             for (unsigned int r = 0; r < n_ratios(); ++r)
               {
                 const unsigned int i = set * n_ratios() + r;
@@ -374,12 +376,15 @@ namespace Voussoir
         resting = sum_over_ranks(resting, communicator);
         Utilities::MPI::max(accumulated, communicator, accumulated);
         Utilities::MPI::max(beyond_rest, communicator, beyond_rest);
-        Utilities::MPI::max(most_at_rest, communicator, most_at_rest);
         const auto total =
           sum_over_ranks(areas->total(names.size()), communicator);
         for (const auto &other : Utilities::MPI::all_gather(communicator, most))
           for (unsigned int set = 0; set < names.size(); ++set)
             most[set] = std::max(most[set], other[set]);
+        for (const auto &other :
+             Utilities::MPI::all_gather(communicator, most_at_rest))
+          for (unsigned int set = 0; set < names.size(); ++set)
+            most_at_rest[set] = std::max(most_at_rest[set], other[set]);
 
         std::vector<FaceOverStress> faces;
         for (unsigned int set = 0; set < names.size(); ++set)
@@ -391,7 +396,10 @@ namespace Voussoir
             face.largest                          = greatest;
             face.time                             = time;
             face.where                            = Point<3>(x, y, z);
-            face.largest_at_rest                  = most_at_rest[set];
+            face.largest_at_rest                  = most_at_rest[set][0];
+            face.where_at_rest = Point<3>(most_at_rest[set][1],
+                                          most_at_rest[set][2],
+                                          most_at_rest[set][3]);
             for (unsigned int i = set * n_ratios(); i < (set + 1) * n_ratios();
                  ++i)
               {

@@ -112,12 +112,15 @@ namespace Voussoir
   nlohmann::json
   OverStressLimits::json(const FaceOverStress &face) const
   {
-    nlohmann::json result{{"largest ratio", face.largest},
-                          {"at the time [s]", face.time},
-                          {"at [m]",
-                           {face.where[0], face.where[1], face.where[2]}},
-                          {"largest ratio at rest", face.largest_at_rest},
-                          {"area [m2]", face.area}};
+    nlohmann::json result{
+      {"largest ratio", face.largest},
+      {"at the time [s]", face.time},
+      {"at [m]", {face.where[0], face.where[1], face.where[2]}},
+      {"largest ratio at rest", face.largest_at_rest},
+      {"time of the largest ratio at rest [s]", 0.},
+      {"place of the largest ratio at rest [m]",
+       {face.where_at_rest[0], face.where_at_rest[1], face.where_at_rest[2]}},
+      {"area [m2]", face.area}};
     for (unsigned int r = 0; r < ratios.size(); ++r)
       result["above " + text(ratios[r])] = {
         {"accumulated time [s]", face.accumulated[r]},

@@ -123,6 +123,10 @@ namespace Voussoir
           },
           2,
           "arch and cantilever");
+        verdict->near("height of the largest ratio at rest [m]",
+                      front.at("place of the largest ratio at rest [m]").at(2),
+                      height,
+                      1e-10);
         for (const std::string ratio : {"1", "1.5"})
           {
             const auto  &above = front.at("above " + ratio);
@@ -157,6 +161,11 @@ namespace Voussoir
                       front.at("largest ratio at rest"),
                       1.2,
                       1e-10);
+        verdict->near(
+          "time of the largest ratio at rest [s], plus 1",
+          1. + front.at("time of the largest ratio at rest [s]").get<double>(),
+          1.,
+          1e-10);
         for (const auto &[ratio, share, beyond] :
              std::vector<std::tuple<std::string, double, double>>{
                {"1.1", 100., 0.}, {"1.3", 0., 2.}})

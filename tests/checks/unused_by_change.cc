@@ -76,6 +76,19 @@ namespace Voussoir
                                       "Materials/rock/Crack direction=fixed",
                                       friction}))
                            ->notes.empty());
+
+        const std::string vertical = "Ground motion/Spectrum/Vertical/",
+                          period   = vertical + "Characteristic period=0.15";
+        verdicts.same_text(
+          "vertical spectrum that is the horizontal one",
+          only_note(file.with({period})),
+          "\"Characteristic period\" in section \"Ground "
+          "motion/Spectrum/Vertical\" is not used, as \"Shape\" there is \"as "
+          "horizontal\"");
+        verdicts.is_true(
+          "of its own: no note",
+          make_case(file.with({vertical + "Shape=hydropower code", period}))
+            ->notes.empty());
       }
 
     private:

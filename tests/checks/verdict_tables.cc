@@ -24,6 +24,7 @@ namespace Voussoir
         const auto parameters = make_case(file);
         criteria(parameters->acceptance, verdicts);
         results(parameters->acceptance, verdicts);
+        observers(file, verdicts);
         intensity(verdicts);
       }
 
@@ -93,13 +94,16 @@ namespace Voussoir
           return judged(none, found).verdict();
         };
         const auto over = [](const double ratio, const double at_rest) {
-          return nlohmann::json({{"over-stress",
-                                  {{"verdict", "linear analysis suffices"},
-                                   {"upstream face",
-                                    {{"largest ratio", ratio},
-                                     {"largest ratio at rest", at_rest},
-                                     {"at the time [s]", 2.},
-                                     {"at [m]", {1., 2., 3.}}}}}}});
+          return nlohmann::json(
+            {{"over-stress",
+              {{"verdict", "linear analysis suffices"},
+               {"upstream face",
+                {{"largest ratio", ratio},
+                 {"largest ratio at rest", at_rest},
+                 {"time of the largest ratio at rest [s]", 0.},
+                 {"place of the largest ratio at rest [m]", {4., 5., 6.}},
+                 {"at the time [s]", 2.},
+                 {"at [m]", {1., 2., 3.}}}}}}});
         };
         verdicts.same_text("demand below strength",
                            verdict(over(0.9, 0.5)),
@@ -111,6 +115,11 @@ namespace Voussoir
                          judged(none, over(3.7, 0.5))
                              .results.at("demand over tensile strength")
                              .at("at [m]") == nlohmann::json({1., 2., 3.}));
+        verdicts.is_true(
+          "  that of the static state has its own",
+          judged(none, over(3.7, 0.5))
+              .results.at("demand over tensile strength in the static state")
+              .at("at [m]") == nlohmann::json({4., 5., 6.}));
         verdicts.same_text(
           "a demand that is no number",
           verdict(over(std::numeric_limits<double>::quiet_NaN(), 0.5)),
@@ -142,6 +151,25 @@ namespace Voussoir
         verdicts.same_text("it slides on",
                            verdict(slid(441., 92.)),
                            "not met: slip rate at the end [mm/s]");
+      }
+
+
+      /** Interfaces are observed for the verdict whatever the case asks for. */
+      static void
+      observers(const ParameterFile &file, Verdicts &verdicts)
+      {
+        const auto observed = [&file](const std::string &active) {
+          const auto parameters =
+            make_case(file.with({"Interfaces/Names=plane",
+                                 "Interfaces/plane/Face sets=top",
+                                 "Interfaces/plane/Active=" + active}));
+          const auto &added = parameters->added_observers;
+          return std::find(added.begin(), added.end(), "interfaces") !=
+                 added.end();
+        };
+        verdicts.is_true("interfaces are observed for the verdict",
+                         observed("true"));
+        verdicts.is_true("  not those that are left out", !observed("false"));
       }
 
 

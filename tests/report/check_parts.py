@@ -356,6 +356,23 @@ def check_stages(scratch):
     is_true("no stage, no section", stages.stages_section([make_wall(scratch / "no_stages")]) is None)
 
 
+def check_motion(scratch):
+    """The ground moves by 5 m, and the crest by 2 cm more."""
+    run = make_wall(scratch / "moved")
+    wall = grid.dam_of(run).grid
+    corners = np.concatenate([wall.points[wall.cells], wall.points[wall.cells[:1]] - (0., 0., HEIGHT / LEVELS)])
+    material = np.zeros(corners.shape[:2])
+    material[-1] = 1.  # below the wall
+    for time, amount in enumerate((0., 1.)):
+        moved = amount * (np.maximum(1e-3 * corners[..., 2:], 0.) * (0., 1., 0.) + (5., 0., 0.))
+        write_grid(run.folder / f"fields_{time}.vtu", corners, VTK_HEXAHEDRON, {"material": material},
+                   {"material_names": ["concrete", "rock"]}, vectors={"displacement": moved})
+    (run.folder / "fields.txt").write_text("0 fields_0.vtu\n1 fields_1.vtu\n")
+    motion = structure.motion_of(run, "fields_1.vtu")
+    compare("the crest beside its foundation [m]", motion[:, 1].max(), 1e-3 * HEIGHT, 1e-6)
+    compare("  without the motion of the ground [m]", np.abs(motion[:, [0, 2]]).max() + 1., 1., 1e-6)
+
+
 def check_records(scratch):
     table = scratch / "table.txt"
     table.write_text("# A record. From a book.\n" + "".join(f"{0.02 * i:.2f} 0.1\n" for i in range(151)))
@@ -483,6 +500,7 @@ def main():
         check_colours()
         check_input(run)
         check_stages(scratch)
+        check_motion(scratch)
         check_blocks(scratch)
         check_records(scratch)
         check_study_evaluations()

@@ -18,7 +18,9 @@ namespace Voussoir
     double           largest, time;
     dealii::Point<3> where;
 
-    double largest_at_rest; // ratio of the static state [-]
+    // ratio of the static state [-], and where [m]
+    double           largest_at_rest;
+    dealii::Point<3> where_at_rest;
 
     // of each ratio of the list: accumulated time of the point that has most
     // [s], and of those that the static state has below the ratio, area of the

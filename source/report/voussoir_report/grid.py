@@ -192,6 +192,12 @@ class Dam:
         """Corners of the faces that neither rock nor water nor dam lies behind."""
         return self.grid.outer_faces(self.cells, np.arange(len(self.grid.cells)))
 
+    @functools.cached_property
+    def foundation(self):
+        """Numbers of the points of the dam where it meets the rock."""
+        mine = np.unique(self.grid.cells[self.cells])
+        return mine[np.isin(self.grid.places[mine], self.grid.places[self.grid.cells[self.others]])]
+
     def _unit_normals(self):
         normals = area_vectors(self.grid.points[self.exposed])
         return normals / np.linalg.norm(normals, axis=1)[:, None]

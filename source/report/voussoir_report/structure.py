@@ -259,9 +259,13 @@ def start_of(run):
 
 def motion_of(run, file):
     """Displacement [m] at all corners, from the start of the earthquake where there is a
-    picture of it."""
+    picture of it, without the mean one of the foundation of the dam: that of the ground
+    is as large as the rest, or larger."""
     values, start = grid_of(run, file).values["displacement"].astype(float), start_of(run)
-    return values - grid_of(run, start).values["displacement"] if start else values
+    if start:
+        values -= grid_of(run, start).values["displacement"]
+    foundation = dam_in(run, file).foundation
+    return values - values[foundation].mean(axis=0) if len(foundation) else values
 
 
 def magnified(dam, largest):
@@ -287,10 +291,12 @@ def deformed(run):
         return None
     factor = magnified(dam, amount.max())
     moved = dam.grid.points[faces] + factor * motion[faces]
-    scale = charts.Scale([100. * amount], "motion [cm]", 0., "viridis", low=0.)
+    scale = charts.Scale([100. * amount], "displacement [cm]", 0., "viridis", low=0.)
     actors = [scenes.quadrilaterals(moved, scale.colours(scale.norm(100. * amount))[..., :3])]
     image = scenes.draw(actors, moved.reshape(-1, 3), FROM_DOWNSTREAM)
     since = "the start of the earthquake" if start_of(run) else "the unloaded model"
+    if len(dam.foundation):
+        since += ", without the mean motion of its foundation,"
     when = (f"; joints and planes are open by up to {number(opening)} mm at that time, by {number(widest)} mm when "
             f"widest, at {number(widest_time)} s" if opening is not None else "")
     return charts.framed(*image, f"{run.prefix}The dam from downstream and above at {number(time)} s, its motion from "

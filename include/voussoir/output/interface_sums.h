@@ -8,7 +8,7 @@ namespace Voussoir
   /** Sums over the points of a surface in a sample. */
   namespace InterfaceSum
   {
-    enum Quantity
+    enum
     {
       opening,      // times area [m3]
       slip,         // times area [m3]

@@ -1,15 +1,24 @@
 #!/usr/bin/env python3
 """Prints what hand_check.md has by hand for the dam of prm/hand_check.prm.
 
-usage: doc/hand_check.py
+usage: doc/hand_check.py [FOLDER]
+
+With the results of a run that has natural modes also what these have at the crest by
+the spectrum.
 
 Only numbers of the case enter; areas and direction of the planes of the block are
 those of the mesh. The dam is arches and cantilevers: each arch, one metre high, is a
 frame of beams on springs of the rock, and has the shape that a pressure falling from
 the crown to the banks like a cosine gives it. That shape times one function of the
 elevation is the displacement of the dam; the energy of bending of the cantilevers is
-added to that of the arches (Ritz).
+added to that of the arches (Ritz). The earthquake acts on three modes of that dam by its
+design spectrum; their squares are added.
 """
+import itertools
+import json
+import pathlib
+import sys
+
 import numpy as np
 from scipy.integrate import dblquad
 from scipy.interpolate import PchipInterpolator
@@ -18,6 +27,9 @@ from scipy.linalg import eigh
 G, WATER, CONCRETE, LEVEL = 9.81, 1000., 2400., 145.
 DYNAMIC, STATIC = 30e9, 0.67 * 30e9  # moduli of the concrete [Pa]
 ROCK, NU, NU_ROCK = 25e9, 0.17, 0.25
+# peak acceleration along the river [m/s2] and design spectrum over it [-]
+PEAK, PLATEAU, CHARACTERISTIC, DECAY = 0.20 * G, 2.5, 0.2, 0.6
+VERTICAL = 0.13 * G
 # elevation, upstream face, thickness at crown, right, left, radius right, left, half
 # width right, left [m]
 ARCHES = np.array([[0., 8, 30, 32, 32, 80, 90, 25, 30], [50, 14, 24, 27, 28, 120, 130, 70, 80],
@@ -103,11 +115,11 @@ class Arch:
 def dam(modulus, twist, n=30):
     """Of the dam with or without the energy of twist and of shear between arches:
     elevations; matrices of stiffness and of mass, without and with Westergaard's added
-    mass, and the load of the water, for values and slopes of the displacement of the
-    crown at these elevations."""
+    mass, the load of the water, and that of a unit acceleration of the ground downstream,
+    for values and slopes of the displacement of the crown at these elevations."""
     z, step = np.linspace(0., HEIGHT, n + 1, retstep=True)
     stiffness, empty, full = (np.zeros((2 * n + 2, 2 * n + 2)) for _ in range(3))
-    water = np.zeros(2 * n + 2)
+    water, inertia = np.zeros(2 * n + 2), np.zeros(2 * n + 2)
     shapes = np.array([[1., 0., -3., 2.], [0., step, -2. * step, step], [0., 0., 3., -2.], [0., 0., -step, step]])
     points, weights = np.polynomial.legendre.leggauss(4)
     for cell in range(n):
@@ -128,7 +140,39 @@ def dam(modulus, twist, n=30):
             empty[own, own] += mass * both
             full[own, own] += (mass + added) * both
             water[own] -= weight * WATER * G * depth * np.sum(one.across * one.share) * shape
-    return z, stiffness, empty, full, water
+            pushed = 7. / 8. * WATER * np.sqrt(LEVEL * depth) * np.sum(one.share * one.across * one.normal[1])
+            pushed += np.sum(CONCRETE * one.t * one.share * one.u[1])
+            inertia[own] += weight * pushed * shape
+    return z, stiffness, empty, full, water, inertia
+
+
+def spectral(period):
+    """Acceleration of the design spectrum [m/s2]."""
+    rise = 1. + (PLATEAU - 1.) * period / 0.1
+    return PEAK * min(rise, PLATEAU, PLATEAU * max(0.2, (CHARACTERISTIC / period)**DECAY))
+
+
+def responses(stiffness, mass, inertia, n_modes=3):
+    """Of each mode to the spectrum: circular frequency squared, displacement of the crown
+    at each elevation [m]."""
+    omega2, shapes = eigh(stiffness, mass, subset_by_index=[0, n_modes - 1])
+    spectra = [spectral(2. * np.pi / np.sqrt(one)) / one for one in omega2]
+    return omega2, (shapes * (shapes.T @ inertia) * spectra)[::2].T
+
+
+def push_on_left_bank(arches, elevation, u):
+    """Of the arches above the block, for a displacement of the crown [N]."""
+    above = elevation >= ELEVATION
+    return np.trapz(np.array([one.on_left_bank for one in arches])[above] * u[above, None], elevation[above], axis=0)
+
+
+def least_safety(static, thrust):
+    """Of the block under its static force, the thrust of the first mode and its own inertia
+    across and along the river and upwards, of either sign: one whole, the others by 40 %."""
+    parts = [np.array([*thrust, 0.]), *np.diag(DENSITY * VOLUME * np.array([PEAK, PEAK, VERTICAL]))]
+    forces = [static + sum(sign * (1. if i == whole else 0.4) * part for i, (sign, part) in enumerate(zip(signs, parts)))
+              for whole in range(4) for signs in itertools.product((-1., 1.), repeat=4)]
+    return np.min([safety(force)[:2] for force in forces], axis=0)
 
 
 def safety(force):
@@ -139,6 +183,27 @@ def safety(force):
     drives = line @ force
     normal = np.linalg.solve(np.array([*NORMALS, line]).T, drives * line - force)[:2]
     return [(FRICTION * normal.sum() + COHESION * area) / drives for area in (BOTTOM, BOTTOM + SIDE)] + [drives]
+
+
+def spectrum_of_modes(folder):
+    """Displacement [m] and acceleration [m/s2] of the crest along the river by the
+    natural modes of a run, in the directions x, y, z of the earthquake."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(folder / "modes.vtu"))
+    reader.Update()
+    points, arrays = reader.GetOutput().GetPoints(), reader.GetOutput().GetPointData()
+    crest = np.argmin(np.linalg.norm(vtk_to_numpy(points.GetData()) - (1., -4., HEIGHT), axis=1))
+    shapes = {arrays.GetArrayName(i): arrays.GetArray(i) for i in range(arrays.GetNumberOfArrays())}
+    motions = []
+    for number, mode in enumerate(json.loads((folder / "summary.json").read_text())["modes"]["modes"], 1):
+        shape = next(values for name, values in shapes.items() if name.startswith(f"mode {number} "))
+        factors = np.array(mode["participation factors"]) * vtk_to_numpy(shape)[crest, 1]
+        acceleration = factors * spectral(mode["period [s]"]) * [1., 1., VERTICAL / PEAK]
+        print(f"  mode of {mode['frequency [Hz]']:.2f} Hz, {factors[1]:.2f} times the spectrum at the crest")
+        motions.append([acceleration * (mode["period [s]"] / 2. / np.pi)**2, acceleration])
+    return np.linalg.norm(motions, axis=(0, 2))
 
 
 def volume(line):
@@ -171,7 +236,7 @@ def main():
     weight = -G * (DENSITY * VOLUME + CONCRETE * stands)
     for twist in (False, True):
         print(f"with{'' if twist else 'out'} twist and shear between arches:")
-        elevation, stiffness, _, _, water = dam(STATIC, twist)
+        elevation, stiffness, _, _, water, _ = dam(STATIC, twist)
         u = np.linalg.solve(stiffness, water)[::2]
         arches = [Arch(at, STATIC) for at in elevation]
         thrust = np.array([one.thrust for one in arches]) * u
@@ -179,15 +244,28 @@ def main():
             i = np.argmin(abs(elevation - at))
             print(f"  crown at {at:.0f} m: {1e3 * u[i]:.1f} mm, arch stress {-1e-6 * thrust[i] / table(at)[1]:.2f} MPa")
         print(f"  thrust through the crown {1e-6 * np.trapz(thrust, elevation):.0f} MN")
-        above = elevation >= ELEVATION
-        pushes = np.trapz(np.array([one.on_left_bank for one in arches])[above] * u[above, None], elevation[above], axis=0)
-        force = np.array([*pushes, weight])
+        force = np.array([*push_on_left_bank(arches, elevation, u), weight])
         print("  on the block [MN]:", *(f"{1e-6 * part:.0f}" for part in force), "and safety {:.2f} to {:.2f}".format(*safety(force)))
-        _, stiffness, empty, full, _ = dam(DYNAMIC, twist)
+        _, stiffness, empty, full, _, inertia = dam(DYNAMIC, twist)
         for name, mass in (("empty", empty), ("with added mass", full)):
             omega2 = eigh(stiffness, mass, eigvals_only=True, subset_by_index=[0, 0])
             print(f"  first mode, {name}: {np.sqrt(omega2[0]) / 2. / np.pi:.2f} Hz")
+        omega2, modes = responses(stiffness, full, inertia)
+        crest = modes[:, -1]
+        for square, moved in zip(omega2, crest):
+            period = 2. * np.pi / np.sqrt(square)
+            print(f"  mode of {1. / period:.2f} Hz, {square * moved / spectral(period):.2f} times the spectrum at the crest:"
+                  f" {1e3 * moved:.1f} mm, {square * moved:.2f} m/s2")
+        print(f"  crest in the earthquake {1e3 * np.linalg.norm(crest):.1f} mm, {np.linalg.norm(omega2 * crest):.2f} m/s2")
+        thrust = push_on_left_bank([Arch(at, DYNAMIC) for at in elevation], elevation, modes[0])
+        for name, static in (("own", force), ("the program's", PROGRAM)):
+            print(f"  safety of the block in the earthquake, with {name} static force {{:.2f}} to {{:.2f}}".format(
+                *least_safety(static, thrust)))
     print("safety by the program's force {:.2f} to {:.2f}, of which {:.4g} N drive".format(*safety(PROGRAM)))
+    if len(sys.argv) > 1:
+        print("natural modes of the run:")
+        moved, acceleration = spectrum_of_modes(pathlib.Path(sys.argv[1]))
+        print(f"  crest in the earthquake {1e3 * moved:.1f} mm, {acceleration:.2f} m/s2")
 
 
 if __name__ == "__main__":

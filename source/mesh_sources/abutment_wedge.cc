@@ -175,12 +175,12 @@ namespace Voussoir
             }
           else if (is_wedge[cell] && !is_wedge[other] && is_rock[other])
             {
-              const auto &quad = section.quads[place[other].first];
-              mesh
-                .face_sets[name + (place[other].second >= end ? " back" :
-                                   row(quad) < ledge.row      ? " bottom" :
-                                                                " side")]
-                .push_back({cell, face});
+              const auto       &quad = section.quads[place[other].first];
+              const std::string plane =
+                place[other].second >= end ? " rear plane" :
+                row(quad) < ledge.row      ? " base" :
+                                             " lateral plane";
+              mesh.face_sets[name + plane].push_back({cell, face});
             }
         }
   }

@@ -125,12 +125,12 @@ namespace Voussoir
                        1e-6);
 
         split_interfaces(mesh,
-                         {"left wedge bottom",
-                          "left wedge side",
-                          "left wedge back",
-                          "right wedge bottom",
-                          "right wedge side",
-                          "right wedge back",
+                         {"left wedge base",
+                          "left wedge lateral plane",
+                          "left wedge rear plane",
+                          "right wedge base",
+                          "right wedge lateral plane",
+                          "right wedge rear plane",
                           "dam-rock interface"},
                          "Test");
         check_mesh(mesh, "Test");

@@ -30,8 +30,8 @@ namespace Voussoir
         const auto simulation = make_simulation(*parameters, communicator);
         verdicts.near("static safety factor of the wedge",
                       block_safety(*simulation,
-                                   "left wedge: left wedge bottom, left wedge "
-                                   "side, left wedge back"),
+                                   "left wedge: left wedge base, left wedge "
+                                   "lateral plane, left wedge rear plane"),
                       friction / std::tan(dip * numbers::PI / 180.),
                       0.01);
       }

@@ -40,7 +40,7 @@ namespace Voussoir
                      volume = number_of("volume ");
         verdicts.near("width", width, 28.8, 1e-3, "m");
         const double own = extent(mesh, "downstream face")[0] -
-                           extent(mesh, "left wedge bottom")[0];
+                           extent(mesh, "left wedge base")[0];
         verdicts.below("length: error against the mesh",
                        length / own - 1.,
                        1e-3);

@@ -250,13 +250,13 @@ def check_openings(scratch):
     """Joints are compared with the depth of their own keys; a plane has none."""
     run = make_wall(scratch / "openings", SUMMARY)
     run.parameters |= {"Interfaces/Names": "joints, planes", "Interfaces/joints/Face sets": "joint *",
-                       "Interfaces/joints/Key depth": "0.2", "Interfaces/planes/Face sets": "wedge back"}
+                       "Interfaces/joints/Key depth": "0.2", "Interfaces/planes/Face sets": "wedge rear plane"}
     run.summary["interfaces"] = {"surfaces": {name: {"largest opening [mm]": opening} for name, opening in (
-        ("joint 1", 250.), ("joint 2", 5.), ("wedge back", 0.834))}}
+        ("joint 1", 250.), ("joint 2", 5.), ("wedge rear plane", 0.834))}}
     keyed, other = verdict.opening_lines(run)
     is_true("a joint wider than its keys", (keyed.found, keyed.judged, keyed.place) == ("250 mm", "not met", "joint 1"))
     is_true("a plane without keys", (other.found, other.limit, other.judged, other.place)
-            == ("0.834 mm", "no limit in the case", "to be judged", "wedge back"))
+            == ("0.834 mm", "no limit in the case", "to be judged", "wedge rear plane"))
 
 
 def limited(folder):

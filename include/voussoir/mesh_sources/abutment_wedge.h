@@ -34,8 +34,8 @@ namespace Voussoir
    * In the cross-section it has the rock above a ledge and on the river's side
    * of an upright column; along the river it reaches from the dam's upstream
    * face to where the rock before it is cut away. It is bounded by
-   * three surfaces, base plane ("bottom"), lateral ("side") and rear release
-   * plane ("back"), and daylights on the canyon's wall and in the cut.
+   * three release planes, base, lateral and rear, and daylights on the canyon's
+   * wall and in the cut.
    */
   class AbutmentWedge
   {
@@ -82,8 +82,8 @@ namespace Voussoir
 
     /**
      * Adds the cell set "left wedge" or "right wedge", face sets of that name
-     * with " bottom", " side" and " back", all named from the wedge, and the
-     * faces of the cut to "ground".
+     * with " base", " lateral plane" and " rear plane", all named from the
+     * wedge, and the faces of the cut to "ground".
      *
      * @param cell_number of each quadrilateral and layer, the layers of one
      *   quadrilateral together; invalid_unsigned_int for none

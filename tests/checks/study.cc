@@ -208,7 +208,7 @@ namespace Voussoir
                  communicator);
         verdicts.is_true("stopped before another criterion was met: said",
                          holds(other, "stopped: ") &&
-                           holds(other, "nobody knows") && !has_limits());
+                           holds(other, "is unknown") && !has_limits());
 
         const std::string one_of_two =
           end_of(slope.with(

@@ -103,7 +103,7 @@ namespace Voussoir
                                          std::sin(wanted.direction * radians),
                                        std::cos(wanted.dip * radians)});
             for (const CoarseMesh::Face &face :
-                 mesh.face_sets.at(name + " bottom"))
+                 mesh.face_sets.at(name + " base"))
               for (unsigned int v = 0; v < 4; ++v)
                 {
                   // at each corner, so that it is no twisted face
@@ -194,7 +194,7 @@ namespace Voussoir
       static double
       foot(const CoarseMesh &mesh, const std::string &name)
       {
-        const auto bottom    = vertices(mesh, name + " bottom"),
+        const auto bottom    = vertices(mesh, name + " base"),
                    interface = vertices(mesh, "dam-rock interface");
         std::map<double, double> elevation; // by y
         for (const Point<3> &x : bottom)

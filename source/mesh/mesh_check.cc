@@ -25,8 +25,9 @@ namespace Voussoir
     // Corners flatter than this are round-off of a flat corner.
     constexpr double flat_corner = 1e-6;
 
-    // Peak memory of a run per unknown of elastic cells [bytes].
-    constexpr double memory_per_unknown = 1000.;
+    // Peak memory of a run per unknown of elastic cells [bytes]; measured with
+    // degree 1: 510 to 550, and less with higher degrees.
+    constexpr double memory_per_unknown = 500.;
 
     // Memory of a rank per cell before refinement, with p4est [bytes].
     constexpr double memory_per_coarse_cell = 1500.;

@@ -23,8 +23,7 @@ import argparse
 import numpy as np
 from scipy.special import hankel1
 
-ETAS = 0.5, 1, 2
-PLACES = np.array([-3, -2, -1.5, -1, -0.7, -0.4, 0, 0.4, 0.7, 1, 1.5, 2, 3])  # along the surface
+from canyon_reference import ETAS, PLACES, amplitudes_of, draw
 
 
 class HalfSpace:
@@ -167,44 +166,16 @@ def check():
     print("flat ground under a long SV wave: 2 =", *(f"{a:.4f}" for a in amplitudes(0.02, "SV", 0, np.array([-3.0, 0.0]))[0]))
 
 
-def amplitudes_of(run):
-    """Of y and z of the run, along and down, at the points of PLACES [2.5, 5, 10 Hz],
-    over that of the wave."""
-    table = np.genfromtxt(f"{run}/histories.csv", delimiter=",", skip_header=1)
-    motion = np.genfromtxt(f"{run}/ground_motion.csv", delimiter=",", skip_header=1)
-    result = []
-    for eta in ETAS:
-        w = 2 * np.pi * 5 * eta
-
-        def transform(t, f):
-            return (f.T * np.exp(-1j * w * t)).sum(axis=-1) * (t[1] - t[0])
-        incident = transform(motion[:, 0], motion[:, 1]) / -(w**2)
-        result.append([abs(transform(table[:, 0], table[:, d::3]) / incident) for d in (2, 3)])
-    return result
-
-
-def draw(runs, waves, angles, file):
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(len(ETAS), len(runs), figsize=(9, 6), sharex=True, sharey=True, squeeze=False)
+def draw_runs(runs, waves, angles, file):
     x = np.linspace(-3, 3, 121)
-    for column, run, wave, angle in zip(axes.T, runs, waves, angles):
-        for axis, eta, found in zip(column, ETAS, amplitudes_of(run)):
-            for d, color in (0, "C3"), (1, "C0"):
-                axis.plot(x, amplitudes(eta, wave, angle, x)[d], "k", linewidth=0.8)
-                axis.plot(PLACES, found[d], "o", markersize=4, markerfacecolor="none", color=color,
-                          label=("level", "upright")[d])
-            axis.text(0.03, 0.9, f"η = {eta}, {wave}, {angle:g}°", transform=axis.transAxes, fontsize=9)
-            axis.grid(alpha=0.3)
-    axes[0, 0].legend(fontsize=8, loc="upper right")
-    axes[0, 0].set_ylim(0, 4)
-    figure.supxlabel("place over the canyon's radius; the wave travels to the right", fontsize=9)
-    figure.supylabel("amplitude over that of the wave", fontsize=9)
-    figure.tight_layout()
-    figure.savefig(file, dpi=90)
+    found = [amplitudes_of(run, 1, 2) for run in runs]
+
+    def panel(axis, k, eta, i):
+        for d, color in (0, "C3"), (1, "C0"):
+            axis.plot(x, amplitudes(eta, waves[k], angles[k], x)[d], "k", linewidth=0.8)
+            axis.plot(PLACES, found[k][i][d], "o", markersize=4, markerfacecolor="none", color=color,
+                      label=("level", "upright")[d])
+    draw(runs, [f"{wave}, {angle:g}°" for wave, angle in zip(waves, angles)], 4, file, panel)
 
 
 def main():
@@ -223,14 +194,14 @@ def main():
             rows = (", ".join(f"{u:.4f}" for u in of_eta[d]) for d in (0, 1) for of_eta in found)
             print(f"{wave}, {angle:g} degrees:", "; ".join(rows), sep="\n")
     for run, wave, angle in zip(options.runs, options.wave, options.angle):
-        for eta, found in zip(ETAS, amplitudes_of(run)):
+        for eta, found in zip(ETAS, amplitudes_of(run, 1, 2)):  # along the surface, upright
             exact = amplitudes(eta, wave, angle)
             print(f"{run}, {wave}, {angle:g} degrees, eta {eta}: largest difference, level and upright, over 2: "
                   + ", ".join(f"{50 * abs(f - e).max():.2f} %" for f, e in zip(found, exact)))
             for line in zip(PLACES, exact[0], found[0], exact[1], found[1]):
                 print("%6.1f %9.4f %8.4f %9.4f %8.4f" % line)
     if options.picture:
-        draw(options.runs, options.wave, options.angle, options.picture)
+        draw_runs(options.runs, options.wave, options.angle, options.picture)
 
 
 if __name__ == "__main__":

@@ -82,8 +82,9 @@ def check():
     print(f"far away at 20 degrees of a wave of 50 over the opposite: {far(50, 20) / far(-20, -50):.6f}")
 
 
-def amplitudes_of(run):
-    """At the points of PLACES [2.5, 5, 10 Hz], over that of the wave."""
+def amplitudes_of(run, *directions):
+    """Of these directions (0: x) at the points of PLACES [2.5, 5, 10 Hz], over that of the
+    wave."""
     table = np.genfromtxt(f"{run}/histories.csv", delimiter=",", skip_header=1)
     motion = np.genfromtxt(f"{run}/ground_motion.csv", delimiter=",", skip_header=1)
     result = []
@@ -91,30 +92,39 @@ def amplitudes_of(run):
         w = 2 * np.pi * 5 * eta
         transform = lambda t, f: (f.T * np.exp(-1j * w * t)).sum(axis=-1) * (t[1] - t[0])
         incident = transform(motion[:, 0], motion[:, 1]) / -(w**2)
-        result.append(abs(transform(table[:, 0], table[:, 1::3]) / incident))
+        result.append([abs(transform(table[:, 0], table[:, 1 + d::3]) / incident) for d in directions])
     return result
 
 
-def draw(runs, angles, file):
+def draw(runs, names, largest, file, panel):
+    """panel(axis, number of the run, eta, number of eta) draws into a panel."""
     import matplotlib
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(len(ETAS), len(runs), figsize=(9, 6), sharex=True, sharey=True, squeeze=False)
-    x = np.linspace(-3, 3, 601)
-    for column, run, angle in zip(axes.T, runs, angles):
-        for axis, eta, found in zip(column, ETAS, amplitudes_of(run)):
-            axis.plot(x, abs(canyon(eta, angle, *along(x))), "k", linewidth=0.8, label="series")
-            axis.plot(PLACES, found, "o", markersize=4, markerfacecolor="none", color="C3", label="Voussoir")
-            axis.text(0.03, 0.9, f"η = {eta}, {angle:g}°", transform=axis.transAxes, fontsize=9)
+    for k, (column, name) in enumerate(zip(axes.T, names)):
+        for i, (axis, eta) in enumerate(zip(column, ETAS)):
+            panel(axis, k, eta, i)
+            axis.text(0.03, 0.9, f"η = {eta}, {name}", transform=axis.transAxes, fontsize=9)
             axis.grid(alpha=0.3)
     axes[0, 0].legend(fontsize=8, loc="upper right")
-    axes[0, 0].set_ylim(0, 4.4)
+    axes[0, 0].set_ylim(0, largest)
     figure.supxlabel("place over the canyon's radius; the wave travels to the right", fontsize=9)
     figure.supylabel("amplitude over that of the wave", fontsize=9)
     figure.tight_layout()
     figure.savefig(file, dpi=90)
+
+
+def draw_runs(runs, angles, file):
+    x = np.linspace(-3, 3, 601)
+    found = [amplitudes_of(run, 0) for run in runs]
+
+    def panel(axis, k, eta, i):
+        axis.plot(x, abs(canyon(eta, angles[k], *along(x))), "k", linewidth=0.8, label="series")
+        axis.plot(PLACES, found[k][i][0], "o", markersize=4, markerfacecolor="none", color="C3", label="Voussoir")
+    draw(runs, [f"{angle:g}°" for angle in angles], 4.4, file, panel)
 
 
 def main():
@@ -131,13 +141,13 @@ def main():
             rows = (", ".join(f"{abs(u):.4f}" for u in canyon(eta, angle, *along(PLACES))) for eta in ETAS)
             print(f"{angle:g} degrees:", "; ".join(rows), sep="\n")
     for run, angle in zip(options.runs, options.angle):
-        for eta, found in zip(ETAS, amplitudes_of(run)):
+        for eta, (found,) in zip(ETAS, amplitudes_of(run, 0)):
             exact = abs(canyon(eta, angle, *along(PLACES)))
             print(f"{run}, {angle:g} degrees, eta {eta}:")
             for line in zip(PLACES, exact, found, 100 * (found / exact - 1)):
                 print("%6.1f %8.4f %8.4f %7.2f %%" % line)
     if options.picture:
-        draw(options.runs, options.angle, options.picture)
+        draw_runs(options.runs, options.angle, options.picture)
 
 
 if __name__ == "__main__":

@@ -296,11 +296,8 @@ namespace Voussoir
             top = &face;
         }
     }
-  } // namespace
 
 
-  namespace
-  {
     /** Criteria for the time after the earthquake want its strong part to be
      *  over at the end of the run. */
     void
@@ -376,8 +373,7 @@ namespace Voussoir
                           "inertial force; set it to 1 for the dam.");
         return;
       }
-    if (ground_motion.given_at == MotionPlace::free_surface ||
-        ground_motion.given_at == MotionPlace::level_rock)
+    if (is_at_surface(ground_motion.given_at))
       for (const auto &component : signals)
         if (component && std::isinf(component->end()))
           followed_to = end_time;

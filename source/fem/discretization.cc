@@ -111,6 +111,44 @@ namespace Voussoir
                 ->vertex(v)[d];
       return corners;
     }
+
+
+    // Frees the library's entries of the batches that have `node_entries`.
+    void
+    keep_entries_of_others(Discretization::MatrixFree &matrix_free)
+    {
+      auto &dof_info = const_cast<internal::MatrixFreeFunctions::DoFInfo &>(
+        matrix_free.get_dof_info());
+      auto              &starts    = dof_info.row_starts;
+      const unsigned int n_batches = matrix_free.n_cell_batches(),
+                         n_rows    = 3 * Lanes::size(); // of a batch
+      std::array<std::vector<unsigned int>, 2>         kept;
+      const std::array<std::vector<unsigned int> *, 2> all{
+        {&dof_info.dof_indices, &dof_info.dof_indices_interleaved}};
+      unsigned int n_kept = 0;
+      for (unsigned int batch = 0; batch < n_batches; ++batch)
+        {
+          const auto         row   = starts.begin() + n_rows * batch;
+          const unsigned int first = row->first, end = (row + n_rows)->first;
+          const bool is_kept = matrix_free.node_entries[batch] == nullptr;
+          for (unsigned int i = 0; i < n_rows; ++i)
+            (row + i)->first =
+              n_kept + (is_kept ? (row + i)->first - first : 0);
+          if (!is_kept)
+            continue;
+          n_kept += end - first;
+          for (unsigned int i = 0; i < 2; ++i)
+            if (!all[i]->empty())
+              kept[i].insert(kept[i].end(),
+                             all[i]->begin() + first,
+                             all[i]->begin() + end);
+        }
+      for (auto row = starts.begin() + n_rows * n_batches; row != starts.end();
+           ++row)
+        row->first = n_kept; // ghost cells are not read
+      for (unsigned int i = 0; i < 2; ++i)
+        *all[i] = std::move(kept[i]);
+    }
   } // namespace
 
 
@@ -268,12 +306,12 @@ namespace Voussoir
     using namespace internal::MatrixFreeFunctions;
     const unsigned int n_batches = matrix_free.n_cell_batches(),
                        n_lanes = Lanes::size(), n_entries = 8 * n_lanes;
-    DoFInfo    &dof_info = const_cast<DoFInfo &>(matrix_free.get_dof_info());
-    const auto &masks    = dof_info.hanging_node_constraint_masks;
-    const auto &layout   = *matrix_free.get_vector_partitioner();
+    const DoFInfo     &dof_info = matrix_free.get_dof_info();
+    const auto        &masks    = dof_info.hanging_node_constraint_masks;
+    const auto        &layout   = *matrix_free.get_vector_partitioner();
     const unsigned int size =
       layout.locally_owned_size() + layout.n_ghost_indices();
-    std::vector<bool> whole(n_batches, false);
+    matrix_free.entries.resize(n_batches * n_entries);
     for (unsigned int batch = 0; batch < n_batches; ++batch)
       {
         if (dof_info.index_storage_variants[DoFInfo::dof_access_cell][batch] !=
@@ -292,50 +330,12 @@ namespace Voussoir
         if (!hanging &&
             *std::max_element(entries, entries + n_entries) + 4 <= size)
           {
-            whole[batch] = true;
-            matrix_free.entries.insert(matrix_free.entries.end(),
-                                       entries,
-                                       entries + n_entries);
+            unsigned int *own = matrix_free.entries.data() + batch * n_entries;
+            std::copy_n(entries, n_entries, own);
+            matrix_free.node_entries[batch] = own;
           }
       }
-    matrix_free.entries.shrink_to_fit();
-    const unsigned int *next = matrix_free.entries.data();
-    for (unsigned int batch = 0; batch < n_batches; ++batch)
-      {
-        matrix_free.node_entries[batch] = whole[batch] ? next : nullptr;
-        next += whole[batch] ? n_entries : 0;
-      }
-
-    // the library's entries stay for the other batches only
-    const auto keep_others = [&](std::vector<unsigned int> &indices) {
-      std::vector<unsigned int> kept;
-      for (unsigned int batch = 0; batch < n_batches && !indices.empty();
-           ++batch)
-        if (!whole[batch])
-          {
-            const auto row = dof_info.row_starts.begin() + 3 * batch * n_lanes;
-            kept.insert(kept.end(),
-                        indices.begin() + row->first,
-                        indices.begin() + (row + 3 * n_lanes)->first);
-          }
-      indices = std::move(kept);
-    };
-    keep_others(dof_info.dof_indices);
-    keep_others(dof_info.dof_indices_interleaved);
-    unsigned int dropped = 0;
-    for (unsigned int batch = 0; batch < n_batches; ++batch)
-      {
-        const auto row   = dof_info.row_starts.begin() + 3 * batch * n_lanes;
-        const auto first = row->first, end = (row + 3 * n_lanes)->first;
-        for (unsigned int i = 0; i < 3 * n_lanes; ++i)
-          (row + i)->first =
-            (whole[batch] ? first : (row + i)->first) - dropped;
-        dropped += whole[batch] ? end - first : 0;
-      }
-    for (auto row = dof_info.row_starts.begin() + 3 * n_batches * n_lanes;
-         row != dof_info.row_starts.end();
-         ++row)
-      row->first = dof_info.dof_indices.size(); // ghost cells are not read
+    keep_entries_of_others(matrix_free);
   }
 
 

@@ -186,8 +186,7 @@ namespace Voussoir
       throw UserError("\"Type\" in section \"Wave field\" is an oblique wave, "
                       "which needs one material along the whole absorbing "
                       "boundary; use \"vertical\" for layered rock.");
-    if (given_at == MotionPlace::free_surface ||
-        given_at == MotionPlace::level_rock)
+    if (is_at_surface(given_at))
       throw UserError("\"Given at\" in section \"Ground motion\" cannot be \"" +
                       option_name(given_at) +
                       "\" with an oblique wave; give the "
@@ -261,8 +260,7 @@ namespace Voussoir
         list, discretization.degree, field.quadrature, damping, leap_frog);
     };
     WaveColumn column = column_of(layers);
-    if (field.given_at == MotionPlace::free_surface ||
-        field.given_at == MotionPlace::level_rock)
+    if (is_at_surface(field.given_at))
       motion = incident_for_surface(field.given_at == MotionPlace::level_rock ?
                                       column_of(lowest_rock(layers)) :
                                       column,

@@ -378,13 +378,14 @@ namespace Voussoir
         Utilities::MPI::max(beyond_rest, communicator, beyond_rest);
         const auto total =
           sum_over_ranks(areas->total(names.size()), communicator);
-        for (const auto &other : Utilities::MPI::all_gather(communicator, most))
-          for (unsigned int set = 0; set < names.size(); ++set)
-            most[set] = std::max(most[set], other[set]);
-        for (const auto &other :
-             Utilities::MPI::all_gather(communicator, most_at_rest))
-          for (unsigned int set = 0; set < names.size(); ++set)
-            most_at_rest[set] = std::max(most_at_rest[set], other[set]);
+        const auto take_largest = [&](auto &of_sets) {
+          for (const auto &other :
+               Utilities::MPI::all_gather(communicator, of_sets))
+            for (unsigned int set = 0; set < names.size(); ++set)
+              of_sets[set] = std::max(of_sets[set], other[set]);
+        };
+        take_largest(most);
+        take_largest(most_at_rest);
 
         std::vector<FaceOverStress> faces;
         for (unsigned int set = 0; set < names.size(); ++set)

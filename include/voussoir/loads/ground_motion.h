@@ -61,6 +61,15 @@ namespace Voussoir
             {MotionPlace::incident_wave, "incident wave"}};
   }
 
+  /** Whether the incident wave follows from a motion of the surface, by
+   *  deconvolution. */
+  inline bool
+  is_at_surface(const MotionPlace place)
+  {
+    return place == MotionPlace::free_surface ||
+           place == MotionPlace::level_rock;
+  }
+
 
   /**
    * Parameters of the prm section "Ground motion": the earthquake as functions

@@ -11,6 +11,7 @@ import pty
 import re
 import select
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -156,6 +157,23 @@ def check_kills(scratch):
     is_true("ranks do not outlive the launcher", wait_for(lambda: not ranks(folder), 5.))
 
 
+def check_session_folders(scratch):
+    """A killed mpirun of Open MPI 5 leaves a folder of its process number, which comes again."""
+    temporary = scratch / "temporary"
+    temporary.mkdir()
+    last = os.getpid()
+    for process in range(last, last + 3000):  # numbers go up
+        (temporary / f"prterun.{socket.gethostname()}.{process}.{os.getuid()}" / "0").mkdir(parents=True)
+    left = set(temporary.iterdir())
+    run = started(scratch / "same_number", env={**os.environ, "TMPDIR": str(temporary)})
+    processes = ranks(scratch / "same_number")
+    is_true("it starts where folders of its number are", len(processes) == 2)
+    if processes:
+        os.kill(parent(processes[0]), signal.SIGKILL)
+    ends(run)
+    is_true("  and leaves none", set(temporary.iterdir()) == left)
+
+
 def check_second(scratch):
     folder = scratch / "second"
     run = started(folder)
@@ -203,7 +221,7 @@ def check_terminal(scratch):
 
 
 with tempfile.TemporaryDirectory() as name:
-    for check in (check_stops, check_early, check_errors, check_kills, check_second, check_terminal):
+    for check in (check_stops, check_early, check_errors, check_kills, check_session_folders, check_second, check_terminal):
         check(pathlib.Path(name))
 print(f"{len(failed)} failed" if failed else "all ok")
 sys.exit(1 if failed else 0)

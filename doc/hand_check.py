@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Prints what hand_check.md has by hand for the dam of prm/hand_check.prm.
+"""Prints the hand calculation of hand_check.md for the dam of prm/hand_check.prm.
 
 usage: doc/hand_check.py [FOLDER]
 
-With the results of a run that has natural modes also what these have at the crest by
-the spectrum.
+With the results of a run that has natural modes it also prints the response of these
+modes at the crest to the design spectrum.
 
 Only numbers of the case enter; areas and direction of the planes of the block are
-those of the mesh. The dam is arches and cantilevers: each arch, one metre high, is a
-frame of beams on springs of the rock, and has the shape that a pressure falling from
-the crown to the banks like a cosine gives it. That shape times one function of the
-elevation is the displacement of the dam; the energy of bending of the cantilevers is
-added to that of the arches (Ritz). The earthquake acts on three modes of that dam by its
-design spectrum; their squares are added.
+those of the mesh. The dam consists of arches and cantilevers: each arch, one metre
+high, is a frame of beams on springs of the rock, and takes its shape under a pressure
+that falls from the crown to the banks like a cosine. This shape times one function of
+the elevation is the displacement of the dam; the energy of bending of the cantilevers
+is added to that of the arches (Ritz). Three modes respond to the design spectrum and
+are combined by the root of the sum of squares.
 """
 import itertools
 import json
@@ -54,15 +54,15 @@ def half(z, bank, n=40):
 
 
 def arch(z):
-    """The same from the right bank to the left."""
+    """x, y and thickness along an arch from the right bank to the left."""
     right, left = half(z, 0), half(z, 1)
     right[0] *= -1.
     return np.concatenate((right[:, :0:-1], left), axis=1)
 
 
 def rock_springs(t, length=440.):
-    """Of a metre of the foundation, t wide and as long as the contour of the dam:
-    translation by the mean displacement under a uniform pressure (Boussinesq),
+    """Stiffness of a metre of the foundation, t wide and as long as the contour of the
+    dam: translation by the mean displacement under a uniform pressure (Boussinesq),
     rotation of a rigid strip on a half-plane."""
     modulus = ROCK / (1. - NU_ROCK**2)
     mean = 4. / length / t * dblquad(lambda v, u: (length - u) * (t - v) / np.hypot(u, v), 0., length, 0., t)[0]
@@ -70,7 +70,7 @@ def rock_springs(t, length=440.):
 
 
 class Arch:
-    """A metre of height of an arch, displaced upstream by one at the crown."""
+    """An arch, one metre high, displaced upstream by one at the crown."""
 
     def __init__(self, z, modulus):
         x, y, self.t = arch(z)
@@ -113,7 +113,7 @@ class Arch:
 
 
 def dam(modulus, twist, n=30):
-    """Of the dam with or without the energy of twist and of shear between arches:
+    """The dam with or without the energy of twist and of shear between arches:
     elevations; matrices of stiffness and of mass, without and with Westergaard's added
     mass, the load of the water, and that of a unit acceleration of the ground downstream,
     for values and slopes of the displacement of the crown at these elevations."""
@@ -153,22 +153,23 @@ def spectral(period):
 
 
 def responses(stiffness, mass, inertia, n_modes=3):
-    """Of each mode to the spectrum: circular frequency squared, displacement of the crown
-    at each elevation [m]."""
+    """Response of each mode to the spectrum: circular frequency squared, displacement of
+    the crown at each elevation [m]."""
     omega2, shapes = eigh(stiffness, mass, subset_by_index=[0, n_modes - 1])
     spectra = [spectral(2. * np.pi / np.sqrt(one)) / one for one in omega2]
     return omega2, (shapes * (shapes.T @ inertia) * spectra)[::2].T
 
 
 def push_on_left_bank(arches, elevation, u):
-    """Of the arches above the block, for a displacement of the crown [N]."""
+    """Push of the arches above the block, for a displacement of the crown [N]."""
     above = elevation >= ELEVATION
     return np.trapz(np.array([one.on_left_bank for one in arches])[above] * u[above, None], elevation[above], axis=0)
 
 
 def least_safety(static, thrust):
-    """Of the block under its static force, the thrust of the first mode and its own inertia
-    across and along the river and upwards, of either sign: one whole, the others by 40 %."""
+    """Factor of safety of the block under its static force, the thrust of the first mode and
+    its own inertia across and along the river and upwards, of either sign: one in full, the
+    others with 40 %."""
     parts = [np.array([*thrust, 0.]), *np.diag(DENSITY * VOLUME * np.array([PEAK, PEAK, VERTICAL]))]
     forces = [static + sum(sign * (1. if i == whole else 0.4) * part for i, (sign, part) in enumerate(zip(signs, parts)))
               for whole in range(4) for signs in itertools.product((-1., 1.), repeat=4)]
@@ -176,8 +177,8 @@ def least_safety(static, thrust):
 
 
 def safety(force):
-    """Of the block that slides along the line of base plane and lateral plane, without
-    and with the cohesion of the latter, and what drives it [N]."""
+    """Factor of safety of the block that slides along the line of base plane and lateral
+    plane, without and with the cohesion of the latter, and the driving force [N]."""
     line = np.cross(*NORMALS)
     line *= np.sign(line @ force) / np.linalg.norm(line)
     drives = line @ force
@@ -207,7 +208,7 @@ def spectrum_of_modes(folder):
 
 
 def volume(line):
-    """Of a metre of height of an arch, cell by cell."""
+    """Volume of an arch, one metre high, cell by cell."""
     x, y, t = line
     return np.hypot(np.diff(x), np.diff(y)) * (t[1:] + t[:-1]) / 2.
 
@@ -230,7 +231,7 @@ def main():
         stress = -normal / crown[0] + sign * 6. * moment / crown[0]**2
         print(f"free-standing crown 5 m above its {side} foot: {1e-6 * stress:.2f} MPa")
 
-    # the dam stands on the block from its foot there on
+    # the dam stands on the block left of its foot at the elevation of the block
     foot = table(ELEVATION)[7]
     stands = np.trapz([volume(line)[line[0][1:] > foot].sum() for line in lines], z)
     weight = -G * (DENSITY * VOLUME + CONCRETE * stands)

@@ -60,19 +60,19 @@ def morrow_point(program, ranks):
         f"{column[1] / column[0]:.2f}" for column in columns.values()) + " |")
     return lines + [
         "",
-        f"The smaller cells have frequencies lower by {min(change):.0f} to {max(change):.0f} %: these are not converged.",
+        f"The smaller cells have frequencies lower by {min(change):.0f} to {max(change):.0f} %: the frequencies are not converged.",
         "There is nothing to compare them with: no source of measured or computed frequencies of Morrow",
-        "Point Dam [could be read](published.md#sources-not-found). Of the shape height, crest length",
-        "and two thicknesses are those of the dam; the canyon between crest and base, the radii and the",
+        "Point Dam [could be read](published.md#sources-not-found). Height, crest length and two",
+        "thicknesses are those of the dam; the canyon between crest and base, the radii and the",
         "thickness in between are assumed."]
 
 
 def main(program, ranks="2"):
     lines = ["# Natural frequencies of the built-in dams",
              "",
-             "Hz, of `prm/baihetan_static.prm` and `prm/shapai_static.prm`; water to 280 m and",
-             "130.5 m as Westergaard's added mass, flexible rock without mass. Made by",
-             "`doc/modes_table.py`."]
+             "Frequencies in Hz of `prm/baihetan_static.prm` and `prm/shapai_static.prm`, with water",
+             "to 280 m and 130.5 m as Westergaard's added mass and flexible rock without mass. Made",
+             "by `doc/modes_table.py`."]
     for dam, case in DAMS.items():
         columns = [frequencies(program, ranks, case, *variant)
                    for variant in VARIANTS.values()]

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The picture of doc/studies.md about the abutments: slip of the planes and safety of
-the blocks over time at design, residual slip there and at 1.5 times the design
-motion, and over the factor. Takes the folder of the study.
+"""Draws the picture of the abutments in doc/studies.md from the folder of the study:
+slip of the planes and factor of safety of the blocks over time under the design motion,
+residual slip under 1.0 and 1.5 times this motion, and over the factor.
 
     python3 doc/abutment_stability.py output/study_abutment
 """
@@ -51,13 +51,13 @@ for bank in ("left", "right"):
     safety.plot(time, values[f"{bank} wedge block safety [-]"], color=COLOURS[bank], linewidth=0.8,
                 label=f"{bank} block")
 safety.axhline(1.0, color="black", linewidth=0.8)
-safety.set(xlabel="time [s]", ylabel="safety of the blocks [-]", yscale="log", ylim=(0.9, 8),
+safety.set(xlabel="time [s]", ylabel="factor of safety of the blocks [-]", yscale="log", ylim=(0.9, 8),
            title="resistance over driving forces, MDE")
 safety.set_yticks([1, 2, 4, 8], ["1", "2", "4", "8"])
 safety.minorticks_off()
 safety.legend(fontsize=8)
 
-for shift, name, folder in ((-0.2, "MDE, 406 gal", design), (0.2, "1.5 times that", stronger)):
+for shift, name, folder in ((-0.2, "MDE, 406 gal", design), (0.2, "1.5 times MDE", stronger)):
     stays = surfaces(folder)
     residual.bar([i + shift for i in range(len(PLANES))],
                  [stays[plane]["residual slip [mm]"] for plane in PLANES], 0.4, label=name)
@@ -73,7 +73,7 @@ for plane in PLANES:
                     [numbers[f"interfaces/surfaces/{plane}/residual slip [mm]"] for _, numbers in runs],
                     marker="o", **style(plane))
 factor.set(xlabel="factor on the design motion", ylabel="largest residual slip [mm]", yscale="log",
-           title="slip of the bottoms over the factor")
+           title="slip of the base planes over the factor")
 factor.axhline(100.0, color="black", linewidth=0.8)
 factor.legend(fontsize=8)
 

@@ -1,5 +1,5 @@
 """Sphinx configuration of the manual, ./bootstrap manual, with checks of its pages: a
-failed one is a warning, which ./bootstrap manual makes an error.
+failed check is a warning, which ./bootstrap manual turns into an error.
 """
 import pathlib
 import re
@@ -31,26 +31,26 @@ myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 4
 suppress_warnings = ["myst.header"]  # an included page begins at its own level
 nitpicky = True
-smartquotes = False  # texts in quotation marks are often typed
+smartquotes = False  # quoted texts are often to be typed
 
 
 # -------------------------------------------------------- files of the checkout
 
 
 def check_generated(app, page, source):
-    """Warns of a page whose generated part is not as the program and the heads of
-    the cases have it."""
+    """Warns of a page whose generated part differs from the entries of the program or
+    the heads of the cases."""
     if page in reference.GENERATED:
         written = reference.written(page)
         if (ROOT / "doc" / f"{page}.md").read_text() != written:
-            warn("%s.md is not what doc/reference.py writes; run it", page)
+            warn("%s.md is out of date; run doc/reference.py", page)
         for problem in reference.problems:
             warn("%s", problem)
         reference.problems.clear()
 
 
 def check_names(app, page, source):
-    """Warns of files that a page names and that are not there."""
+    """Warns of missing files that a page names."""
     new = re.findall(r"(?:Put this into|called) `(\S+)`", source[0])
     for name in re.findall(r"\b(?:source|include|tests|prm|report|doc)/[a-z\d_./]+\w", source[0]):
         if "." in name.rsplit("/", 1)[1] and name not in new and not (ROOT / name).exists():
@@ -58,11 +58,11 @@ def check_names(app, page, source):
 
 
 def check_pages(app, environment):
-    """The pages name each of the shipped cases, links of the README
-    have a target, and messages that are explained are those of the program."""
+    """Warns of shipped cases that no page names, of links of the README without a
+    target, and of explained messages that the program does not have."""
     for target in re.findall(r"\]\(([^):#]+)[#)]", (ROOT / "README.md").read_text()):
         if not (ROOT / target).exists():
-            warn("README.md has a link to %s, which is not there", target)
+            warn("README.md has a link to %s, which does not exist", target)
     pages = "".join(
         path.read_text().split(reference.MARK)[0] for path in (ROOT / "doc").glob("*.md")
     )

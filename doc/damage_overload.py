@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Pictures of the study of overload in doc/studies.md: damage at the end of each
-run of a study, in the section of the crown and on both faces.
+"""Draws the pictures of the overload study in doc/studies.md: damage at the end of
+each run of a study, in the section of the crown and on both faces.
 
 usage: doc/damage_overload.py STUDY NAME
 
 Writes NAME_crown.png and NAME_faces.png. STUDY is the output folder of
-prm/study_damage_overload.prm, or one with a single run. Needs what voussoir-report
-needs.
+prm/study_damage_overload.prm, or one with a single run. Needs the same packages as
+voussoir-report.
 """
 
 import pathlib
@@ -70,8 +70,8 @@ def main():
     study, name = pathlib.Path(sys.argv[1]), sys.argv[2]
     runs = sorted((Run(file.parent) for file in study.glob("*/summary.json")), key=factor_of)
     if not runs:
-        sys.exit(f'"{study}" has no run that has ended.')
-    states = [("at rest", dam_at(runs[0], 0))]
+        sys.exit(f'"{study}" has no finished run.')
+    states = [("static", dam_at(runs[0], 0))]
     states += [(f"{factor_of(run):g}" if len(runs) > 1 else f"{run.summary['end time [s]']:g} s",
                 dam_at(run, -1)) for run in runs]
     for kind, draw in (("crown", crown), ("faces", faces)):

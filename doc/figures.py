@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Compares the figures that the texts quote with the summaries they come from.
 
-usage: doc/figures.py --check            fails where text and summary part
-       doc/figures.py --keep FOLDER...   keeps the summary of a run or a study, its
-                                         output folder, as doc/studies/NAME.json
+usage: doc/figures.py --check            fails where text and summary differ
+       doc/figures.py --keep FOLDER...   keeps the summary of a run or a study with
+                                         this output folder as doc/studies/NAME.json
 
 doc/figures.json lists the quotes: for each file of text and each source of
 figures a pattern of the text and, for each number in it, marked by {}, a path in
@@ -32,7 +32,7 @@ LEFT_OUT = "names", "target spectrum", "mesh quality", "stress samples"
 
 
 def rounded(value):
-    """The same with six digits, which is more than any text quotes."""
+    """The value with six digits, which is more than any text quotes."""
     if isinstance(value, float):
         return float(f"{value:.6g}")
     if isinstance(value, dict):
@@ -59,7 +59,7 @@ def columns(table):
 
 
 def logged(log):
-    """What the log alone says of the mesh."""
+    """Numbers of the mesh that only the log has."""
     found = {}
     for name, pattern in {
         "shortest edge [m]": r"^ +edges (\S+) to ",
@@ -152,10 +152,10 @@ def complaints(file, source, pattern, paths):
     regex = re.escape(pattern).replace(r"\{\}", NUMBER)
     found = list(re.finditer(regex, plain(ROOT / file)))
     if len(found) != 1:
-        yield f"{place} stands there {len(found)} times"
+        yield f"{place} occurs {len(found)} times"
         return
     if len(paths) != len(found[0].groups()):
-        yield f"{place} has not as many numbers as paths"
+        yield f"{place} has another number of figures than of paths"
         return
     for number, path in zip(found[0].groups(), paths):
         found_value = value_of(ROOT / source, path)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the table of `voussoir --material-test`: the stress over the strain of every component that moves, and the energies.
+"""Draws the table of `voussoir --material-test`: the stress over the strain of every stressed component, and the energies over time.
 
 Usage: material_test.py TABLE.csv PICTURE.png
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How far cracks follow the lines of the mesh, in doc/damage.md: a notched
+"""Measures how far cracks follow the lines of the mesh, for doc/damage.md: a notched
 plate is pulled apart on meshes whose rows of cells run along the crack or cut
 it at an angle. Prints a table and draws doc/mesh_bias.png.
 
@@ -44,7 +44,7 @@ subsection Materials
   end
 end
 """
-# slope of the rows [degrees], how many, shift of the nodes over the size of a
+# slope of the rows [degrees], their number, shift of the nodes over the size of a
 # cell, further entries of the case
 RUNS = {
     "level": (0., 31, 0., ""),
@@ -104,7 +104,7 @@ subsection Constraints
     set Time function = t/{time}
   end
 end
-# of the plate's own frequencies, some hundred Hz
+# damps the natural frequencies of the plate, some hundred Hz
 subsection Damping
   set Model             = mass proportional
   set Ratio             = 0.1
@@ -132,8 +132,8 @@ def nodes_of_plate(slope, rows, shift):
     columns = 2 * (rows // 2)
     x = np.linspace(0., SIDE, columns + 1)
     rise = np.tan(np.radians(slope))
-    # beside the notch the rows are level, and low so that those of the ligament
-    # rise to as far above the middle
+    # beside the notch the rows are level, as far below the middle as those of the
+    # ligament rise above it
     lowered = round(0.5 * rise * (SIDE - NOTCH) / size)
     notch = rows // 2 + lowered
     line = np.linspace(0., SIDE, rows + 1)
@@ -164,7 +164,7 @@ def write_mesh(name, points, notch):
             if j == notch and points[i + 1, j, 0] < NOTCH + 0.1 * size:
                 continue
             corners = ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1))
-            # elsewhere nothing should crack: clamped corners would
+            # only the middle may crack: clamped corners would, too
             at_end = abs(j + 0.5 - 0.5 * rows) > 0.2 * rows
             elements.append((5, 5 if at_end else 1, [node(*corner, k) for k in (0, 1) for corner in corners]))
             elements.append((3, 4, [node(*corner, 0) for corner in corners]))
@@ -188,7 +188,7 @@ def write_mesh(name, points, notch):
 
 
 def run(program, folder, title):
-    """Runs one case unless it has been, and returns its output folder."""
+    """Runs one case unless it has results, and returns its output folder."""
     slope, rows, shift, more = RUNS[title]
     name = title.replace(" ", "_").replace(",", "")
     output = os.path.join(folder, name)
@@ -222,7 +222,7 @@ def read_picture(output):
         if entry.get("format") != "binary" or entry.get("type") not in kinds:
             continue
         text = entry.text.strip()
-        # numbers of blocks, of their bytes, of those of the last, of compressed
+        # number of blocks, bytes of a block, of the last one, of each compressed one
         (blocks,) = struct.unpack("<I", base64.b64decode(text[:8])[:4])
         length = -(-4 * (3 + blocks) // 3) * 4
         sizes = struct.unpack(f"<{3 + blocks}I", base64.b64decode(text[:length])[:4 * (3 + blocks)])
@@ -250,7 +250,7 @@ def faces_of(arrays):
 
 
 def result(output):
-    """Loads [N/m], energy lost in cracks over that of a level one, slope of the
+    """Loads [N/m], energy lost in cracks over that of a level crack, slope of the
     crack [degrees], and the cells with their damage."""
     energy = read_energy(output)
     time = energy["time [s]"]

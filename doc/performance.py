@@ -3,8 +3,8 @@
 
 usage: performance.py PROGRAM [--ranks 1,2] [--repeat 2] [--lulesh LULESH]
 
-Throughput is that of prm/benchmarks, the best of --repeat runs. LULESH is its serial
-program, if there is one: nodes of its mesh times three, times steps, over its time.
+Throughput is that of prm/benchmarks, the best of --repeat runs. LULESH is the serial
+program of that name; its rate is three times the nodes of its mesh, times steps, over time.
 """
 
 import argparse

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Writes the generated parts of reference.md, all entries as the program has them,
-and of cases.md, the shipped cases by their heads, so that both are read without
+"""Writes the generated parts of reference.md, all entries of the program, and of
+cases.md, the heads of the shipped cases, so that both are readable without
 building.
 
 usage: doc/reference.py [cases]     (cases: cases.md alone, without the program)
 
-The program is build/voussoir, or $VOUSSOIR. The manual (conf.py) is not made where
-a page is not as this would write it.
+The program is build/voussoir, or $VOUSSOIR. The manual (conf.py) is not built
+while a page is out of date.
 """
 import json
 import os
@@ -48,7 +48,7 @@ def without_case(node):
 
 
 def plain(text):
-    """Text that Markdown leaves as it is."""
+    """Text with the special characters of Markdown escaped."""
     return re.sub(r"([\\`*<>\[\]|$~^]|(?<!\w)_|_(?!\w))", r"\\\1", text)
 
 
@@ -92,8 +92,8 @@ def entries(section, place, depth):
 
 
 def by_class(section, place, kind, chosen_by):
-    """The entries of a section with an inner one for each class: those that all
-    classes share first, each class with its own ones."""
+    """The entries of a section with an inner one for each class: first those that
+    all classes share, then those of each class."""
     listed = classes(kind)
     for name in listed.keys() - section.keys():
         problems.append("%s has no section for its class %s" % (place, name))
@@ -151,8 +151,8 @@ def reference():
 
 
 def heading(case):
-    """The comment at the head of a parameter file: its first sentence, and what
-    follows the words Purpose, Cost and so on."""
+    """The comment at the head of a parameter file: its first sentence, and the texts
+    after the words Purpose, Cost and so on."""
     lines = []
     for line in case.read_text().splitlines():
         if not line.startswith("#"):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Runs the scaling benchmark on numbers of ranks of this machine, lets the program
-count partitions into more, and predicts the speed there from the measured rate and
-stated figures of a network: table on the terminal, figure and numbers in a folder.
+"""Runs the scaling benchmark on this machine, lets the program count partitions into
+more ranks, and predicts their speed from the measured rate and stated figures of a
+network. Prints a table and writes a figure and numbers to a folder.
 
 usage: scaling.py PROGRAM [--ranks 1,2] [--levels 1] [--counts 16,191,1024] [...]
 
@@ -9,7 +9,7 @@ The prediction: a step takes as long as the rank with the most work, its cells a
 rate of a core, then an exchange in each direction with all its neighbours, each a
 latency and its bytes over the bandwidth. Computation and exchange do not overlap, and
 nothing else is shared between cores. The rate of a core is the lowest of the runs on
-no more ranks than there are cores, or the one given, where other work disturbs them.
+no more ranks than there are cores, or the given one if other work disturbs the runs.
 """
 
 import argparse
@@ -61,14 +61,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
-    parser.add_argument("--ranks", default="1,2", help="that run here")
-    parser.add_argument("--levels", default="1", help="of refinement")
-    parser.add_argument("--counts", default="16,64,191,1024", help="ranks to be counted")
-    parser.add_argument("--latency", type=float, default=2e-6, help="of a message [s]")
-    parser.add_argument("--bandwidth", type=float, default=1e9, help="of a rank [B/s]")
+    parser.add_argument("--ranks", default="1,2", help="numbers of ranks that run here")
+    parser.add_argument("--levels", default="1", help="levels of refinement")
+    parser.add_argument("--counts", default="16,64,191,1024", help="numbers of ranks to partition for")
+    parser.add_argument("--latency", type=float, default=2e-6, help="latency of a message [s]")
+    parser.add_argument("--bandwidth", type=float, default=1e9, help="bandwidth of a rank [B/s]")
     parser.add_argument("--core-rate", type=float, default=0.,
-                        help="of a core [million unknowns times steps per second]")
-    parser.add_argument("--set", nargs="*", default=[], help="entries of the case")
+                        help="rate of a core [million unknowns times steps per second]")
+    parser.add_argument("--set", nargs="*", default=[], help="changed entries of the case")
     parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("output/scaling"))
     options = parser.parse_args()
     options.program = options.program.resolve()

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Writes verification.md beside this file: what the tests compare with closed
-forms, published values and conservation laws, and how far off it was.
+"""Writes verification.md beside this file: the comparisons of the tests with closed
+forms, published values and conservation laws, and their errors.
 
-usage: doc/verification.py [--check]    (--check: fails if the page is not as
-                                         this would write it)
+usage: doc/verification.py [--check]    (--check: fails if the page is out of
+                                         date)
 
 The figures are those of the reference outputs, tests/*/*.output, which a test
-must reproduce to four digits, or come nearer to the reference. What the
-reference is, a line "// Reference: KIND" says above where tests/checks/*.cc
-registers the check, or "# Reference: KIND" at the head of a parameter file.
+must reproduce to four digits, or come nearer to the reference. The kind of the
+reference is in a line "// Reference: KIND" above the registration of the check in
+tests/checks/*.cc, or in "# Reference: KIND" at the head of a parameter file.
 """
 import pathlib
 import re
@@ -47,7 +47,7 @@ def subject(case):
 
 
 def text_of(case):
-    """A parameter file with what it includes."""
+    """A parameter file with the files that it includes."""
     return re.sub(
         r"^include (\S+)$",
         lambda line: text_of(case.parent / line[1]),
@@ -72,7 +72,7 @@ def kind_of_reference(case, kinds_of_checks):
 
 
 def counts(rows):
-    """Of a list of kinds."""
+    """How often each kind is in a list."""
     return ", ".join(f"{kind} {rows.count(kind)}" for kind in KINDS)
 
 
@@ -83,7 +83,7 @@ def last_digit(number):
 
 
 def worst_comparison(lines):
-    """Number of comparisons, and the one that uses most of what is allowed."""
+    """Number of comparisons, and the one with the largest share of the allowed error."""
     count, worst = 0, None
     for line in lines:
         match = COMPARED.match(line)
@@ -98,7 +98,7 @@ def worst_comparison(lines):
             # both are rounded, the test compares all digits
             rounding = 0.5 * (last_digit(match[2]) + last_digit(match[4])) * scale
             if error - rounding > allowed:
-                sys.exit(f"{line}\nis off by more than is allowed.")
+                sys.exit(f"{line}\nis off by more than allowed.")
             error, off = allowed, f"≤ {allowed:g} %"
         if worst is None or error / allowed > worst[0]:
             unit = " " + match["unit"] if match["unit"] else ""
@@ -149,11 +149,11 @@ def page():
                 )
     return "\n".join(
         [
-            "# What is checked against what",
+            "# List of comparisons",
             "",
             "Written by `doc/verification.py` from the reference outputs of the tests; "
             "`./bootstrap test -R NAME` runs one of them again. The tests' sources, "
-            "`tests/checks`, say where each reference comes from. It is one of:",
+            "`tests/checks`, say where each reference comes from. It is of one of these kinds:",
             "",
             *(f"- {kind}: {meaning};" for kind, meaning in list(KINDS.items())[:-1]),
             *(f"- {kind}: {meaning}." for kind, meaning in list(KINDS.items())[-1:]),
@@ -163,9 +163,9 @@ def page():
             "",
             "## Numbers against references",
             "",
-            "Of each test the comparison that uses most of what is allowed. A "
-            "difference of 0 means: none in the digits printed; with ≤, these digits do "
-            "not distinguish it from what is allowed, which the test holds in full "
+            "For each test the comparison with the largest share of the allowed error. "
+            "0 means no difference in the printed digits; with ≤, these digits do not "
+            "distinguish the error from the allowed one, which the test checks in full "
             "precision. By reference: "
             f"{counts(kinds_compared)}.",
             "",
@@ -175,8 +175,8 @@ def page():
             "",
             "## Errors against bounds",
             "",
-            "Tests of differences only: to an exact solution, to another way "
-            "of computing the same, of a balance. Of each the narrowest bound. By "
+            "Tests that bound a difference: from an exact solution, from another "
+            "computation of the same, or of a balance. The narrowest bound of each. By "
             f"reference: {counts(kinds_bounded)}.",
             "",
             "| test | subject | reference is | bounds | what | below |",
@@ -191,7 +191,7 @@ def main():
     text = page()
     if "--check" in sys.argv[1:]:
         if not PAGE.exists() or PAGE.read_text() != text:
-            sys.exit("doc/verification.md is not what doc/verification.py writes; run it.")
+            sys.exit("doc/verification.md is out of date; run doc/verification.py.")
     else:
         PAGE.write_text(text)
 

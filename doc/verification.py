@@ -65,7 +65,7 @@ def kind_of_reference(case, kinds_of_checks):
         kind = kinds_of_checks.get(name[1]) if name else None
     if kind not in KINDS:
         sys.exit(
-            f"{case.relative_to(ROOT)}: with what does it compare? Say it by a line "
+            f"{case.relative_to(ROOT)}: no kind of reference is given. Add a line "
             f'"// Reference: KIND" in tests/checks, one of: {", ".join(KINDS)}.'
         )
     return kind

@@ -27,7 +27,7 @@ namespace Voussoir
                           model.load_list(),
                           log,
                           static_state.summary);
-    // these warnings hold for all runs that begin with this static state
+    // these warnings apply to all runs from this static state
     if (const auto &all = log.warnings(); all.size() > n_before)
       static_state.summary["warnings"] =
         std::vector<std::string>(all.begin() + n_before, all.end());

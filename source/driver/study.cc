@@ -15,8 +15,8 @@ namespace Voussoir
 
   namespace
   {
-    /** A text without characters that the name of a folder cannot have, and not
-     *  longer than that. */
+    /** A text without characters that folder names cannot have, and cut to
+     *  their largest length. */
     std::string
     folder_name(const std::string &text)
     {
@@ -129,7 +129,7 @@ namespace Voussoir
   std::string
   Study::folder_of(const StudyValues &values) const
   {
-    // numbers of the same name and value are moved in many sections
+    // several sections may have entries of the same name and value
     const bool whole_path = parameters.moves_numbers() && !values.empty();
     return folder + "/" +
            folder_name(whole_path ? values[0].first + " = " + values[0].second :
@@ -168,7 +168,7 @@ namespace Voussoir
     if (moves.empty())
       throw UserError("\"Entries\" in section \"Study/Sensitivity\" is \"" +
                       parameters.moved +
-                      "\", of which the file gives no number that can be "
+                      "\", but the file gives no such number that can be "
                       "moved; name others, as \"Materials/*\".");
   }
 
@@ -265,8 +265,8 @@ namespace Voussoir
                             "; mend what the verdicts in study.csv name and "
                             "start the study again, which does only the runs "
                             "that failed.");
-    // a search for a limit goes on from a run that was stopped only if that one
-    // has met the criterion
+    // a search for a limit continues after a stopped run only if that run has
+    // met the criterion
     if (n_stopped > 0 && !parameters.seeks_limit())
       throw IncompleteStudy(count +
                             "; the verdicts in study.csv give the reasons.");

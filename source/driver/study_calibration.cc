@@ -11,7 +11,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Of a fitted entry, as the file has it. */
+    /** Value of a fitted entry in the file. */
     double
     given_value(const ParameterFile &file, const std::string &entry)
     {
@@ -108,7 +108,7 @@ namespace Voussoir
             verdict = "found";
             break;
           }
-        // shortened until it is nearer
+        // shortened until the misfit decreases
         double share = std::min(1., largest_change / step.change.linfty_norm());
         dealii::Vector<double> next, there;
         do

@@ -57,7 +57,7 @@ namespace Voussoir
         if (!parameters.extend || i == max_extensions)
           refuse(limit.fails, "met already");
         limit.meets = limit.fails;
-        // a factor does not become negative
+        // values that begin above zero stay positive
         limit.fails =
           limit.fails > span ? limit.fails - span : 0.5 * limit.fails;
       }

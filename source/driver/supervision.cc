@@ -65,7 +65,7 @@ namespace Voussoir
     keep(state.displacement, last_good.displacement);
     keep(state.velocity, last_good.velocity);
     last_good.time = state.time;
-    if (has_memory) // cracks would have grown since
+    if (has_memory) // the internal variables belong to a later state
       return;
     last_good.memory.resize(state.memory.size());
     for (unsigned int i = 0; i < state.memory.size(); ++i)

@@ -13,7 +13,7 @@ namespace Voussoir
 
   namespace
   {
-    // Number of each face on an interface, from either side.
+    // Number of each face of an interface, given from either side.
     using FaceNumbers = std::map<std::pair<unsigned int, unsigned int>, int>;
 
 
@@ -50,9 +50,9 @@ namespace Voussoir
           }
       }
 
-      /** By face, which of its sides (0 or 1) lies on the same side of the
-       *  surface as side 0 of the lowest face connected to it; and that face.
-       */
+      /** For each face: its side (0 or 1) on the side of the surface where the
+       *  lowest connected face has its side 0; and the number of that lowest
+       *  face. */
       std::vector<std::pair<unsigned int, unsigned int>>
       orient() const
       {
@@ -117,8 +117,8 @@ namespace Voussoir
           }
       }
 
-      // From a face of the interface, seen from one of its cells, around an
-      // edge to the next one; cell `none` if the mesh ends before.
+      // From a face of the interface, given by one of its cells, around an edge
+      // to the next face of the interface; cell `none` if the mesh ends before.
       Face
       walk(Face face, const Edge &edge) const
       {
@@ -196,7 +196,7 @@ namespace Voussoir
     InterfaceSurface surface;
     surface.name = name;
     FaceNumbers numbers;
-    // how often each side of a face was named
+    // number of times that each side of a face was named
     std::vector<std::array<int, 2>> named;
     for (const Face &face : set)
       {
@@ -223,8 +223,8 @@ namespace Voussoir
       throw UserError(place + ": the face set \"" + name +
                       "\" is empty; an interface needs faces.");
 
-    // The majority in each connected piece; where it is undecided the face
-    // with the lowest number was listed first.
+    // The majority in each connected piece; with equal numbers, the face of the
+    // lowest number, which was listed first, decides.
     const auto orientation = Surface(mesh, neighbours, surface, place).orient();
     std::vector<int> votes(surface.faces.size(), 0);
     for (unsigned int f = 0; f < votes.size(); ++f)

@@ -90,7 +90,7 @@ namespace Voussoir
       }
 
 
-      // Its vertices are marked, and numbered in place_vertices().
+      // Marks the vertices of the cell, which place_vertices() numbers.
       void
       add_cell(const unsigned int q, const unsigned int layer)
       {
@@ -141,7 +141,7 @@ namespace Voussoir
       }
 
 
-      // Rock may be cut away before a wedge; there is no face then.
+      // Visits faces; where rock is cut away in front of a wedge there is none.
       template <typename Visitor>
       void
       visit_face(const unsigned int quad,
@@ -312,7 +312,7 @@ namespace Voussoir
 
       CoarseMesh mesh;
 
-      // By line of the sweep and its points, by quadrilateral and layer.
+      // By line of the sweep and point; by quadrilateral and layer.
       std::vector<unsigned int> vertex_number, cell_number;
     };
   } // namespace

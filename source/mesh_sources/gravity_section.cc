@@ -232,7 +232,8 @@ namespace Voussoir
         return result;
       }
 
-      /** Which of the values from the first on is nearest to one. */
+      /** Index of the value, from the first on, that is nearest to the wanted
+       *  one. */
       static unsigned int
       nearest(const std::vector<double> &values,
               const unsigned int         first,
@@ -347,8 +348,8 @@ namespace Voussoir
         return levels;
       }
 
-      /** Distances from the dam, up to @p extent, of the rows of rock or water
-       *  that begin with a size. */
+      /** Distances from the dam, up to @p extent, of rows of rock or water
+       *  whose first has this size. */
       std::vector<double>
       distances(const double extent, const double size) const
       {
@@ -361,7 +362,7 @@ namespace Voussoir
         return result;
       }
 
-      /** Elevations of the rows from below; each bend is one of them. */
+      /** Elevations of the rows from below; each bend is at a row. */
       std::vector<double>
       rows() const
       {

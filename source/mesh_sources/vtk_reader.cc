@@ -137,8 +137,8 @@ namespace Voussoir
       }
 
 
-      // From version 5 on the cells are offsets into one list of points, before
-      // that each cell begins with its number of points.
+      // From version 5 on the cells are offsets into one list of points; in
+      // earlier versions each cell begins with its number of points.
       void
       read_cells()
       {

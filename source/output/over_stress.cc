@@ -64,7 +64,7 @@ namespace Voussoir
           "Strengths of materials",
           of_materials,
           "The same by material, \"concrete: 2e6; crest: 3e6\", where "
-          "\"Tensile strength\" is 0. Without it the strengths of the linear "
+          "\"Tensile strength\" is 0. Empty for the strengths of the linear "
           "elastic materials.");
         limits.declare_parameters(prm);
       }
@@ -89,7 +89,8 @@ namespace Voussoir
       void
       observe(const State &state) override
       {
-        if (state.step < next_step) // that of the checkpoint, evaluated before
+        if (state.step < next_step) // the state of the checkpoint has been
+                                    // evaluated before
           return;
         const double interval = state.step == 0 ? 0. : run().time_step;
         next_step             = state.step + 1;
@@ -234,7 +235,8 @@ namespace Voussoir
         return strength;
       }
 
-      /** The tension in cracked concrete is no measure of the demand. */
+      /** Refuses materials that crack, as the tension in cracked concrete is no
+       *  measure of the demand. */
       static void
       check_elastic(const ObservedModel            &model,
                     const std::vector<std::string> &face_sets)
@@ -307,7 +309,7 @@ namespace Voussoir
           ratio_of_node[node] /= strength_of_node[node];
       }
 
-      /** Sums the areas of waiting moments over the ranks. */
+      /** Sums the areas of the pending moments over the ranks. */
       void
       flush() override
       {
@@ -325,7 +327,7 @@ namespace Voussoir
         waiting_times.clear();
       }
 
-      /** Time above each ratio, the time above the next one included, of a node
+      /** Time of a node above each ratio, including the time above the next one
        *  [s]. */
       std::vector<double>
       accumulated_times(const unsigned int node) const
@@ -476,10 +478,10 @@ namespace Voussoir
       std::vector<double>                      largest, times;
       std::vector<double>                      at_rest; // ratio at t = 0
 
-      unsigned long long next_step = 0; // to be counted
+      unsigned long long next_step = 0; // to be evaluated
 
-      // of each set and ratio the largest area at a moment [m2], and when [s];
-      // areas of this rank at the moments that are not evaluated yet
+      // of each set and ratio the largest area at a moment [m2], and its time
+      // [s]; areas of this rank at the pending moments
       std::vector<std::array<double, 2>> at_once;
       std::vector<double>                waiting_areas, waiting_times;
     };

@@ -109,12 +109,12 @@ namespace Voussoir
     std::map<std::string, std::string> missing_files; // with the reason
 
     /** "stopped: ..." or "failed: ..."; else "not met: ..." or "to be judged:
-     *  ..." with the lines of the tables of which that is so, "with warnings,
+     *  ..." with the names of these lines of the tables; else "with warnings,
      *  see there" or "no objection". */
     std::string
     verdict() const;
 
-    /** The same without the advice that follows. */
+    /** The verdict without the advice at its end. */
     std::string
     short_verdict() const;
 

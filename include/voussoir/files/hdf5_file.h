@@ -15,8 +15,7 @@ namespace Voussoir
 {
   using Bytes = std::vector<std::uint8_t>;
 
-  /** An error of one rank with a file, of which the others are not informed
-   *  yet. */
+  /** An error of one rank with a file, not yet passed to the other ranks. */
   struct FileProblem
   {
     std::string what;
@@ -30,7 +29,7 @@ namespace Voussoir
   constexpr char hdf5_not_whole[] = "it is cut or damaged";
 
 
-  /** Which rows of a dataset are those of a rank. */
+  /** The rows of a dataset that belong to a rank. */
   struct RowRange
   {
     hsize_t first, n, all;

@@ -8,7 +8,7 @@
 
 namespace Voussoir
 {
-  /** How well shaped hexahedra are: the worst of those taken in. */
+  /** Quality of hexahedra: the worst values of the cells added. */
   struct MeshQuality
   {
     /** Least triple product of unit vectors along the edges of a corner: 1 at

@@ -65,7 +65,7 @@ namespace Voussoir
 
     /**
      * The members that the data lines of the present keyword list. Numbers
-     * without an instance's name count only if @p is_ours.
+     * without an instance's name are members only if @p is_ours.
      */
     Numbers
     read_members(const AbaqusKeyword &keyword, const bool is_ours);

@@ -31,11 +31,11 @@ namespace Voussoir
   /**
    * A wedge of rock that can slide out of the bank of an arch dam.
    *
-   * In the cross-section it has the rock above a ledge and on the river's side
+   * In the cross-section it is the rock above a ledge and on the river's side
    * of an upright column; along the river it reaches from the dam's upstream
-   * face to where the rock before it is cut away. It is bounded by
-   * three release planes, base, lateral and rear, and daylights on the canyon's
-   * wall and in the cut.
+   * face to where the rock in front of it is cut away. It is bounded by three
+   * release planes, base, lateral and rear, and daylights on the canyon's wall
+   * and in the cut.
    */
   class AbutmentWedge
   {
@@ -50,7 +50,7 @@ namespace Voussoir
     };
 
     /**
-     * On the ledge that @p section has in this bank. Throws UserError that
+     * On the ledge that @p section has in this bank. Throws UserError, which
      * names the @p place of the parameters.
      *
      * @param bank 0 for the right one, 1 for the left
@@ -75,7 +75,7 @@ namespace Voussoir
     contains(const ArchDamCrossSection::Quad &quad,
              const unsigned int               layer) const;
 
-    /** Whether the rock is cut away there. */
+    /** Whether the rock is cut away in this cell. */
     bool
     is_cut(const ArchDamCrossSection::Quad &quad,
            const unsigned int               layer) const;
@@ -97,7 +97,7 @@ namespace Voussoir
     bool
     is_in_columns(const ArchDamCrossSection::Quad &quad) const;
 
-    const unsigned int n_layers, dam_begin, end; // the back
+    const unsigned int n_layers, dam_begin, end; // end: at the rear plane
     unsigned int       begin, cut_begin;
 
     const ArchDamCrossSection::Ledge ledge;

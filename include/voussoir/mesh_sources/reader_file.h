@@ -63,8 +63,8 @@ namespace Voussoir
     std::size_t
     count(const std::string &expected);
 
-    /** @p n, the number of things that follow, unless the file cannot hold as
-     *  many. */
+    /** Returns @p n, the number of things that follow; fails if the file cannot
+     *  hold as many. */
     std::size_t
     check_count(const std::int64_t n, const std::string &expected) const;
 
@@ -72,7 +72,7 @@ namespace Voussoir
     double
     coordinate();
 
-    /** @p x, unless no mesh has such a coordinate. */
+    /** Returns @p x; fails if no mesh has such a coordinate. */
     double
     check_coordinate(const double x) const;
 
@@ -81,7 +81,8 @@ namespace Voussoir
     Number
     to_number(std::string_view text, const std::string &expected) const;
 
-    /** Throw UserError "FILE, line N: message", N of the piece taken last. */
+    /** Throw UserError "FILE, line N: message", N being the line of the piece
+     *  taken last. */
     [[noreturn]] void
     fail(const std::string &message) const;
 

@@ -13,8 +13,8 @@ namespace Voussoir
     std::vector<std::string> names; // one or three
   };
 
-  /** One number for each active cell to write; others than the owned ones are
-   *  not sampled. */
+  /** One number for each active cell to write; only those of owned cells are
+   *  sampled. */
   struct CellField
   {
     const dealii::Vector<float> *values;

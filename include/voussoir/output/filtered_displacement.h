@@ -10,7 +10,7 @@ namespace Voussoir
    * Data for the elastic stress of the equation of motion, sigma = k D : B (u +
    * s w) , with the displacement u [m], the damping memory w [m] and the
    * damping factor s of each material, at the time of a state. The branches of
-   * w, which the state has from the step before, are advanced to its time; the
+   * w, which the state holds for the step before, are advanced to its time; the
    * velocity of stiffness-proportional damping and of the mesh viscosity is
    * that of the half step before, as in the step.
    */

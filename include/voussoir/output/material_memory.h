@@ -47,7 +47,7 @@ namespace Voussoir
   {
     double           opening = 0.; // [m]
     double           share   = 0.; // of the width of the cell across it
-    dealii::Point<3> where;        // middle of that [m]
+    dealii::Point<3> where;        // middle of the cell [m]
   };
 
   /** Of all materials with crack openings, now, or @p ever; all ranks must call

@@ -58,8 +58,8 @@ namespace Voussoir
       return std::min(interval, resolving_interval());
     }
 
-    /** Warns of extremes that are sampled at an interval which the entry at
-     *  @p place sets coarser than that [s]. */
+    /** Warns of extremes that are sampled at a coarser interval [s], set by the
+     *  entry at @p place. */
     void
     warn_of_coarse_sampling(const double       interval,
                             const std::string &place) const;
@@ -121,8 +121,8 @@ namespace Voussoir
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 
-    /** Interval of its lines [s], of which the time step is made an integer
-     *  fraction if that costs little; 0: not needed. */
+    /** Interval of its lines [s]; the time step becomes an integer fraction of
+     *  it if that costs little; 0: not needed. */
     virtual double
     record_interval() const
     {

@@ -44,7 +44,7 @@ namespace Voussoir
       dealii::Tensor<1, 3, Lanes>             gradient;
     };
 
-    /** As many samples as there are lanes. */
+    /** Samples that are evaluated at once, one for each lane. */
     struct Group
     {
       std::size_t    end_of_weights = 0;

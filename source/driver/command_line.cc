@@ -368,11 +368,11 @@ namespace Voussoir
       app.add_flag(
         "--restart",
         arguments.options.restart,
-        "Go on from the last checkpoint of the newest output folder");
+        "Continue from the last checkpoint of the newest output folder");
       app.add_flag("--overwrite",
                    arguments.options.overwrite,
                    "Replace the results in an earlier output folder instead "
-                   "of numbering");
+                   "of adding a number to its name");
     }
 
 

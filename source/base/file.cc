@@ -52,7 +52,7 @@ namespace Voussoir
       bool
       write(const std::string &text, const std::uintmax_t place) const
       {
-        // a pipe can only be written in turn
+        // a pipe can only be written in sequence
         if (::lseek(number, place, SEEK_SET) < 0 && errno != ESPIPE)
           return false;
         for (std::size_t done = 0; done < text.size();)
@@ -219,7 +219,7 @@ namespace Voussoir
     const bool      exists = fs::exists(name, problem);
     if (exists && !fs::is_regular_file(name, problem))
       return put(name, text, 0);
-    // a link stays a link
+    // a symbolic link is kept
     const std::string target =
       exists ? fs::canonical(name, problem).string() : name;
     return settle(target, put(aside(target), text, 0));
@@ -342,7 +342,7 @@ namespace Voussoir
     if (!S_ISREG(now.st_mode)) // devices keep nothing
       return "";
     const auto size = static_cast<std::uintmax_t>(now.st_size);
-    // some network file systems number a file anew
+    // some network file systems change the number of a file
     if (now.st_ino != serial_number && size != written)
       return "another file was put in its place while the run went on";
     return size < written ? "it was cut off while the run went on" : "";

@@ -61,9 +61,9 @@ namespace Voussoir
     prm.add_parameter(
       "Energy interval",
       energy_interval,
-      "Time between two lines of the energy balance [s]; 0 for every 50 steps. "
-      "The run is checked for growth and NaN, and the losses of damping are "
-      "summed up, at least so often.",
+      "Time between two lines of the energy balance [s]; 0 for every 50 "
+      "steps. At least this often the run is checked for growth and NaN, and "
+      "the losses by damping are summed up.",
       Patterns::Double(0.));
     prm.add_parameter(
       "Energy limit",

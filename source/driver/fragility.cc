@@ -60,7 +60,7 @@ namespace Voussoir
     };
 
 
-    /** Where the likelihood is largest, by Fisher's scoring. */
+    /** The coefficients of the largest likelihood, by Fisher's scoring. */
     Tensor<1, 2>
     most_likely(const std::vector<IntensityLevel> &levels, const double shift)
     {

@@ -157,11 +157,11 @@ namespace Voussoir
                 section,
                 "\" is empty, so that \"",
                 parameters.materials.objects[rock].first,
-                "\" weighs too, ",
+                "\", ",
                 absorbs[rock] ? "which continues beyond the model" :
                                 "which is given less inertia",
-                ", would settle under its weight; name the cell sets that "
-                "have weight");
+                ", is loaded, too, and would settle under its weight; name "
+                "the cell sets that have weight");
           }
       }
 
@@ -277,7 +277,7 @@ namespace Voussoir
         return side;
       }
 
-      /** Warns of free sides; whether there are any. */
+      /** Warns of a free side; returns whether the side is free. */
       bool
       check_side(const Side &side) const
       {

@@ -239,7 +239,8 @@ namespace Voussoir
       const double at_5_hz = 1. / std::hypot(1., 10. * numbers::PI * delay);
       log.line("Friction follows the pressure with a delay of up to ",
                1e3 * delay,
-               " ms, as the cells at the interfaces are; a change of 5 Hz to ",
+               " ms, depending on the cells at the interfaces; a change at 5 "
+               "Hz acts with ",
                std::round(100. * at_5_hz),
                " %");
       return contact;
@@ -256,7 +257,7 @@ namespace Voussoir
       make(parameters, log);
     else
       {
-        // its first rank deals the cells
+        // its first rank distributes the cells
         on_first_rank(machine.communicator, [&] { make(parameters, log); });
         share_sets(machine.communicator);
       }

@@ -54,7 +54,8 @@ namespace Voussoir
                dissipated,
                " J at once, beside ",
                of_stages,
-               " J in the static state: this stress exceeds their strength");
+               " J in the static state: the static stress exceeds their "
+               "strength");
     return static_state;
   }
 

@@ -189,14 +189,14 @@ namespace Voussoir
            (n_groups > 1 ? ", " + std::to_string(n_groups) + " side by side" :
                            std::string()));
     if (!refused_moves.empty())
-      report("Left out, as they are refused:\n  " +
+      report("Left out, as the program refuses them:\n  " +
              join(refused_moves, "\n  "));
     if (parameters.reduces_strengths())
       report("The " + strength_reduction + " divides " +
              join(split_list(parameters.reduced, ';'), "; ") +
              (strengths_kept.empty() ?
                 std::string(", all strengths that there are") :
-                "\nIt leaves as they are " + join(strengths_kept, "; ")));
+                "\nIt leaves unchanged " + join(strengths_kept, "; ")));
   }
 
 
@@ -262,9 +262,9 @@ namespace Voussoir
                       ".");
     if (n_failed > 0)
       throw IncompleteStudy(count +
-                            "; mend what the verdicts in study.csv name and "
-                            "start the study again, which does only the runs "
-                            "that failed.");
+                            "; correct the mistakes that the verdicts in "
+                            "study.csv name and start the study again, which "
+                            "does only the runs that failed.");
     // a search for a limit continues after a stopped run only if that run has
     // met the criterion
     if (n_stopped > 0 && !parameters.seeks_limit())

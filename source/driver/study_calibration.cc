@@ -48,8 +48,8 @@ namespace Voussoir
     if (run.summary.end != RunEnd::complete)
       throw UserError("The run in \"" + run.folder + "\" " +
                       run.summary.short_verdict() +
-                      ", so that the calibration cannot go on; mend that and "
-                      "start the study again.");
+                      ", so that the calibration cannot continue; correct "
+                      "that and start the study again.");
     const auto             measured = parameters.measured_numbers();
     dealii::Vector<double> result(measured.size());
     for (unsigned int i = 0; i < measured.size(); ++i)
@@ -99,7 +99,7 @@ namespace Voussoir
                                    parameters.measurement_error);
         if (!step.determined)
           {
-            verdict = "the measured numbers do not tell these entries apart";
+            verdict = "the measured numbers do not determine these entries";
             break;
           }
         deviation = step.deviation;

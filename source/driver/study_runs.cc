@@ -59,7 +59,7 @@ namespace Voussoir
       if (!recorded.is_array())
         throw UserError("The run in \"" + run_folder +
                         "\" has been done by an earlier version of the "
-                        "program, which did not note its entries" +
+                        "program, which did not record its entries" +
                         remedy);
       if (const auto difference = first_difference(recorded, now))
         throw UserError("The run in \"" + run_folder +

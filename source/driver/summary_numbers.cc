@@ -209,8 +209,8 @@ namespace Voussoir
     const std::optional<double> value = number->in(summary);
     if (!value && !was_stopped)
       throw UserError("The summary of the run has no number \"" + number->path +
-                      "\"; take one that its summary.json has, "
-                      "or add the observer that gives it.");
+                      "\"; take a number that its summary.json has, or add "
+                      "the observer that writes it.");
     return {value, value && (above ? *value > limit : *value < limit)};
   }
 

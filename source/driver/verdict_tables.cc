@@ -76,9 +76,10 @@ namespace Voussoir
     {
       double          share    = 0.; // [%]
       unsigned int    material = 0;
-      const Material *law      = nullptr; // of the run or of the static state
-      double          sign     = 1.;      // tension
-      double          band     = 0.;      // widest [m]
+      const Material *law      = nullptr; // law of the run or of the static
+                                          // state
+      double sign = 1.;                   // tension
+      double band = 0.;                   // widest [m]
     };
 
 
@@ -184,8 +185,8 @@ namespace Voussoir
     }
 
 
-    /** The object of several in which a number is largest; null if none has it.
-     */
+    /** The object with the largest value of a number; null if none has the
+     *  number. */
     std::pair<std::string, nlohmann::json>
     with_largest(const nlohmann::json &objects, const std::string &number)
     {

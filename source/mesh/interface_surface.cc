@@ -18,8 +18,8 @@ namespace Voussoir
 
 
     /**
-     * Which sides of two faces, which share an edge, are connected through
-     * cells around that edge.
+     * Finds which sides of two faces with a common edge are connected through
+     * cells around this edge.
      */
     class Surface
     {
@@ -83,7 +83,8 @@ namespace Voussoir
              std::vector<std::pair<unsigned int, unsigned int>> &result,
              std::vector<unsigned int>                          &front) const
       {
-        // at the end of the surface the way leads to the other side
+        // where the surface ends the way around the edge leads to the other
+        // side
         if (faces_at_edge.at(edge).size() == 1)
           return;
         if (faces_at_edge.at(edge).size() > 2)

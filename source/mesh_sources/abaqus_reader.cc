@@ -37,7 +37,7 @@ namespace Voussoir
     const std::vector<std::string> quadrilateral_types =
       {"S4", "R3D4", "M3D4", "SFM3D4", "CPS4", "CPE4"};
 
-    // Keywords that make nodes or elements by rules.
+    // Keywords that generate nodes or elements.
     const std::vector<std::string> refused_keywords = {"NGEN",
                                                        "NFILL",
                                                        "NCOPY",

@@ -66,8 +66,8 @@ namespace Voussoir
                           Patterns::Integer(1, 200));
         prm.add_parameter("Rock extent",
                           rock_extent,
-                          "Rock below and on all sides of the dam over its "
-                          "height [-].",
+                          "Extent of the rock below and on all sides of the "
+                          "dam, over the height of the dam [-].",
                           Patterns::Double(1., 20.));
         prm.add_parameter("Growth",
                           growth,
@@ -84,8 +84,8 @@ namespace Voussoir
         prm.add_parameter(
           "Reservoir level",
           water_level,
-          "Fill the canyon with water up to the row of cells nearest to this "
-          "level, cell set \"reservoir\" [m above the base]; 0: no water.",
+          "Level of the reservoir, moved to the nearest row of cells [m "
+          "above the base]; its cells are the set \"reservoir\". 0: no water.",
           Patterns::Double(0.));
         prm.add_parameter(
           "Reservoir length",

@@ -65,8 +65,8 @@ namespace Voussoir
                           Patterns::List(Patterns::Integer(1), 3, 3));
         prm.add_parameter("Rock extent",
                           rock_extent,
-                          "Rock below, upstream and downstream of the dam [m]; "
-                          "0: no rock.",
+                          "Extent of the rock below, upstream and downstream "
+                          "of the dam [m]; 0: no rock.",
                           Patterns::Double(0.));
         prm.add_parameter("Growth",
                           growth,
@@ -76,14 +76,15 @@ namespace Voussoir
         prm.add_parameter(
           "Reservoir level",
           water_level,
-          "Water upstream of the dam up to the row of cells nearest to this "
-          "level, cell set \"reservoir\" [m above the base]; 0: no water.",
+          "Level of the water upstream of the dam, moved to the nearest row "
+          "of cells [m above the base]; its cells are the set \"reservoir\". "
+          "0: no water.",
           Patterns::Double(0.));
         prm.add_parameter(
           "Reservoir length",
           water_length,
-          "Length of the water [m], with rock rounded to its cells; 0: to the "
-          "end of the rock.",
+          "Length of the water [m], rounded to the cells of the rock if "
+          "there is rock; 0: to the end of the rock.",
           Patterns::Double(0.));
       }
 

@@ -262,7 +262,7 @@ namespace Voussoir
       }
 
 
-      // Numbers of points and cells, and types.
+      // Converts numbers of points and cells, and types, to integers.
       std::vector<double>
       whole(std::vector<double> values) const
       {

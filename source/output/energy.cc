@@ -357,8 +357,8 @@ namespace Voussoir
     if (relative_error() > limit)
       {
         std::ostringstream text;
-        text << std::setprecision(3) << 100. * relative_error()
-             << " % of the energy that came in are the energy-balance error ("
+        text << std::setprecision(3) << "the energy-balance error is "
+             << 100. * relative_error() << " % of the energy that came in ("
              << terms_now.error(initial) << " J residual, "
              << given_back(terms_now, most_damping)
              << " J of negative loss by damping, " << made_by_closing(terms_now)

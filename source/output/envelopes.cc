@@ -42,11 +42,12 @@ namespace Voussoir
         prm.add_parameter(
           "Interval",
           interval,
-          "Averaging interval of the mean acceleration, whose -3 dB frequency "
-          "is 0.44 divided by it, and sampling interval of the "
-          "acceleration of a single step [s]. Displacement and velocity are "
-          "sampled each twentieth of the shortest period that the mesh "
-          "carries with eight nodes per wavelength, if that is shorter.",
+          "Averaging interval of the mean acceleration, whose -3 dB "
+          "frequency is 0.44 divided by this interval, and sampling interval "
+          "of the acceleration of a single step [s]. Displacement and "
+          "velocity are sampled each twentieth of the shortest period that "
+          "the mesh carries with eight nodes per wavelength, if that is "
+          "shorter.",
           Patterns::Double(1e-6));
         prm.add_parameter("Stress",
                           wants_stress,

@@ -57,9 +57,9 @@ namespace Voussoir
           "Filter frequency",
           filter_frequency,
           "Filter frequency of the filtered acceleration, which is the mean "
-          "over 0.443 of its period: amplitudes at this frequency are "
-          "multiplied by 0.71 [Hz]; 0 for the highest that the mesh carries "
-          "with eight nodes per wavelength.",
+          "over 0.443 of the period of this frequency: amplitudes at this "
+          "frequency are multiplied by 0.71 [Hz]; 0 for the highest that the "
+          "mesh carries with eight nodes per wavelength.",
           Patterns::Double(0.));
         declare_interval(prm,
                          "Time between two lines [s]; the largest magnitudes "

@@ -136,7 +136,7 @@ namespace Voussoir
         return accelerations[point * directions.size() + direction];
       }
 
-      /** A spectrum in the summary. */
+      /** Adds a spectrum to the summary. */
       void
       describe(const unsigned int         point,
                const unsigned int         direction,

@@ -117,7 +117,7 @@ namespace Voussoir
           const double da =
             (tt * (s * difference) - st * (t * difference)) / det;
           double a = std::clamp(hit.a + da, 0., 1.);
-          // the best b for this a, and the best a for this b
+          // the best b for this a, and then the best a for this b
           const double b =
             std::clamp(hit.b + (t * difference - st * (a - hit.a)) / tt,
                        0.,

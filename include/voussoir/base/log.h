@@ -117,7 +117,7 @@ namespace Voussoir
     void
     add_warning(const std::string &text);
 
-    /** On the terminal. */
+    /** Shows a text on the terminal. */
     void
     show(const std::string &text);
 

@@ -21,7 +21,7 @@ namespace Voussoir
   class ParameterFile
   {
   public:
-    /** No file: everything at its default. */
+    /** Without a file: all entries at their defaults. */
     ParameterFile() = default;
 
     /**

@@ -103,7 +103,7 @@ namespace Voussoir
       return exact ? 5 : 1;
     }
 
-    /** Its state, in numbers that a double represents exactly. */
+    /** State of the sum, in numbers that a double represents exactly. */
     std::vector<double>
     save() const
     {
@@ -149,7 +149,7 @@ namespace Voussoir
   };
 
 
-  /** Entry by entry, of equally long lists. */
+  /** Sums of equally long lists, entry by entry. */
   inline std::vector<double>
   sum_over_ranks(const std::vector<Sum> &sums, const MPI_Comm communicator)
   {

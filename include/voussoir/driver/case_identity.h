@@ -12,7 +12,7 @@ namespace Voussoir
 {
   /**
    * Data that must not change between a checkpoint and the run that continues
-   * from it: each entry but those for the duration and for the times of output,
+   * from it: all entries except those for the duration and the times of output,
    * as "Section/Entry = value", and the checksums of the files that entries
    * name.
    */

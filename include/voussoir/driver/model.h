@@ -106,8 +106,8 @@ namespace Voussoir
     void
     report_materials(Log &log) const;
 
-    /** The stiffness of springs follows from the distance to this point, which
-     *  may lie anywhere. */
+    /** Warns of a source point far outside the model, as the stiffness of
+     *  springs follows from the distance to it. */
     void
     check_source_point(Log &log) const;
 

@@ -40,9 +40,9 @@ namespace Voussoir
     ~Study();
 
     /** All runs, then study.csv and study.json. A run that fails is reported,
-     *  and the others continue; at the end it throws IncompleteStudy, or
-     *  UserError if no run reached its end. Throws UserError, too, if another
-     *  study is in progress in the folder. */
+     *  and the others continue; at the end throws IncompleteStudy, or UserError
+     *  if no run reached its end. Throws UserError, too, if another study is in
+     *  progress in the folder. */
     void
     run();
 
@@ -89,7 +89,7 @@ namespace Voussoir
     StudyValues
     shown(const StudyValues &values) const;
 
-    /** Number of runs, and what they leave out. */
+    /** Reports the number of runs, and what is left out. */
     void
     introduce() const;
 
@@ -105,7 +105,7 @@ namespace Voussoir
     const Outcome &
     outcome_of(const StudyValues &values);
 
-    /** @param may_go_on from a checkpoint that the folder has */
+    /** @param may_go_on whether from a checkpoint in the folder */
     RunSummary
     do_run(const Case        &parameters,
            const std::string &folder,
@@ -140,7 +140,7 @@ namespace Voussoir
     void
     gather();
 
-    /** Writes study.csv, study.json and the tables of what is evaluated. */
+    /** Writes study.csv, study.json and the tables of the evaluations. */
     void
     write_tables() const;
 

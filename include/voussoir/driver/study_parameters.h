@@ -13,7 +13,7 @@ namespace Voussoir
   /** Entries and their values in one run of a study, as text. */
   using StudyValues = std::vector<std::pair<std::string, std::string>>;
 
-  /** The name by which a study calls the number that divides strengths. */
+  /** Name, in a study, of the number that divides strengths. */
   inline const std::string strength_reduction = "strength reduction";
 
   /** The entries of the section "Study". */

@@ -97,7 +97,7 @@ namespace Voussoir
           const unsigned int width);
 
     /** Throws on all ranks if one has an error. The file is then abandoned, as
-     *  the library cannot close a file on a full disk, and crashes later. */
+     *  the library cannot close a file on a full disk and would crash later. */
     void
     together(const std::function<void()> &action);
 

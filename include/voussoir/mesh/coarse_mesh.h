@@ -41,8 +41,8 @@ namespace Voussoir
     {
       using Points = std::vector<dealii::Point<3>>;
 
-      /** Coordinates of each vertex; none where cells are refined in space, by
-       *  the middles of their edges. */
+      /** Coordinates of each vertex; none if cells are refined in space, at the
+       *  midpoints of edges. */
       Points vertices;
 
       /** Maps such coordinates to space [m]. */

@@ -10,7 +10,7 @@
 
 namespace Voussoir
 {
-  /** The entries about a wedge of rock in one bank of an arch dam. */
+  /** The entries of a wedge of rock in one bank of an arch dam. */
   struct AbutmentWedgeParameters
   {
     double elevation = 0.; // of the base plane; 0: no wedge
@@ -45,13 +45,13 @@ namespace Voussoir
     {
       unsigned int dam_begin, dam_end, n;
 
-      /** Layers that come nearest to a length away from the dam. */
+      /** Number of layers whose length from the dam is nearest to this one. */
       std::function<unsigned int(const double length)> along;
     };
 
     /**
-     * On the ledge that @p section has in this bank. Throws UserError, which
-     * names the @p place of the parameters.
+     * Places the wedge on the ledge of @p section in this bank. Throws
+     * UserError, which names the @p place of the parameters.
      *
      * @param bank 0 for the right one, 1 for the left
      */
@@ -67,7 +67,7 @@ namespace Voussoir
     std::string
     name() const;
 
-    /** Layers from its downstream end to the dam. */
+    /** Number of layers from the downstream end of the wedge to the dam. */
     unsigned int
     layers_before_dam() const;
 

@@ -107,7 +107,8 @@ namespace Voussoir
     void
     check_numbers(const std::string &section) const;
 
-    /** Between the arches of the table. */
+    /** A quantity at elevation @p z, interpolated between the arches of the
+     *  table. */
     template <typename Quantity>
     double
     interpolated(const double z, const Quantity &quantity) const;

@@ -40,7 +40,8 @@ namespace Voussoir
     std::vector<dealii::Point<3>>
     positions(const std::vector<dealii::Point<3>> &coordinates) const;
 
-    /** Layers beside the dam that come nearest to a length [m]. */
+    /** Number of layers beside the dam whose length is nearest to this one [m].
+     */
     unsigned int
     layers_along(const double length) const;
 

@@ -39,7 +39,7 @@ namespace Voussoir
     bool
     go_to(const std::string &text);
 
-    /** Take the next word and fail if it is another one. */
+    /** Take the next word; fail if it is not @p expected. */
     void
     expect(const std::string &expected);
 

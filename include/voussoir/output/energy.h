@@ -73,7 +73,7 @@ namespace Voussoir
    *
    * The losses of Maxwell branches and of viscosity in elastic cells are known
    * exactly for one step, at the cost of some products with the stiffness, and
-   * are summed over the steps between two evaluations by the trapezoidal rule:
+   * are summed over the steps between two evaluations by the trapezoidal rule,
    * which is exact if the balance is evaluated after every step.
    */
   class EnergyBalance

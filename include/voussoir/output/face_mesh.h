@@ -102,7 +102,7 @@ namespace Voussoir
      *
      * @param fields names of the values
      * @param values @p fields.size() numbers for each node
-     * @param name   of the file in the output folder, without its ending
+     * @param name   of the file in the output folder, without extension
      * @param time   [s]
      * @param texts  further ones for the file
      * @return its name in the output folder; empty if it cannot be written

@@ -81,10 +81,10 @@ namespace Voussoir
    * Safety of a block: resistance of its planes over the driving force. Its
    * balance is M a = D + R with the contact forces R and all others D: weight,
    * water, uplift, thrust of the dam. Without slip its acceleration would be a
-   * - a_s, less that of its slip, so that limit equilibrium is that of D - M (a
-   * - a_s) = -(R - M a_s) . As long as nothing slides this force is -R; while
-   * the block slides and friction limits R, the force shows by how much the
-   * driving forces exceed the resistance of the planes.
+   * - a_s, where a_s is the acceleration of its slip, so that limit equilibrium
+   * is that under D - M (a - a_s) = -(R - M a_s) . As long as nothing slides
+   * this force is -R; while the block slides and friction limits R, the force
+   * shows by how much the driving forces exceed the resistance of the planes.
    *
    * @param sums    over all ranks, of all surfaces one after the other
    * @param areas   of all surfaces [m2]

@@ -41,7 +41,7 @@ namespace Voussoir
     json() const;
   };
 
-  /** Place of a name in a list that has it. */
+  /** Index of a name in a list that contains the name. */
   unsigned int
   number_of(const std::string &name, const std::vector<std::string> &names);
 

@@ -129,7 +129,7 @@ namespace Voussoir
       return 0.;
     }
 
-    /** Refuses entries that do not fit the model with a UserError. */
+    /** Throws UserError for entries that do not fit the model. */
     virtual void
     check(const ObservedModel &) const
     {}
@@ -191,7 +191,7 @@ namespace Voussoir
       return observed->solid.grid().communicator();
     }
 
-    /** Adds a value to the state, which JSON can represent and is finite. */
+    /** Adds to the state a finite value that JSON can represent. */
     template <typename T>
     void
     keep(const std::string           &name,

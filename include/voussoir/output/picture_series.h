@@ -31,7 +31,7 @@ namespace Voussoir
     bool
     due(const State &state) const;
 
-    /** Name for the picture of this state, without ending. */
+    /** Name for the picture of this state, without extension. */
     std::string
     next_name(const State &state) const;
 

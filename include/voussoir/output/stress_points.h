@@ -36,8 +36,8 @@ namespace Voussoir
     evaluate(const State &state);
 
   private:
-    /** Of a node, for as many samples as there are lanes, each with a node of
-     *  its own. */
+    /** Weights of nodes: in each lane that of one node of the sample in this
+     *  lane. */
     struct Weight
     {
       std::array<unsigned int, Lanes::size()> entries; // of the node's x

@@ -318,15 +318,15 @@ namespace Voussoir
       refuse("compressible water",
              "set \"Model = added mass\" in section \"Reservoir\"");
     if (modes.number > 0 && damping.depends_on_modes())
-      refuse("damping that is fitted to modes, as \"" +
+      refuse("damping that is fitted to modes by \"" +
                std::string(damping.modes.empty() ? "Reference frequency" :
                                                    "From modes") +
-               "\" in section \"Damping\" says",
+               "\" in section \"Damping\"",
              damping.modes.empty() ?
                "give it in Hz" :
                "give the ends of the band and leave it empty");
     if (!static_state.stage_names().empty() && static_state.kept.empty())
-      refuse("a static state that is found again for each number of ranks",
+      refuse("a static state that is computed again for each number of ranks",
              "name a folder in \"Keep in\" of section \"Static state\"");
   }
 

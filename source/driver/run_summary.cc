@@ -118,7 +118,7 @@ namespace Voussoir
   }
 
 
-  // Conversion to JSON and back of any struct with such entries.
+  // Conversion of any struct with for_each_entry() to JSON and back.
 
   template <typename Part>
   auto

@@ -252,7 +252,8 @@ namespace Voussoir
     const std::string count =
       "Of " + counted(outcomes.size(), "run", "runs") + " in \"" + folder +
       "\" " + std::to_string(n_stand) +
-      (n_stand == 1 ? " stands, " : " stand, ") + std::to_string(n_stopped) +
+      (n_stand == 1 ? " is complete, " : " are complete, ") +
+      std::to_string(n_stopped) +
       (n_stopped == 1 ? " was stopped, " : " were stopped, ") +
       std::to_string(n_failed) + " failed";
     if (n_stand == 0)

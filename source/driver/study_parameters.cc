@@ -336,7 +336,7 @@ namespace Voussoir
       return;
     if (fragility_criteria().empty())
       throw UserError("\"Criterion\" in section \"Study/Fragility\" is empty; "
-                      "say what happens at larger intensities.");
+                      "give the condition that is met at larger intensities.");
     for (const StudyValues &values : combinations())
       for (const auto &[entry, value] : values)
         if (entry == intensity && !(parse_number(value).value_or(0.) > 0.))

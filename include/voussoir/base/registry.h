@@ -94,7 +94,7 @@ namespace Voussoir
     {
       const auto entry = entries().find(name);
       if (entry == entries().end())
-        throw UserError(place + " does not know \"" + name + "\"" +
+        throw UserError(place + " cannot be \"" + name + "\"" +
                         known_names(name, names()) + ".");
       return entry->second.create();
     }

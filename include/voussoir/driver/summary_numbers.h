@@ -79,7 +79,8 @@ namespace Voussoir
   class Criterion
   {
   public:
-    /** Throws UserError, which names the place, if it is none of these. */
+    /** Throws UserError, which names the place, if the text is none of these.
+     */
     Criterion(const std::string &text, const std::string &place);
 
     /** The number in the criterion, or null. */
@@ -88,7 +89,7 @@ namespace Voussoir
 
     /** The number, if the criterion has one, and whether it meets the
      *  criterion. A stopped run meets criteria that were met before its stop.
-     *  Throws UserError if a run that went to its end does not have the number.
+     *  Throws UserError if a run that reached its end does not have the number.
      */
     std::pair<std::optional<double>, bool>
     evaluate(const RunSummary &summary) const;

@@ -59,8 +59,7 @@ namespace Voussoir
       Numbers     numbers;
     };
 
-    /** @p parameter is the one that names a set of this kind: ELSET, NSET,
-     * NAME. */
+    /** @p parameter names a set of this kind: ELSET, NSET, NAME. */
     AbaqusSets(MeshFile &file, const std::string &parameter);
 
     /**
@@ -70,7 +69,8 @@ namespace Voussoir
     Numbers
     read_members(const AbaqusKeyword &keyword, const bool is_ours);
 
-    /** The one number that @p item is, or the numbers of the set it names. */
+    /** The number that @p item is, or the numbers of the set that @p item
+     *  names. */
     Numbers
     members_of(std::string_view item, bool is_ours) const;
 

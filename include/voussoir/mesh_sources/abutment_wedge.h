@@ -10,7 +10,7 @@
 
 namespace Voussoir
 {
-  /** The entries of a wedge of rock in one bank of an arch dam. */
+  /** The entries of a wedge, an abutment block in one bank of an arch dam. */
   struct AbutmentWedgeParameters
   {
     double elevation = 0.; // of the base plane; 0: no wedge
@@ -29,7 +29,7 @@ namespace Voussoir
   };
 
   /**
-   * A wedge of rock that can slide out of the bank of an arch dam.
+   * A wedge: an abutment block that can slide out of the bank of an arch dam.
    *
    * In the cross-section it is the rock above a ledge and on the river's side
    * of an upright column; along the river it reaches from the dam's upstream

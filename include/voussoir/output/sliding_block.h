@@ -9,7 +9,7 @@
 
 namespace Voussoir
 {
-  /** A block that rests on surfaces of contact, such as a wedge of rock. */
+  /** A block that rests on surfaces of contact, such as an abutment block. */
   struct SlidingBlock
   {
     /** A surface taken as a plane. */

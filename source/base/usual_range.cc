@@ -50,7 +50,7 @@ namespace Voussoir
     };
 
 
-    // In the unit of the entries. The ranges include soil, concrete, rock and
+    // Ranges in the units of the entries. They include soil, concrete, rock and
     // steel, so that a value outside is a mistake rather than a rare material.
     const std::map<Usual, Range> &
     ranges()

@@ -50,9 +50,8 @@ namespace Voussoir
           }
       }
 
-      /** For each face: its side (0 or 1) on the side of the surface where the
-       *  lowest connected face has its side 0; and the number of that lowest
-       *  face. */
+      /** For each face: which side (0 or 1) corresponds to side 0 of the lowest
+       *  face connected to it; and that lowest face. */
       std::vector<std::pair<unsigned int, unsigned int>>
       orient() const
       {
@@ -101,7 +100,7 @@ namespace Voussoir
             const unsigned int g = numbers.at({end.cell, end.face});
             const unsigned int arrival =
               end.cell == interface.faces[g][0].cell ? 0 : 1;
-            // side of f in the direction of the piece, transferred to g
+            // the side of g that corresponds to side 0 of the lowest face
             const unsigned int same =
               side == result[f].first ? arrival : 1 - arrival;
             if (result[g].first == none)
@@ -118,8 +117,9 @@ namespace Voussoir
           }
       }
 
-      // From a face of the interface, given by one of its cells, around an edge
-      // to the next face of the interface; cell `none` if the mesh ends before.
+      // Walks from a face of the interface, given by one of its cells, around
+      // an edge to the next face of the interface; cell `none` if the mesh ends
+      // before.
       Face
       walk(Face face, const Edge &edge) const
       {

@@ -15,7 +15,7 @@ namespace Voussoir
       std::string  name;
     };
 
-    // By Gmsh's numbers.
+    // Types of elements by Gmsh's numbers.
     const std::map<std::int64_t, ElementType> element_types = {
       {1, {1, 2, "lines"}},
       {2, {2, 3, "triangles"}},

@@ -25,7 +25,7 @@ namespace Voussoir
     /** Whether the numbers determine the entries; if not, there is no step. */
     bool determined = false;
 
-    /** Of the logarithms of the entries. */
+    /** Change of the logarithms of the entries. */
     dealii::Vector<double> change;
 
     /** Relative standard errors of the entries. */

@@ -57,7 +57,7 @@ namespace Voussoir
     bool
     exists() const;
 
-    /** Empty: not claimed. */
+    /** The claimed folder; empty: none is claimed. */
     std::string
     path() const;
 
@@ -72,7 +72,7 @@ namespace Voussoir
     const std::string &
     checkpoint_file() const;
 
-    /** Its header. */
+    /** Header of this checkpoint. */
     const nlohmann::json &
     checkpoint() const;
 

@@ -26,7 +26,7 @@ namespace Voussoir
         const ResultFolder &folder,
         Log                &log);
 
-    /** With a setup that was made before. */
+    /** A run with a setup that was made before. */
     Run(const StaticState        &static_state,
         const Modes              &modes,
         const ResultFolder       &folder,

@@ -40,7 +40,7 @@ namespace Voussoir
     DampingSummary damping;
   };
 
-  /** How a recorded component fits its target spectrum. */
+  /** Fit of a recorded component to its target spectrum. */
   struct FitSummary
   {
     double mean_misfit, largest_misfit; // [%]
@@ -55,7 +55,7 @@ namespace Voussoir
     double              damping_ratio;
     std::vector<double> periods; // [s]
 
-    /** In x, y, z [m/s2], those in which the ground moves. */
+    /** Spectra in x, y, z [m/s2]; none where the ground does not move. */
     std::array<std::optional<std::vector<double>>, 3> components;
   };
 

@@ -25,7 +25,7 @@ namespace Voussoir
                 const dealii::ParameterHandler &prm,
                 const StudyParameters          &parameters);
 
-  /** How a quantity changes with a number. */
+  /** Sensitivity of a quantity to a number. */
   struct Sensitivity
   {
     /**

@@ -9,7 +9,7 @@ namespace Voussoir
    *  earthquake. */
   struct StaticState
   {
-    /** Without static stages. */
+    /** The state of a model without static stages. */
     explicit StaticState(const Model &model);
 
     InitialState initial;

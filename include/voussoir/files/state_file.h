@@ -15,7 +15,7 @@ namespace Voussoir
   /** The numbers that a state file is written from and read into. */
   struct StateContent
   {
-    /** Of nodes, cells and points, spread over the ranks, by name. */
+    /** Numbers of nodes, cells and points, spread over the ranks, by name. */
     std::map<std::string, KeyedValues> values;
 
     /** Documents that all ranks need, by name; those of the first rank are

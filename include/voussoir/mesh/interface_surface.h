@@ -7,7 +7,7 @@
 
 namespace Voussoir
 {
-  /** By cell and face: the neighbour and its number of the face; cell
+  /** For each face of each cell the neighbour and its number of the face; cell
    *  `invalid_unsigned_int` at the mesh's surface. */
   using FaceNeighbours = std::vector<std::array<CoarseMesh::Face, 6>>;
 

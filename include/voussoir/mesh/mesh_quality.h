@@ -25,7 +25,7 @@ namespace Voussoir
     void
     take(const std::array<dealii::Point<3>, 8> &vertices);
 
-    /** In words, for the log. */
+    /** The quality in words, for the log. */
     std::string
     describe() const;
   };

@@ -23,7 +23,7 @@ namespace Voussoir
     std::string
     operator[](const std::string &parameter) const;
 
-    /** In upper case, without the asterisk. */
+    /** Name in upper case, without the asterisk. */
     std::string name;
 
     /** Values as written, without quotation marks, by names in upper case. */
@@ -80,7 +80,7 @@ namespace Voussoir
         const Numbers       &numbers,
         const bool           is_in_assembly);
 
-    /** By the name in upper case. */
+    /** The sets by their names in upper case. */
     const std::map<std::string, Set> &
     all() const;
 

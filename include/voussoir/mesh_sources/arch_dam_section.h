@@ -106,7 +106,7 @@ namespace Voussoir
       std::function<double(const double)> level; // elevation by s [m]
     };
 
-    /** At the middle of the dam. */
+    /** The mesh at the middle of the dam. */
     std::vector<Vertex> vertices;
     std::vector<Quad>   quads;
 
@@ -115,7 +115,7 @@ namespace Voussoir
     std::pair<double, double>
     height_and_length() const;
 
-    /** At the middle of the dam. */
+    /** The line of a ledge at the middle of the dam. */
     LedgeLine
     middle_line(const unsigned int bank) const;
 
@@ -141,7 +141,7 @@ namespace Voussoir
      *  canyon with a lower half_row; -1 without reservoir. */
     int surface_row = -1;
 
-    /** In the right and the left bank. */
+    /** Ledges in the right and the left bank. */
     std::array<Ledge, 2> ledges;
 
   private:
@@ -190,8 +190,8 @@ namespace Voussoir
       unsigned int quad, edge;
     };
 
-    /** Between the @p sides, all on the contour, and the vertices beyond them,
-     *  @p inside of the canyon or in the rock. */
+    /** Adds a layer between the @p sides, all on the contour, and the vertices
+     *  beyond them, @p inside of the canyon or in the rock. */
     void
     add_layer(const std::vector<Side> &sides, const bool inside);
 
@@ -240,7 +240,7 @@ namespace Voussoir
     // The row of each column that lies on the contour.
     std::vector<int> contour_rows;
 
-    // Of the reservoir's surface: elevation, and columns at which it is level.
+    // The reservoir's surface: elevation, and columns at which it is level.
     double              surface_level = 0.;
     std::pair<int, int> surface_columns;
 

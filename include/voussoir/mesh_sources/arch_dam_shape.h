@@ -156,7 +156,8 @@ namespace Voussoir
     line(const double s, const double z) const;
 
   private:
-    /** Where the section cuts the crest's centre line, and its angle. */
+    /** The point where the section cuts the crest's centre line, and the angle.
+     */
     Line
     crest(const double s) const;
 

@@ -103,7 +103,7 @@ namespace Voussoir
   in_quotes(const std::string_view text);
 
 
-  /** Without the blanks, tabs and carriage returns at both ends. */
+  /** The text without blanks, tabs and carriage returns at both ends. */
   std::string_view
   trimmed(std::string_view text);
 

@@ -17,7 +17,7 @@ namespace Voussoir
   class FilteredDisplacement
   {
   public:
-    /** At all nodes, in vectors of the discretization. */
+    /** The data at all nodes, in vectors of the discretization. */
     explicit FilteredDisplacement(const StressModel &model);
 
     /** @param needed entries, of whole nodes; other entries are left at zero */
@@ -32,11 +32,11 @@ namespace Voussoir
     void
     update(const State &state);
 
-    /** u, and s w where all materials have the same s; with ghosts. */
+    /** u, plus s w if all materials have the same s; with ghosts. */
     const Vector &
     displacement() const;
 
-    /** w with ghosts where they have not; else null. */
+    /** w if the materials have different s, with ghosts; else null. */
     const Vector *
     memory() const;
 

@@ -58,7 +58,7 @@ namespace Voussoir
     void
     load(const nlohmann::json &saved);
 
-    /** In the order of the entry. */
+    /** The points in the order of the entry. */
     const std::vector<NamedPoint> &
     points() const;
 

@@ -73,7 +73,7 @@ namespace Voussoir
     bool
     add(const double time, const double interval, const double safety);
 
-    /** Infinite ones are null. */
+    /** The numbers; infinite ones are null. */
     nlohmann::json
     summary() const;
 

@@ -11,8 +11,8 @@
 
 namespace Voussoir
 {
-  /** Of a cell: largest and smallest principal stress over the run [Pa], and
-   *  when [s]. */
+  /** Extremes of a cell: largest and smallest principal stress over the run
+   *  [Pa], and their times [s]. */
   using StressExtremes = std::array<double, 4>;
 
 

@@ -310,8 +310,8 @@ namespace Voussoir
 
       const BoundingBox<3> box;
 
-      // named by "Fixed", by any entry of "Boundaries", by interfaces, loads
-      // and constraints
+      // faces named by "Fixed"; by any entry of "Boundaries"; by interfaces,
+      // loads and constraints
       Faces             fixed, supported, used;
       std::vector<bool> absorbs; // materials that have absorbing faces
       bool              absorbs_sideways = false;

@@ -14,7 +14,7 @@ namespace Voussoir
   namespace
   {
     // Interval of checks of cracks and slips [s], and limit of the opening of a
-    // crack over its cell: at a fiftieth, it detaches a block.
+    // crack over its cell, a fiftieth: a wider crack detaches a block.
     constexpr double check_interval = 0.1, widest_share = 0.02;
   } // namespace
 

@@ -20,7 +20,7 @@ namespace Voussoir
 
   namespace
   {
-    // Columns between the abutments that the shape of a dam needs.
+    // Least number of columns between the abutments for the shape of a dam.
     constexpr double least_columns = 8.;
 
 

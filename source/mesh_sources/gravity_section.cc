@@ -312,8 +312,8 @@ namespace Voussoir
              5);
       }
 
-      /** y of the faces at an elevation [m]; they are plane between the bends.
-       */
+      /** y of the faces at an elevation [m]; the faces are plane between the
+       *  bends. */
       double
       upstream_face(const double z) const
       {

@@ -62,7 +62,7 @@ namespace Voussoir
     , w(uniform ? Vector() : u)
   {
     const auto &partitioner = *u.get_partitioner();
-    // entries that this rank needs, or others that have them as ghosts
+    // entries that this rank needs, and ghosts of other ranks
     std::vector<bool> wanted(u.locally_owned_size(), false);
     for (const auto index : needed)
       if (partitioner.in_local_range(index))

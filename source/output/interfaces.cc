@@ -449,7 +449,8 @@ namespace Voussoir
       // of each block: contact forces of its planes, and its driving force [N]
       std::vector<std::vector<double>> forces_at_smallest;
 
-      // largest open area [m2] and opening [m] of each surface, and when [s]
+      // largest open area [m2] and opening [m] of each surface, and their times
+      // [s]
       std::vector<std::array<double, 2>> largest_open, largest_opening;
 
       // of each block its present values, then sums times their time since

@@ -20,12 +20,12 @@ namespace Voussoir
 
 
     /**
-     * Opening of the crack of an active point at its last step [m], and not
-     * more than the largest one so far, an internal variable: the largest
-     * principal value of e_in = e - C^-1 : sigma times the band, but not more
-     * than the strain across the crack, n . e . n. Where that strain is
-     * compressive the crack is closed, even if shear along an inclined strut
-     * gives an opening; the expansion of crushed concrete is no crack.
+     * Opening of the crack of an active point at its last step [m]: the band
+     * times the largest principal value of e_in = e - C^-1 : sigma or the
+     * strain across the crack, n . e . n, if that is less; at most the largest
+     * opening so far, an internal variable. Where that strain is compressive
+     * the crack is closed, even if shear along an inclined strut gives an
+     * opening; the expansion of crushed concrete is no crack.
      */
     double
     opening_of(const Material            &material,

@@ -35,9 +35,9 @@ namespace Voussoir
 
 
     /**
-     * Over-stress of the faces of a dam after a linear analysis: how far, how
-     * long and on what area the tension exceeds the strength, and whether that
-     * calls for a non-linear analysis (see OverStressLimits).
+     * Over-stress of the faces of a dam in a linear analysis: amount, time and
+     * area of the tension above the strength, and whether these call for a
+     * non-linear analysis (see OverStressLimits).
      */
     class OverStress : public Observer
     {
@@ -345,7 +345,8 @@ namespace Voussoir
         const auto          communicator = mesh->communicator();
         std::vector<double> ratio, ever(n_areas()), accumulated(n_areas()),
           beyond_rest(n_areas()), resting(n_areas());
-        // of each set: largest ratio, time, place; that of the static state
+        // of each set: largest ratio, its time and place; the same of the
+        // static state
         constexpr double none = -std::numeric_limits<double>::max();
         std::vector<std::array<double, 5>> most(names.size(), {{none}});
         std::vector<std::array<double, 4>> most_at_rest(names.size(), {{none}});
@@ -471,8 +472,8 @@ namespace Voussoir
       std::unique_ptr<AreaAbove>  areas;
 
       // of each node: arch and cantilever stress if they are needed, strength
-      // [Pa], ratio now, largest one and when [s], and for each ratio of the
-      // list the time above it, but not above the next one [s]
+      // [Pa], ratio now, largest one and its time [s], and for each ratio of
+      // the list the time between this ratio and the next one [s]
       std::vector<std::array<Tensor<1, 3>, 2>> directions;
       std::vector<double>                      strength_of_node, ratio_of_node;
       std::vector<double>                      largest, times;
@@ -488,8 +489,8 @@ namespace Voussoir
 
     const Registry<Observer>::Add<OverStress> registered_over_stress(
       "over-stress",
-      "How far, how long and on what area the tension on the faces of a dam "
-      "exceeds its strength, in over_stress.csv and over_stress.vtu, and "
-      "whether a linear analysis suffices.");
+      "Amount, time and area of the tension on the faces of a dam above the "
+      "strength, in over_stress.csv and over_stress.vtu, and whether a "
+      "linear analysis suffices.");
   } // namespace
 } // namespace Voussoir

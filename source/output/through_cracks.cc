@@ -260,7 +260,7 @@ namespace Voussoir
 
     const Registry<Observer>::Add<ThroughCracks> registered_through_cracks(
       "through cracks",
-      "Cracks that go through the dam: how wide they are open at one moment "
-      "all the way from one face to the other, in through_cracks.csv.");
+      "Through cracks of the dam: their opening at one moment all the way "
+      "from one face to the other, in through_cracks.csv.");
   } // namespace
 } // namespace Voussoir

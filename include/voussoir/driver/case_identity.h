@@ -30,7 +30,7 @@ namespace Voussoir
   result_identity_of(const Case &parameters);
 
   /** The first entry in which two identities differ, with its value in each
-   *  ("nothing" where it is missing). Files are compared by their contents:
+   *  ("nothing" where it is missing). Files are compared by their contents, as
    *  they may have been moved. */
   std::optional<std::pair<std::string, std::string>>
   first_difference(const nlohmann::json &one, const nlohmann::json &other);

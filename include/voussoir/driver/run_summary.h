@@ -131,7 +131,7 @@ namespace Voussoir
   void
   from_json(const nlohmann::json &json, RunSummary &summary);
 
-  /** Whether this may be a summary: it has a verdict. */
+  /** Whether a JSON may be a summary, by its verdict. */
   bool
   is_summary(const nlohmann::json &json);
 

@@ -11,7 +11,7 @@ namespace Voussoir
   struct CrackPath
   {
     double           opening = 0.; // smallest one along the path [mm]
-    dealii::Point<3> where;        // that is [m]
+    dealii::Point<3> where;        // its place [m]
   };
 
 
@@ -75,7 +75,7 @@ namespace Voussoir
     struct Joint
     {
       double                opening; // of the narrowest eighth [mm]
-      std::array<double, 3> where;   // that is [m]
+      std::array<double, 3> where;   // its place [m]
       std::array<Edge, 2>   ends;
     };
 

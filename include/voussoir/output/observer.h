@@ -110,8 +110,8 @@ namespace Voussoir
 
   /**
    * A writer of one kind of results: a section of the parameter file under
-   * "Output", called after each step and at the end. Its state from one step to
-   * the next is declared by `keep`, from which checkpoints follow.
+   * "Output", called after each step and at the end. `keep` declares its state
+   * from one step to the next, which checkpoints store.
    */
   class Observer
   {
@@ -140,8 +140,8 @@ namespace Voussoir
     void
     begin(const ObservedRun &run);
 
-    /** Called for the initial state and after each step; after a restart
-     *  first for the state of the checkpoint, once more. */
+    /** Called for the initial state and after each step; after a restart called
+     *  first for the state of the checkpoint again. */
     virtual void
     observe(const State &state) = 0;
 

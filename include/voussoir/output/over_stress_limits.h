@@ -14,11 +14,11 @@ namespace Voussoir
     std::string name;
     double      area; // [m2]
 
-    // largest demand-capacity ratio [-], when [s] and where [m]
+    // largest demand-capacity ratio [-], its time [s] and place [m]
     double           largest, time;
     dealii::Point<3> where;
 
-    // ratio of the static state [-], and where [m]
+    // largest ratio of the static state [-], and its place [m]
     double           largest_at_rest;
     dealii::Point<3> where_at_rest;
 

@@ -126,7 +126,7 @@ namespace Voussoir
         else if (section == "CELL_DATA" || section == "POINT_DATA")
           {
             is_cell_data = (section == "CELL_DATA");
-            n_data       = file.count("a number of data");
+            n_data       = file.count("the number of tuples");
           }
         else if (section == "METADATA")
           do

@@ -489,8 +489,8 @@ namespace Voussoir
 
     const Registry<Observer>::Add<OverStress> registered_over_stress(
       "over-stress",
-      "Amount, time and area of the tension on the faces of a dam above the "
-      "strength, in over_stress.csv and over_stress.vtu, and whether a "
-      "linear analysis suffices.");
+      "Tension above the strength on the faces of a dam, by amount, time and "
+      "area, in over_stress.csv and over_stress.vtu, and whether a linear "
+      "analysis suffices.");
   } // namespace
 } // namespace Voussoir

@@ -1,4 +1,4 @@
-# Completion of voussoir's arguments in bash, from what the program itself says. Installed for
+# Completion of voussoir's arguments in bash, from the output of the program. Installed for
 # package bash-completion; or: source source/completion.bash
 
 # Paths of all entries, "Section/Entry=", of a case or of every class.
@@ -12,7 +12,7 @@ _voussoir_entries() { # program, case
                          print line $0 "=" }'
 }
 
-# What may follow an option, by its help: "... as description, json, ... xml".
+# Words that may follow an option, from its help: "... as description, json, ... xml".
 _voussoir_choices() { # program, option
   "$1" --help | awk -v option="$2" '$1 == option { sub(/.*(: | as )/, ""); gsub(/,/, ""); print }'
 }
@@ -33,7 +33,7 @@ _voussoir() {
   elif [[ $before == --defaults || $before == --list ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$(_voussoir_choices "$program" "$before" | tr ' ' '\n')" -- "$current")
   elif [[ $option == --set && $current != *.prm ]]; then
-    # asked for once for each case
+    # read once for each case
     if [[ ${_voussoir_known-} != "$program $case" ]]; then
       _voussoir_known="$program $case"
       mapfile -t _voussoir_paths < <(_voussoir_entries "$program" "$case")

@@ -12,8 +12,8 @@ namespace Voussoir
     prm.declare_entry("Active",
                       "true",
                       Patterns::Bool(),
-                      "false: left out, as if \"Names\" and the static stages "
-                      "did not have it.");
+                      "false: left out, as if \"Names\" and the static "
+                      "stages did not list it.");
     return file.given(path + "/Active", "true") != "false";
   }
 } // namespace Voussoir

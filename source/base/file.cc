@@ -42,7 +42,7 @@ namespace Voussoir
         return number >= 0;
       }
 
-      /** Ends the file here; devices have no end. */
+      /** Ends the file at its present length; devices have no end. */
       bool
       cut(const std::uintmax_t size) const
       {
@@ -52,7 +52,7 @@ namespace Voussoir
       bool
       write(const std::string &text, const std::uintmax_t place) const
       {
-        // a pipe can only be written in turn
+        // a pipe can only be written in sequence
         if (::lseek(number, place, SEEK_SET) < 0 && errno != ESPIPE)
           return false;
         for (std::size_t done = 0; done < text.size();)
@@ -74,7 +74,8 @@ namespace Voussoir
                errno == EOPNOTSUPP || errno == ENOSYS;
       }
 
-      /** Some file systems report only now that there is no space. */
+      /** Flushes the file; some file systems report only then that there is no
+       *  space. */
       bool
       close()
       {
@@ -89,8 +90,8 @@ namespace Voussoir
 
 
     /** Writes the text to this place and ends the file behind it; if that fails
-     *  the file ends at the place. A program killed in between has not lost
-     *  data that a checkpoint relies on. */
+     *  the file ends at this place. A program that is killed in between has
+     *  lost no data on which a checkpoint relies. */
     std::string
     put(const std::string   &name,
         const std::string   &text,
@@ -143,13 +144,13 @@ namespace Voussoir
     }
 
 
-    /** Space for a file of this size, so that it is clear before the ranks
-     * write their parts whether there is enough of it. */
+    /** Reserves space for a file of this size, so that a lack of space shows
+     *  before the ranks write their parts. */
     std::string
     make_room(const std::string &name, const std::uintmax_t size)
     {
       std::error_code problem;
-      // one folder and not those above it, which exist or were removed
+      // one folder only: those above it exist, or were removed on purpose
       fs::create_directory(fs::absolute(name).parent_path(), problem);
       if (problem)
         return reason_of(problem.value());
@@ -174,7 +175,7 @@ namespace Voussoir
                                        MPI_MODE_CREATE | MPI_MODE_WRONLY,
                                        MPI_INFO_NULL,
                                        &file);
-      // no rank must wait for one that has no file
+      // no rank must wait for a rank without a file
       if (Utilities::MPI::max(opened == MPI_SUCCESS ? 0 : 1, communicator) == 1)
         return false;
       const int written = Utilities::MPI::LargeCount::File_write_at_all_c(
@@ -218,7 +219,7 @@ namespace Voussoir
     const bool      exists = fs::exists(name, problem);
     if (exists && !fs::is_regular_file(name, problem))
       return put(name, text, 0);
-    // a link stays a link
+    // a symbolic link is kept
     const std::string target =
       exists ? fs::canonical(name, problem).string() : name;
     return settle(target, put(aside(target), text, 0));
@@ -341,7 +342,7 @@ namespace Voussoir
     if (!S_ISREG(now.st_mode)) // devices keep nothing
       return "";
     const auto size = static_cast<std::uintmax_t>(now.st_size);
-    // some network file systems number a file anew
+    // some network file systems change the number of a file
     if (now.st_ino != serial_number && size != written)
       return "another file was put in its place while the run went on";
     return size < written ? "it was cut off while the run went on" : "";

@@ -27,12 +27,12 @@ namespace Voussoir
           std::string(terminal) == "dumb")
         return false;
 #if defined(OMPI_MAJOR_VERSION) && OMPI_MAJOR_VERSION >= 5
-      // its mpirun passes on whole lines only
+      // the mpirun of Open MPI passes on whole lines only
       if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr)
         return false;
 #endif
       // mpirun gives each process a pseudo-terminal and forwards its output, so
-      // that the output of mpirun, the parent, is checked
+      // the output of the parent process, mpirun, is checked
       std::error_code   none;
       const std::string output = std::filesystem::read_symlink(
         "/proc/" + std::to_string(getppid()) + "/fd/1", none);
@@ -90,7 +90,7 @@ namespace Voussoir
   {
     if (quiet)
       return;
-    // to the beginning of the line, and clears it
+    // moves to the beginning of the line and clears it
     std::cout << (shows_bar ? "\r\033[K" : "") << text << std::flush;
     shows_bar = false;
   }

@@ -17,11 +17,11 @@ namespace Voussoir
   {
     /**
      * Without mpirun, Open MPI keeps its files in a folder that all programs of
-     * a user share and that each removes at its end: one that starts at that
-     * moment fails (Open MPI 4: orte/util/session_dir.c; 5:
-     * ompi/runtime/ompi_rte.c). So each gets a folder of its own. Empty where
-     * mpirun or Slurm starts the ranks, where the user has named a folder, and
-     * where none can be made.
+     * a user share and that each removes at its end: a program that starts at
+     * that moment fails (Open MPI 4: orte/util/session_dir.c; 5:
+     * ompi/runtime/ompi_rte.c). So each program gets a folder of its own. Empty
+     * where mpirun or Slurm starts the ranks, where the user has named a
+     * folder, and where none can be made.
      */
     std::filesystem::path
     own_session_folder()
@@ -39,7 +39,7 @@ namespace Voussoir
       return name;
     }
 
-    /** Sets a variable of the environment, and sets it back at its end. */
+    /** Sets a variable of the environment, and resets it when destroyed. */
     class TemporarySetting
     {
     public:
@@ -75,26 +75,26 @@ namespace Voussoir
 #endif
     // Exceeding the limit of file size is an error of the write, not a signal.
     std::signal(SIGXFSZ, SIG_IGN);
-    // Ranks do not outlive an mpirun that is killed: Open MPI lets them
+    // Ranks end with an mpirun that is killed; Open MPI would let them
     // continue, and write, for a second.
     if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr)
       prctl(PR_SET_PDEATHSIG, SIGKILL);
-    // Shared file pointers are not used. Of Open MPI's components for them "sm"
-    // keeps a file in the session's folder, which two programs without mpirun
-    // remove from each other, and "lockedfile" one beside each file that is
-    // opened: on a full disk the first rank gives up and the others wait for
-    // it.
+    // Shared file pointers are not used. Of the components of Open MPI for
+    // them, "sm" keeps a file in the session's folder, which two programs
+    // without mpirun remove from each other, and "lockedfile" keeps a file
+    // beside each open file: on a full disk the first rank gives up and the
+    // others wait for it.
     setenv("OMPI_MCA_sharedfp", "individual", 0);
     session_folder = own_session_folder();
     std::optional<TemporarySetting> folder, without_daemon;
     if (!session_folder.empty())
       {
         folder.emplace("TMPDIR", session_folder.string());
-        // of Open MPI 4, which takes half of the start
+        // the daemon of Open MPI 4 takes half of the time of a start
         without_daemon.emplace("OMPI_MCA_ess_singleton_isolated", "1");
       }
-    // Libraries get the program's name alone: PETSc would take arguments for
-    // its options and complain that it does not use them.
+    // Libraries get the program's name alone: PETSc would read the arguments as
+    // its own options and warn that they are unused.
     int just_the_name = 1;
     mpi =
       std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(just_the_name,

@@ -30,7 +30,7 @@ namespace Voussoir
 
 
     // "a whole number from 1 to 4" for "[Integer range 1...4 (inclusive)]",
-    // deal.II's description of what is allowed; empty if it is no number.
+    // deal.II's description of a pattern; empty if the pattern is no number.
     std::string
     number_in_words(const std::string &pattern)
     {
@@ -168,7 +168,8 @@ namespace Voussoir
         }
       catch (const std::exception &)
         {
-          // a value that fits the pattern but not the variable of the entry
+          // a value that matches the pattern but cannot be stored in the
+          // variable
           refuse(what_is_allowed(allowed, text));
         }
     });

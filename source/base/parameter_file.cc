@@ -27,7 +27,7 @@ namespace Voussoir
       return join(sections, "/");
     }
 
-    // Deeper nesting means no parameter file, or one without "end".
+    // Larger or deeper nested files are no parameter files, or lack "end".
     constexpr std::size_t largest_file = 10000000, deepest_section = 10;
 
     bool
@@ -41,7 +41,7 @@ namespace Voussoir
     }
 
 
-    // The text of a file, whatever system it was written on.
+    // The text of a file, with the line ends of any system.
     std::string
     read_text(const std::string &filename)
     {
@@ -74,7 +74,7 @@ namespace Voussoir
 
 
     // The next line and those that continue it, without comment and blanks
-    // around it, and where it stands; false at the end of the file.
+    // around it, and the place of the line; false at the end of the file.
     bool
     next_line(std::istream      &in,
               const std::string &filename,
@@ -253,7 +253,7 @@ namespace Voussoir
             const auto  equals = rest.find('=');
             std::string path   = join_path(section);
             path += (path.empty() ? "" : "/") + trim(rest.substr(0, equals));
-            // the lists of two files that another one includes are one
+            // the lists of two included files are joined
             if (values.count(path) > 0 && entry_of(path) == "Names" &&
                 values[path].place.rfind(filename + ", line ", 0) != 0)
               {
@@ -350,7 +350,7 @@ namespace Voussoir
       for (const std::string &other : declared_sections)
         if (!other.empty() && section_of(other) == parent)
           siblings.push_back(entry_of(other));
-      // where the user himself names the sections
+      // where an entry of the user names the sections
       std::string cause;
       for (const std::string entry : {"Names", "Type", "Observers"})
         if (const std::string path = parent + "/" + entry;
@@ -381,7 +381,7 @@ namespace Voussoir
     for (const auto &[path, value] : values)
       if (declared.count(path) == 0)
         {
-          // that of its section is enough
+          // a note on the section covers its entries
           if (declared_sections.count(section_of(path)) == 0 &&
               !cause_of_no_use(section_of(path), value.place).empty())
             continue;

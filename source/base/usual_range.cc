@@ -32,7 +32,7 @@ namespace Voussoir
         return (from <= value && value <= to) || (or_zero && value == 0.);
       }
 
-      /** As "0 or 5 to 65". */
+      /** In words, as "0 or 5 to 65". */
       std::string
       words() const
       {
@@ -41,7 +41,7 @@ namespace Voussoir
         return text.str();
       }
 
-      /** The end of a description. */
+      /** The sentence at the end of a description. */
       std::string
       sentence() const
       {
@@ -50,7 +50,7 @@ namespace Voussoir
     };
 
 
-    // In the unit of the entries. The ranges include soil, concrete, rock and
+    // Ranges in the units of the entries. They include soil, concrete, rock and
     // steel, so that a value outside is a mistake rather than a rare material.
     const std::map<Usual, Range> &
     ranges()
@@ -97,9 +97,8 @@ namespace Voussoir
     }
 
 
-    // ParameterHandler stores no data of ours with an entry except its
-    // description, so the range is read from the sentence at the end of it.
-    // Null: it has none.
+    // ParameterHandler stores only the description with an entry, so the range
+    // is read from the last sentence of the description. Null: there is none.
     const Range *
     range_of(const std::string &description)
     {
@@ -117,7 +116,7 @@ namespace Voussoir
     }
 
 
-    // " Pa" of a description with "[Pa]", empty for one with "[-]".
+    // " Pa" for a description with "[Pa]", empty for one with "[-]".
     std::string
     unit_of(const std::string &description)
     {

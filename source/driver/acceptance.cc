@@ -93,7 +93,7 @@ namespace Voussoir
         in_section(prm, name, [&] {
           prm.add_parameter("Clause",
                             criterion.clause,
-                            "Basis of the criterion, in your words: the clause "
+                            "Basis of the criterion as free text: the clause "
                             "of a code, or of the owner's specification.");
           add_option(prm,
                      "Load case",
@@ -106,14 +106,16 @@ namespace Voussoir
             "section \"Study\".");
           prm.add_parameter("At most",
                             criterion.at_most,
-                            "Upper limit of the quantity, in its own unit.");
+                            "Upper limit of the quantity, in the unit of the "
+                            "quantity.");
           prm.add_parameter("At least",
                             criterion.at_least,
-                            "Lower limit of the quantity, instead.");
+                            "Lower limit of the quantity; give either this "
+                            "or \"At most\".");
           prm.add_parameter("Source",
                             criterion.source,
-                            "Where the limit has been read, or \"user's\" for "
-                            "one of your own.");
+                            "Document from which the limit is taken, or "
+                            "\"user's\" for a limit of your own.");
         });
       }
   }
@@ -141,7 +143,7 @@ namespace Voussoir
                             "quantity.");
         if (criterion.source.empty())
           throw UserError("\"Source\" in " + place +
-                          " is empty; say where the limit has been read, or "
+                          " is empty; give the document of the limit, or "
                           "\"user's\".");
       }
   }
@@ -170,7 +172,7 @@ namespace Voussoir
       {
         const SummaryNumber quantity(criterion.quantity);
         const bool          is_upper = !criterion.at_most.empty();
-        // of several numbers the least favourable
+        // of several numbers the least favourable one
         const auto   found = quantity.find(summary, !is_upper);
         const double limit =
           *parse_number(is_upper ? criterion.at_most : criterion.at_least);

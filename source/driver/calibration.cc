@@ -12,8 +12,8 @@ namespace Voussoir
                                    const Vector<double>     &misfit,
                                    const double              error)
   {
-    // smallest over largest singular value at which changes of two numbers are
-    // no longer told from the errors of finite differences
+    // ratio of the smallest to the largest singular value below which the
+    // errors of finite differences prevail
     constexpr double least_ratio = 1e-3;
 
     LAPACKFullMatrix<double> factors(sensitivity.m(), sensitivity.n());

@@ -50,15 +50,15 @@ namespace Voussoir
       prm,
       "Scheme",
       scheme,
-      "Central difference: dashpots and mass damping act on the velocity at "
-      "the step, at no cost in the time step. Paper: on the velocity of the "
-      "half step before, as in PSDAP.");
+      "Velocity on which dashpots and mass damping act. Central difference: "
+      "that at the step, which does not reduce the stable step. Paper: that "
+      "of the half step before, as in PSDAP.");
   }
 
 
   namespace
   {
-    /** For each class an object of the class's own name. */
+    /** Adds an object for each class, with the name of the class. */
     template <typename Base>
     void
     name_each_class(std::vector<std::string> &changes,
@@ -97,8 +97,8 @@ namespace Voussoir
 
   namespace
   {
-    /** Static stages have results at the points of the histories, too, unless
-     *  the file gives them others. */
+    /** Static stages report results at the points of the histories, too, unless
+     *  the file gives other points. */
     void
     add_points_of_histories(Case &parameters)
     {
@@ -128,7 +128,7 @@ namespace Voussoir
     }
 
 
-    /** Entries of the shapes of a design spectrum that it has not. */
+    /** Notes entries of a design spectrum that its shape does not use. */
     void
     note_unused_spectrum(Case &parameters)
     {
@@ -180,7 +180,7 @@ namespace Voussoir
     check();
     for (const std::string &warning : ground_motion.warnings())
       warnings.push_back(warning);
-    // modes alone need no steps
+    // natural modes alone need no steps
     if (modes.number > 0 && !moves())
       time.end_time = 0.;
   }
@@ -192,13 +192,17 @@ namespace Voussoir
   void
   Case::declare()
   {
-    prm.add_parameter("Title", title, "A line about the case, for the log.");
+    prm.add_parameter("Title",
+                      title,
+                      "Title of the case, one line, for the "
+                      "log.");
 
     in_section(prm, "Mesh", [&] {
       prm.add_parameter("Type",
                         mesh_type,
-                        "A built-in generator, or a file of Gmsh, Abaqus, UCD "
-                        "or VTK; its entries stand in a section of that name.",
+                        "A built-in generator, or a file of Gmsh, Abaqus, "
+                        "UCD or VTK; the section of that name has its "
+                        "entries.",
                         Patterns::Selection(join(mesh_types(), "|")));
       grid.declare(prm);
       const std::string type = file.given("Mesh/Type", mesh_type);
@@ -314,15 +318,15 @@ namespace Voussoir
       refuse("compressible water",
              "set \"Model = added mass\" in section \"Reservoir\"");
     if (modes.number > 0 && damping.depends_on_modes())
-      refuse("damping that is fitted to modes, as \"" +
+      refuse("damping that is fitted to modes by \"" +
                std::string(damping.modes.empty() ? "Reference frequency" :
                                                    "From modes") +
-               "\" in section \"Damping\" says",
+               "\" in section \"Damping\"",
              damping.modes.empty() ?
                "give it in Hz" :
                "give the ends of the band and leave it empty");
     if (!static_state.stage_names().empty() && static_state.kept.empty())
-      refuse("a static state that is found again for each number of ranks",
+      refuse("a static state that is computed again for each number of ranks",
              "name a folder in \"Keep in\" of section \"Static state\"");
   }
 

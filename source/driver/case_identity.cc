@@ -14,7 +14,7 @@ namespace Voussoir
 
   namespace
   {
-    // around the name of a file that an entry names
+    // around the name of a file in an entry
     constexpr char with_file[]   = " with the file \"",
                    of_checksum[] = "\" of the checksum ";
 
@@ -43,7 +43,7 @@ namespace Voussoir
       if (is_free_of_results(entry) || free.count(entry) > 0 ||
           entry.rfind("Acceptance/", 0) == 0)
         return true;
-      // of observers: when they write
+      // times at which observers write
       const std::string last = entry.substr(entry.rfind('/') + 1);
       return entry.rfind("Output/", 0) == 0 &&
              (last == "Interval" || last == "Times");
@@ -90,7 +90,7 @@ namespace Voussoir
     is_free_of_static_state(const std::string &line)
     {
       if (line.rfind("Output/histories/Points", 0) == 0)
-        return false; // results of the stages are at them, too
+        return false; // the stages have results at these points, too
       for (const char *const section :
            {"Time/", "Output/", "Ground motion/", "Modes/", "Acceptance/"})
         if (line.rfind(section, 0) == 0)
@@ -99,7 +99,8 @@ namespace Voussoir
     }
 
 
-    /** Entries and the files that they name, without those that may change. */
+    /** Entries and the files that they name, but not entries that may change.
+     */
     nlohmann::json
     identity_without(const Case &parameters,
                      bool (*const is_free)(const std::string &entry))
@@ -138,8 +139,8 @@ namespace Voussoir
     }
 
 
-    /** A line of an identity, "Entry = value": with checksums in place of the
-     *  names of files, and with both. */
+    /** A line of an identity, "Entry = value", with checksums instead of the
+     *  names of files to compare, and with both to show. */
     struct Line
     {
       std::string compared, shown;
@@ -165,7 +166,7 @@ namespace Voussoir
               const std::string file =
                 line.substr(start.size(), sum - start.size());
               auto &[compared, shown] = result[entry];
-              // not in the name of the entry
+              // searched after the name of the entry
               const auto place = compared.find(file, entry.size());
               if (place != std::string::npos)
                 compared.replace(place, file.size(), line.substr(sum));

@@ -48,35 +48,36 @@ namespace Voussoir
     prm.add_parameter(
       "Observers",
       observers,
-      "Observers, which write results, in this order; each has a section here.",
+      "Observers, which write results, in this order; each has a section of "
+      "its name here.",
       Patterns::MultipleSelection(join(Registry<Observer>::names(), "|")));
     prm.add_parameter(
       "Observers for the verdict",
       for_verdict,
-      "Adds over-stress where a linear elastic material has a tensile "
-      "strength, through cracks where a material cracks, both if the mesh has "
-      "an upstream and a downstream face, and interfaces where the case has "
-      "some, if the observers do not name them.");
+      "Adds observers that \"Observers\" does not name: over-stress where a "
+      "linear elastic material has a tensile strength and through cracks "
+      "where a material cracks, both if the mesh has an upstream and a "
+      "downstream face; interfaces where the case has interfaces.");
     prm.add_parameter(
       "Energy interval",
       energy_interval,
-      "Time between two lines of the energy balance [s]; 0 for every 50 steps. "
-      "The run is checked for growth and NaN, and the losses of damping are "
-      "summed up, at least so often.",
+      "Time between two lines of the energy balance [s]; 0 for every 50 "
+      "steps. At least this often the run is checked for growth and NaN, and "
+      "the losses by damping are summed up.",
       Patterns::Double(0.));
     prm.add_parameter(
       "Energy limit",
       energy_limit,
-      "Energy-balance error at which the run stops, over the energy that came "
-      "in; from a hundredth on the run warns.",
+      "Energy-balance error, relative to the energy that came in, at which "
+      "the run stops; the run warns from 0.01 on.",
       Patterns::Double(0., 1.));
     prm.add_parameter(
       "Checkpoint interval",
       checkpoint_interval,
-      "Minutes on the clock between two checkpoints, from which --restart "
-      "continues; 0 for none by the clock. SIGUSR1 asks for one more; SIGTERM "
-      "and the like, or a file named stop in the output folder, for one and "
-      "the end.",
+      "Wall time between two checkpoints [min], from which --restart "
+      "continues; 0 for none by wall time. SIGUSR1 requests a further "
+      "checkpoint; SIGTERM, other signals to stop and a file named stop in "
+      "the output folder request a checkpoint and the end of the run.",
       Patterns::Double(0.));
     prm.add_parameter(
       "Checkpoint time",
@@ -99,7 +100,7 @@ namespace Voussoir
         in_section(own, place, [&] {
           Registry<Observer>::entries()[name].create()->declare_parameters(own);
         });
-        // entries that are not given stay out of the file as it was run
+        // the parameters as run have no entries that the file does not give
         if (!gives_any(file, own))
           continue;
         in_section(prm, name, [&] {

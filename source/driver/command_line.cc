@@ -67,7 +67,7 @@ namespace Voussoir
     {
       std::ostringstream text;
       prm.print_parameters(text, style);
-      // deal.II's parameter_gui takes the numbers of its callbacks for entries
+      // deal.II's parameter_gui would read the numbers of callbacks as entries
       out << (style == ParameterHandler::XML ?
                 std::regex_replace(text.str(),
                                    std::regex("<actions>[^<]*</actions>"),
@@ -76,14 +76,13 @@ namespace Voussoir
     }
 
 
-    /** Every entry there is: a section for each class, of the same name. */
+    /** Declares all entries: for each class a section of the same name. */
     void
     print_all_entries(std::ostream                       &out,
                       const ParameterHandler::OutputStyle style)
     {
       Case all;
-      // the variables of the entries of all mesh sources, of which a case has
-      // one
+      // they have the variables of the entries; a case has only one mesh source
       std::vector<std::unique_ptr<MeshGenerator>> generators;
       all.prm.enter_subsection("Mesh");
       for (const auto &[name, entry] : Registry<MeshGenerator>::entries())
@@ -138,7 +137,7 @@ namespace Voussoir
     }
 
 
-    /** Checks a case without computing it. */
+    /** Checks of a case without running it, and the estimate of its time. */
     struct Estimate
     {
       types::global_dof_index  unknowns  = 0;
@@ -207,7 +206,7 @@ namespace Voussoir
                    const MPI_Comm       communicator)
     {
       const auto runs = Study(file, options, communicator).planned_runs();
-      // numbers that are moved by a little leave a run as long as it is
+      // numbers that are moved by a small share do not change the time of a run
       const std::size_t n_tried =
         Case(file).study.moves_numbers() ? 1 : runs.size();
       double seconds = 0.;
@@ -279,8 +278,8 @@ namespace Voussoir
   guarded(const std::function<void()> &action, const MPI_Comm communicator)
   {
     const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
-    // for meeting after an error: on the usual communicator ranks may wait for
-    // each other
+    // to meet after an error, as ranks may wait for each other on the usual
+    // communicator
     MPI_Comm meeting;
     MPI_Comm_dup(communicator, &meeting);
     std::string message;
@@ -316,8 +315,8 @@ namespace Voussoir
         message =
           std::string("Unexpected error, please report it: ") + error.what();
       }
-    // An error that all ranks see is reported by the first. An error of one
-    // rank cannot be agreed upon with the others, which wait in another call.
+    // The first rank reports an error that all ranks have. An error of one rank
+    // cannot be shared with the others, which wait in another call.
     const bool all = all_arrive(meeting);
     if (first || !all)
       std::cerr << "Error: " << message << std::endl;
@@ -363,17 +362,17 @@ namespace Voussoir
                        join(keys(lists()), ", "));
       app.add_option("--material-test",
                      arguments.test_file,
-                     "Take one point of a material along the path of section "
-                     "\"Material test\" and write strains and stresses to this "
-                     "CSV file");
+                     "Apply the path of section \"Material test\" to one "
+                     "point of a material and write strains and stresses to "
+                     "this CSV file");
       app.add_flag(
         "--restart",
         arguments.options.restart,
-        "Go on from the last checkpoint of the newest output folder");
+        "Continue from the last checkpoint of the newest output folder");
       app.add_flag("--overwrite",
                    arguments.options.overwrite,
                    "Replace the results in an earlier output folder instead "
-                   "of numbering");
+                   "of adding a number to its name");
     }
 
 

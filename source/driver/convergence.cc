@@ -10,7 +10,7 @@ namespace Voussoir
 {
   namespace
   {
-    constexpr double safety = 1.25, // of Roache, for three sizes
+    constexpr double safety = 1.25, // factor of Roache, for three sizes
       least_order = 0.5, largest_order = 20.,
                      order_margin = 0.5,  // above that of the method
       round_off                   = 1e-9; // and residuals of solvers
@@ -27,8 +27,8 @@ namespace Voussoir
     }
 
 
-    /** The order with this ratio of changes, within zero and the largest
-     *  one considered. */
+    /** The order with this ratio of changes, between zero and the largest order
+     *  considered. */
     double
     observed_order(const double log_changes,
                    const double coarse,
@@ -101,7 +101,7 @@ namespace Voussoir
       {
         converges = true;
         verdict   = "converges";
-        // an order that is better than theory has it is not relied on
+        // an order above the theoretical one is not relied on
         const double error =
           last / std::expm1(std::min(*order, method_order) * fine);
         limit = values[2] - error;

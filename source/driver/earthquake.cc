@@ -20,7 +20,7 @@ namespace Voussoir
     };
 
 
-    /** The highest peak at least @p away from a time [s]. */
+    /** The highest peak at a distance of at least @p away from a time [s]. */
     Peak
     find_peak(const Signal &motion,
               const double  end,
@@ -38,8 +38,8 @@ namespace Voussoir
     }
 
 
-    /** A wrong digit in a record becomes its peak, and scaling to a peak
-     *  acceleration makes all the rest small. */
+    /** Warns of a single extreme sample: a wrong digit in a record becomes its
+     *  peak, and scaling to a peak acceleration then makes the rest small. */
     void
     check_single_sample(const Signal      &motion,
                         const Peak        &peak,
@@ -102,7 +102,7 @@ namespace Voussoir
     }
 
 
-    // Warnings of a probable mistake in the earthquake.
+    // Warns of probable mistakes in the earthquake.
     void
     check_peaks(const GroundMotionSignals &motion,
                 const GroundMotion        &parameters,
@@ -179,7 +179,8 @@ namespace Voussoir
     }
 
 
-    // Waves too short for the cells of the rock never reach the dam.
+    // Warns of waves too short for the cells of the rock, which do not reach
+    // the dam.
     void
     check_frequencies(const Model                              &model,
                       const std::array<std::vector<double>, 3> &accelerations,
@@ -218,8 +219,8 @@ namespace Voussoir
     }
 
 
-    // The more rock there is below the dam, the weaker the motion of an outcrop
-    // at its bottom arrives.
+    // Reports damping on the way to the surface: the more rock lies below the
+    // dam, the more it weakens an outcrop motion given at its bottom.
     void
     report_loss(const Model                              &model,
                 const std::array<std::vector<double>, 3> &accelerations,
@@ -230,7 +231,7 @@ namespace Voussoir
       if (damping.model == DampingModel::none)
         return;
       const double frequency = middle_frequency(accelerations);
-      // of each level, which several faces have
+      // by level, which several faces share
       std::map<double, double> damped_times;
       for (const SideFace &face : model.boundary.side_faces())
         {
@@ -252,12 +253,13 @@ namespace Voussoir
                  " % of an S wave of ",
                  frequency,
                  " Hz on its way from the bottom of the model, where the "
-                 "outcrop is, to its surface; \"Given at = level rock\" makes "
-                 "up for it");
+                 "outcrop is, to its surface; \"Given at = level rock\" "
+                 "compensates for it");
     }
 
 
-    // A vertical wave is computed in one column of layers.
+    // Warns where the sides differ, as a vertical wave is computed in one
+    // column of layers.
     void
     check_layers(const Model &model, Log &log)
     {
@@ -298,8 +300,8 @@ namespace Voussoir
     }
 
 
-    /** Criteria for the time after the earthquake want its strong part to be
-     *  over at the end of the run. */
+    /** Criteria for the time after the earthquake require that its strong part
+     *  is over at the end of the run. */
     void
     check_strong_part(const GroundMotionSignals  &signals,
                       const AcceptanceParameters &acceptance,

@@ -43,7 +43,7 @@ namespace Voussoir
               logarithm += level.n_met * std::log(met);
             if (n_not > 0)
               logarithm += n_not * std::log(not_met);
-            if (met * not_met > 0.) // else the level is far in a tail
+            if (met * not_met > 0.) // otherwise the level is far in a tail
               {
                 const double weight = density / (met * not_met);
                 gradient +=
@@ -60,7 +60,7 @@ namespace Voussoir
     };
 
 
-    /** Where the likelihood is largest, by Fisher's scoring. */
+    /** The coefficients of the largest likelihood, by Fisher's scoring. */
     Tensor<1, 2>
     most_likely(const std::vector<IntensityLevel> &levels, const double shift)
     {
@@ -129,7 +129,7 @@ namespace Voussoir
 
     verdict                 = "found";
     const double log_median = shift - found[0] / found[1];
-    // how both logarithms change with the coefficients
+    // derivatives of both logarithms by the coefficients
     Tensor<1, 2> of_median, of_dispersion;
     of_median[0]     = -1. / found[1];
     of_median[1]     = found[0] / (found[1] * found[1]);

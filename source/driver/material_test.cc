@@ -72,19 +72,21 @@ namespace Voussoir
     prm.add_parameter(
       "Stresses",
       stresses,
-      "The same for given stresses [Pa]. Components that are not given have "
-      "no stress.");
+      "The same for given stresses [Pa]. Components that are not given are "
+      "free of stress.");
     prm.add_parameter("Steps",
                       steps,
-                      "Steps from corner to corner.",
+                      "Number of steps from corner to corner.",
                       Patterns::Integer(1));
     prm.add_parameter("Time between corners",
                       segment_time,
-                      "Duration of a step, for rate-dependent laws [s].",
+                      "Time from corner to corner, for rate-dependent laws "
+                      "[s].",
                       Patterns::Double(1e-9));
     prm.add_parameter("Element length",
                       element_length,
-                      "Size of the cell of the point, for the crack band [m].",
+                      "Size of the cell around the point, for the crack band "
+                      "[m].",
                       Patterns::Double(1e-6));
   }
 

@@ -78,7 +78,8 @@ namespace Voussoir
                     entry("Constraints/" + object.first, "Face sets"));
       }
 
-      /** Lengths of a mesh in millimetres are a thousand times too large. */
+      /** Warns of a mesh in millimetres, whose lengths are a thousand times too
+       *  large. */
       void
       check_size() const
       {
@@ -94,7 +95,7 @@ namespace Voussoir
                    "millimetres");
       }
 
-      /** The supports of the model should be below it. */
+      /** Warns of supports that are not below the model. */
       void
       check_upward_axis() const
       {
@@ -115,7 +116,7 @@ namespace Voussoir
                    "so that its z axis points upwards");
       }
 
-      /** Waves are reflected by a free side, which has no support. */
+      /** Warns of free sides, which reflect waves. */
       void
       check_outer_sides() const
       {
@@ -132,8 +133,9 @@ namespace Voussoir
           }
       }
 
-      /** Rock that continues beyond the model has settled long ago, and rock
-       *  without inertia must have no weight either. */
+      /** Warns of rock with weight: rock that continues beyond the model has
+       *  settled long ago, and rock without inertia must have no weight either.
+       */
       void
       check_weight() const
       {
@@ -155,15 +157,15 @@ namespace Voussoir
                 section,
                 "\" is empty, so that \"",
                 parameters.materials.objects[rock].first,
-                "\" weighs too, ",
+                "\", ",
                 absorbs[rock] ? "which continues beyond the model" :
                                 "which is given less inertia",
-                ", would settle under its weight; name the cell sets that "
-                "have weight");
+                ", is loaded, too, and would settle under its weight; name "
+                "the cell sets that have weight");
           }
       }
 
-      /** Added mass is that of the water which presses on the same faces. */
+      /** Warns of water that presses on other faces than its added mass. */
       void
       check_water() const
       {
@@ -203,9 +205,9 @@ namespace Voussoir
         unsigned int axis, end;
         double       area = 0., fixed = 0.; // [m2]
 
-        // with no boundary condition and no load: all, and those of rock
+        // areas without boundary condition and load: of all faces, and of rock
         double   free = 0., free_rock = 0.;
-        Point<3> place; // of one of them
+        Point<3> place; // of a free face
 
         bool
         is_fixed() const
@@ -275,7 +277,7 @@ namespace Voussoir
         return side;
       }
 
-      /** Whether it warns. */
+      /** Warns of a free side; returns whether the side is free. */
       bool
       check_side(const Side &side) const
       {
@@ -308,8 +310,8 @@ namespace Voussoir
 
       const BoundingBox<3> box;
 
-      // named by "Fixed", by any entry of "Boundaries", by interfaces, loads
-      // and constraints
+      // faces named by "Fixed"; by any entry of "Boundaries"; by interfaces,
+      // loads and constraints
       Faces             fixed, supported, used;
       std::vector<bool> absorbs; // materials that have absorbing faces
       bool              absorbs_sideways = false;

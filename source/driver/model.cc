@@ -25,8 +25,8 @@ namespace Voussoir
     }
 
 
-    // Water of a mesh becomes a mesh of its own, whether the case uses it or
-    // not.
+    // Takes the water out of a mesh into a mesh of its own, whether or not the
+    // case uses it.
     CoarseMesh
     take_water(const Case &parameters, CoarseMesh &mesh)
     {
@@ -73,7 +73,7 @@ namespace Voussoir
     }
 
 
-    /** The ranks on the machine of this one. */
+    /** The ranks on this rank's machine. */
     struct RanksOfMachine
     {
       explicit RanksOfMachine(const MPI_Comm all)
@@ -106,7 +106,7 @@ namespace Voussoir
     };
 
 
-    // The mesh is not needed any more.
+    // Makes a grid of the mesh and frees the mesh.
     Grid
     make_grid(const Case               &parameters,
               CoarseMesh              &&mesh,
@@ -173,7 +173,8 @@ namespace Voussoir
     }
 
 
-    // Water that is not in contact with the solid in the run.
+    // Water for the natural modes alone, without contact with the solid in the
+    // run.
     std::shared_ptr<const Reservoir>
     make_reservoir_of_modes(const Case                             &parameters,
                             const CoarseMesh                       &water_mesh,
@@ -238,7 +239,8 @@ namespace Voussoir
       const double at_5_hz = 1. / std::hypot(1., 10. * numbers::PI * delay);
       log.line("Friction follows the pressure with a delay of up to ",
                1e3 * delay,
-               " ms, as the cells at the interfaces are; a change of 5 Hz to ",
+               " ms, depending on the cells at the interfaces; a change at 5 "
+               "Hz acts with ",
                std::round(100. * at_5_hz),
                " %");
       return contact;
@@ -255,7 +257,7 @@ namespace Voussoir
       make(parameters, log);
     else
       {
-        // its first rank deals the cells
+        // its first rank distributes the cells
         on_first_rank(machine.communicator, [&] { make(parameters, log); });
         share_sets(machine.communicator);
       }

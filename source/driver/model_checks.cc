@@ -75,8 +75,8 @@ namespace Voussoir
                    entry,
                    "\" names the face set \"",
                    set,
-                   "\", which lies on an interface: it acts there on one "
-                   "side only.");
+                   "\", which lies on an interface: the entry acts there on "
+                   "one side only.");
   }
 
 

@@ -32,7 +32,7 @@ namespace Voussoir
       {"Materials/Names", "Modes/Fixed materials", "Modes/Massless materials"}};
 
 
-    /** Entries of a material that are above zero if it has a field. */
+    /** Entries above zero by which a material has a random field. */
     std::vector<std::string>
     variations_given(const ParameterFile &file, const std::string &section)
     {
@@ -52,7 +52,7 @@ namespace Voussoir
     }
 
 
-    /** What the class of a material has instead of its entries. */
+    /** Changes of entries for one class of a material. */
     std::vector<std::string>
     entries_of_class(const std::string                        &section,
                      const std::map<std::string, std::string> &values,
@@ -86,7 +86,7 @@ namespace Voussoir
                           type =
                             file.given(section + "/Class", "linear elastic");
         const auto &known = Registry<Material>::entries();
-        // another class is refused later
+        // an unknown class is refused later
         if (variations_given(file, section).empty() || known.count(type) == 0)
           continue;
         const auto       material = known.at(type).create();

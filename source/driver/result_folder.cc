@@ -68,8 +68,8 @@ namespace Voussoir
     }
 
 
-    /** Why nothing can be written to a folder, existing or to be made, as far
-     *  as known without trying; empty: writing is possible. */
+    /** Reason why nothing can be written to a folder, existing or to be made,
+     *  as far as known without an attempt; empty: writing is possible. */
     std::string
     obstacle(const fs::path &folder)
     {
@@ -94,7 +94,7 @@ namespace Voussoir
     }
 
 
-    /** Whether a run to this time has come to its end and left all files. */
+    /** Whether a run to this end time has finished and written all files. */
     bool
     is_finished(const std::string &folder, const double end_time)
     {
@@ -143,8 +143,7 @@ namespace Voussoir
     }
 
 
-    /** Makes a folder, and those that it is in; returns whether it was not
-     *  there before. */
+    /** Makes a folder and its parent folders; returns whether it is new. */
     bool
     make_folder(const std::string &folder)
     {
@@ -170,8 +169,8 @@ namespace Voussoir
     }
 
 
-    /** Removes what a run has written to its folder, and nothing else, such as
-     *  the folder of another run there. */
+    /** Removes the files that a run has written to its folder, and nothing
+     *  else, such as the folder of another run there. */
     void
     remove_results(const std::string &folder)
     {
@@ -250,7 +249,7 @@ namespace Voussoir
     for (unsigned int i = n; i > 0 && from.empty(); --i)
       {
         chosen = numbered(name, i);
-        // a study continues with one that it has not noted
+        // a study continues from one that it has not recorded
         if (!options.overwrite &&
             Utilities::MPI::broadcast(log.communicator(),
                                       is_finished(chosen,
@@ -315,7 +314,7 @@ namespace Voussoir
       bool made = make_folder(chosen);
       if (!made && !options.restart && !options.overwrite)
         for (unsigned int n = 2; !made;
-             ++n) // another run has claimed it before
+             ++n) // another run has claimed this folder first
           {
             chosen = numbered(name_in(parameters), n);
             made   = make_folder(chosen);

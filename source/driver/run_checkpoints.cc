@@ -142,8 +142,8 @@ namespace Voussoir
   RunCheckpoints::write(State &state, const EnergyBalance &energy) const
   {
     if (!std::isfinite(largest_amount(state.velocity)))
-      return false; // a run with such energies stops at the next line of the
-                    // energy balance
+      return false; // a run with infinite energies stops at the next line of
+                    // the energy balance
     StateContent content = content_of(state);
     for (const auto &[name, observer] : setup.plan.observers)
       content.documents["observers"][name] = observer->save();
@@ -161,7 +161,7 @@ namespace Voussoir
       Utilities::MPI::all_gather(log.communicator(), sums);
     try
       {
-        // a run that continues from here does not write their lines again
+        // a run that continues from here does not repeat their lines
         if (!log.write_growing_files())
           throw UserError("some of the results cannot be written.");
         files.write(state.step,
@@ -231,8 +231,8 @@ namespace Voussoir
     if (setup.water && setup.water->end)
       setup.water->end->load(content.documents["radiating end"]);
 
-    // on as many ranks each takes its own part, so that round-off is the same;
-    // else the first one takes all
+    // with the same number of ranks each takes its own part, so that round-off
+    // is the same; else the first rank takes all
     const std::vector<std::vector<double>> of_ranks =
       content.documents["sums of ranks"];
     const unsigned int rank =

@@ -7,7 +7,7 @@ namespace Voussoir
 
   namespace
   {
-    // A component of a node has one prescribed motion.
+    // Refuses two constraints that prescribe the same component of a node.
     void
     refuse_contradictions(const NamedObjects<Projection>::List &constraints,
                           const MPI_Comm                        communicator)
@@ -104,7 +104,7 @@ namespace Voussoir
     const auto &added    = model.parameters.added_observers;
     for (const auto &observer : observers)
       {
-        // observers of the verdict alone do not change the time step
+        // observers that are added for the verdict do not change the time step
         if (std::find(added.begin(), added.end(), observer.first) !=
             added.end())
           continue;

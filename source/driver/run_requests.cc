@@ -10,8 +10,8 @@ namespace Voussoir
   namespace
   {
     // Interval of polls [s]: a batch system may kill the process a second after
-    // its signal. The largest number of steps between two polls, as short runs
-    // of small models take less than that.
+    // its signal. Largest number of steps between two polls, since short runs
+    // of small models end within that interval.
     constexpr double poll_interval = 0.01, poll_steps = 100.;
   } // namespace
 

@@ -7,7 +7,8 @@ namespace Voussoir
 
   namespace
   {
-    /** Without the modes to which damping is fitted there is no damping yet. */
+    /** Damping of the case; none as long as the modes to which it is fitted are
+     *  missing. */
     DampingParameters
     damping_known(const Model &model, const Modes &modes)
     {
@@ -28,8 +29,8 @@ namespace Voussoir
     }
 
 
-    // Waves below the damped band are hardly damped, and the mesh carries no
-    // waves within it.
+    // Warns of a damped band above the frequencies that the mesh carries: waves
+    // below the band are hardly damped.
     void
     check_band(const Model &model, Log &log)
     {
@@ -70,8 +71,8 @@ namespace Voussoir
     }
 
 
-    // The bars across interfaces are springs that the stable step does not
-    // include.
+    // Refuses bars across interfaces that are too stiff, as the stable step
+    // does not include these springs.
     void
     refuse_stiff_bars(const Model &model, const double time_step)
     {

@@ -118,7 +118,7 @@ namespace Voussoir
   }
 
 
-  // Conversion to JSON and back of any struct with such entries.
+  // Conversion of any struct with for_each_entry() to JSON and back.
 
   template <typename Part>
   auto
@@ -155,8 +155,8 @@ namespace Voussoir
     }
 
 
-    /** Reads the part of this name if the summary has it, and removes its names
-     *  from the remaining ones. */
+    /** Reads a part of the summary if the summary has its entry @p name, and
+     *  removes the entries of the part from the rest. */
     template <typename Part>
     void
     take(const nlohmann::json &json,
@@ -425,7 +425,8 @@ namespace Voussoir
     march.end_time      = run.state.time;
     march.loop_time     = run.times.seconds();
     march.throughput    = run.times.throughput(run.state.step);
-    // the rank that reaches the exchange of contact last does not wait there
+    // least over the ranks: the last one to reach the exchange of contact does
+    // not wait there
     if (run.contact && march.loop_time > 0.)
       march.contact_share =
         Utilities::MPI::min(run.contact->seconds(), communicator) /

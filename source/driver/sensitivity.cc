@@ -8,7 +8,7 @@ namespace Voussoir
 {
   namespace
   {
-    /** Whether an entry is part of the case, not of what is shown of it. */
+    /** Whether an entry is part of the model, not of its evaluation. */
     bool
     is_of_the_case(const std::string &entry)
     {

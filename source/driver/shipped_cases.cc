@@ -10,7 +10,8 @@ namespace Voussoir
   {
     namespace fs = std::filesystem;
 
-    /** Empty if there is none beside the program. */
+    /** Folder of the shipped cases beside the program; empty if there is none.
+     */
     fs::path
     shipped_folder()
     {

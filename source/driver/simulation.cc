@@ -37,8 +37,8 @@ namespace Voussoir
 
 
     /** The setup, unless damping is fitted to modes that are not known yet;
-     * then it is checked as far as possible all the same, before time is spent
-     * or files are written. After that the folder is claimed for this run. */
+     *  then the time step is checked as far as possible, before time is spent
+     *  or files are written. After that the folder is claimed for this run. */
     std::unique_ptr<RunSetup>
     early_setup(RunPlan          &plan,
                 ResultFolder     &folder,
@@ -116,7 +116,7 @@ namespace Voussoir
         return std::move(*static_state);
       StaticState static_state = find_static_state(model, log);
       kept.keep(static_state);
-      // as in all later runs on any number of ranks
+      // as later runs read it, on any number of ranks
       if (model.solid.discretization.reproducible)
         {
           if (std::optional<StaticState> again = kept.find())
@@ -128,8 +128,8 @@ namespace Voussoir
     }
 
 
-    /** Draws the last state that had an equilibrium and the motion from there,
-     *  and passes the error on. */
+    /** Writes a picture of the last state in equilibrium and of the motion from
+     *  it, and throws the error again. */
     [[noreturn]] void
     report_lost(const LostEquilibrium &lost,
                 const RunPlan         &plan,

@@ -27,7 +27,7 @@ namespace Voussoir
                           model.load_list(),
                           log,
                           static_state.summary);
-    // these warnings hold for all runs that begin with this static state
+    // these warnings apply to all runs from this static state
     if (const auto &all = log.warnings(); all.size() > n_before)
       static_state.summary["warnings"] =
         std::vector<std::string>(all.begin() + n_before, all.end());
@@ -54,7 +54,8 @@ namespace Voussoir
                dissipated,
                " J at once, beside ",
                of_stages,
-               " J in the static state: this stress exceeds their strength");
+               " J in the static state: the static stress exceeds their "
+               "strength");
     return static_state;
   }
 

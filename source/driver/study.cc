@@ -15,8 +15,8 @@ namespace Voussoir
 
   namespace
   {
-    /** A text without characters that the name of a folder cannot have, and not
-     *  longer than that. */
+    /** A text without characters that folder names cannot have, and cut to
+     *  their largest length. */
     std::string
     folder_name(const std::string &text)
     {
@@ -129,7 +129,7 @@ namespace Voussoir
   std::string
   Study::folder_of(const StudyValues &values) const
   {
-    // numbers of the same name and value are moved in many sections
+    // several sections may have entries of the same name and value
     const bool whole_path = parameters.moves_numbers() && !values.empty();
     return folder + "/" +
            folder_name(whole_path ? values[0].first + " = " + values[0].second :
@@ -168,7 +168,7 @@ namespace Voussoir
     if (moves.empty())
       throw UserError("\"Entries\" in section \"Study/Sensitivity\" is \"" +
                       parameters.moved +
-                      "\", of which the file gives no number that can be "
+                      "\", but the file gives no such number that can be "
                       "moved; name others, as \"Materials/*\".");
   }
 
@@ -189,14 +189,14 @@ namespace Voussoir
            (n_groups > 1 ? ", " + std::to_string(n_groups) + " side by side" :
                            std::string()));
     if (!refused_moves.empty())
-      report("Left out, as they are refused:\n  " +
+      report("Left out, as the program refuses them:\n  " +
              join(refused_moves, "\n  "));
     if (parameters.reduces_strengths())
       report("The " + strength_reduction + " divides " +
              join(split_list(parameters.reduced, ';'), "; ") +
              (strengths_kept.empty() ?
                 std::string(", all strengths that there are") :
-                "\nIt leaves as they are " + join(strengths_kept, "; ")));
+                "\nIt leaves unchanged " + join(strengths_kept, "; ")));
   }
 
 
@@ -252,7 +252,8 @@ namespace Voussoir
     const std::string count =
       "Of " + counted(outcomes.size(), "run", "runs") + " in \"" + folder +
       "\" " + std::to_string(n_stand) +
-      (n_stand == 1 ? " stands, " : " stand, ") + std::to_string(n_stopped) +
+      (n_stand == 1 ? " is complete, " : " are complete, ") +
+      std::to_string(n_stopped) +
       (n_stopped == 1 ? " was stopped, " : " were stopped, ") +
       std::to_string(n_failed) + " failed";
     if (n_stand == 0)
@@ -262,11 +263,11 @@ namespace Voussoir
                       ".");
     if (n_failed > 0)
       throw IncompleteStudy(count +
-                            "; mend what the verdicts in study.csv name and "
-                            "start the study again, which does only the runs "
-                            "that failed.");
-    // a search for a limit goes on from a run that was stopped only if that one
-    // has met the criterion
+                            "; correct the mistakes that the verdicts in "
+                            "study.csv name and start the study again, which "
+                            "does only the runs that failed.");
+    // a search for a limit continues after a stopped run only if that run has
+    // met the criterion
     if (n_stopped > 0 && !parameters.seeks_limit())
       throw IncompleteStudy(count +
                             "; the verdicts in study.csv give the reasons.");

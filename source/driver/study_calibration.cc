@@ -11,7 +11,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Of a fitted entry, as the file has it. */
+    /** Value of a fitted entry in the file. */
     double
     given_value(const ParameterFile &file, const std::string &entry)
     {
@@ -48,8 +48,8 @@ namespace Voussoir
     if (run.summary.end != RunEnd::complete)
       throw UserError("The run in \"" + run.folder + "\" " +
                       run.summary.short_verdict() +
-                      ", so that the calibration cannot go on; mend that and "
-                      "start the study again.");
+                      ", so that the calibration cannot continue; correct "
+                      "that and start the study again.");
     const auto             measured = parameters.measured_numbers();
     dealii::Vector<double> result(measured.size());
     for (unsigned int i = 0; i < measured.size(); ++i)
@@ -99,7 +99,7 @@ namespace Voussoir
                                    parameters.measurement_error);
         if (!step.determined)
           {
-            verdict = "the measured numbers do not tell these entries apart";
+            verdict = "the measured numbers do not determine these entries";
             break;
           }
         deviation = step.deviation;
@@ -108,7 +108,7 @@ namespace Voussoir
             verdict = "found";
             break;
           }
-        // shortened until it is nearer
+        // shortened until the misfit decreases
         double share = std::min(1., largest_change / step.change.linfty_norm());
         dealii::Vector<double> next, there;
         do

@@ -20,7 +20,7 @@ namespace Voussoir
     }
 
 
-    /** Null for none. */
+    /** The value, or null for none. */
     nlohmann::ordered_json
     or_null(const std::optional<double> &number)
     {

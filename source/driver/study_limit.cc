@@ -14,8 +14,9 @@ namespace Voussoir
     if (summary.end == RunEnd::failed)
       throw UserError(where + "the run in \"" + outcome.folder + "\" " +
                       summary.short_verdict() +
-                      ", which says nothing about the criterion of section "
-                      "\"Study/Limit\"; mend that and start the study again.");
+                      ", so that the criterion of section \"Study/Limit\" "
+                      "cannot be evaluated; correct that and start the study "
+                      "again.");
     for (const Criterion &criterion : parameters.criteria())
       {
         const auto [number, met] = criterion.evaluate(summary);
@@ -31,9 +32,9 @@ namespace Voussoir
       throw UserError(
         where + "the run in \"" + outcome.folder + "\" was " +
         summary.short_verdict() +
-        ", before the criterion of section \"Study/Limit\" was met; whether it "
-        "would have been is unknown: add \"; stopped\" to it if that "
-        "counts as failure.");
+        ", before the criterion of section \"Study/Limit\" was met; whether "
+        "it would have been met is unknown: add \"; stopped\" to the "
+        "criterion if that counts as failure.");
     return false;
   }
 
@@ -57,7 +58,7 @@ namespace Voussoir
         if (!parameters.extend || i == max_extensions)
           refuse(limit.fails, "met already");
         limit.meets = limit.fails;
-        // a factor does not become negative
+        // values that begin above zero stay positive
         limit.fails =
           limit.fails > span ? limit.fails - span : 0.5 * limit.fails;
       }

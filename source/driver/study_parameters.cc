@@ -12,7 +12,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Entries that take their values together: runs by entries. */
+    /** Entries that are varied together: their values in each run. */
     using PairedEntries = std::vector<StudyValues>;
 
     PairedEntries
@@ -90,17 +90,18 @@ namespace Voussoir
     prm.add_parameter(
       "Quantities",
       quantities,
-      "Numbers of summary.json in the columns of study.csv, by their "
-      "paths, separated by semicolons; a star stands for any letters, and of "
-      "several numbers the largest is taken, or the smallest if the name "
-      "begins with that. Empty: displacements of the histories, opening, slip "
-      "and safety of interfaces and blocks, share of the faces and time of "
-      "over-stress, cracks that go through, energy lost in cracks.");
+      "Numbers of summary.json in the columns of study.csv, by their paths, "
+      "separated by semicolons; a star stands for any letters, and of "
+      "several matching numbers the largest is taken, or the smallest if the "
+      "last name begins with \"smallest\". Empty: displacements of the "
+      "histories, opening, slip and safety of interfaces and blocks, share "
+      "of the faces and time of over-stress, cracks that go through, energy "
+      "lost in cracks.");
     prm.add_parameter(
       "Ranks of a run",
       ranks_of_run,
-      "Ranks of each run, so that several run at the same time; 0: all, one "
-      "run after the other.",
+      "Ranks of each run, so that several runs are computed at the same "
+      "time; 0: all ranks, for one run after the other.",
       Patterns::Integer(0));
 
     prm.enter_subsection("Limit");
@@ -120,39 +121,40 @@ namespace Voussoir
       "Criterion",
       criterion,
       "Criterion of the limit: \"PATH > VALUE\" or \"PATH < VALUE\" of a "
-      "number of summary.json, or \"stopped\", for a static stage that comes "
-      "to no equilibrium, or a run that is stopped for its energy; one of "
-      "several, separated by semicolons, is enough. A run that fails "
-      "otherwise meets no criterion and ends the search.");
+      "number of summary.json, or \"stopped\", for a static stage without "
+      "equilibrium or a run that is stopped because of its energy; of "
+      "several criteria, separated by semicolons, one is enough. A run that "
+      "fails otherwise meets no criterion and ends the search.");
     prm.add_parameter(
       "Extend",
       extend,
-      "Whether to search beyond From and To where the limit is not between "
-      "them, by up to four times their distance.");
+      "Whether to search beyond \"From\" and \"To\", by up to four times "
+      "their distance, where the limit is not between them.");
     prm.leave_subsection();
 
     prm.enter_subsection("Extrapolation");
     prm.add_parameter(
       "Over",
       refined,
-      "Varied entries, separated by semicolons, that make cells or time steps "
-      "smaller, in at least three runs: study_convergence.csv then gives, by "
-      "Richardson's extrapolation, the observed order of convergence of each "
-      "quantity, its value for cells and steps of no size and a band, or says "
-      "why there is none. Empty: no extrapolation.");
+      "Varied entries, separated by semicolons, that make cells or time "
+      "steps smaller, in at least three runs: study_convergence.csv then "
+      "gives, by Richardson's extrapolation, the observed order of "
+      "convergence of each quantity, its value for cells and steps of size "
+      "zero and a band, or the reason why there is none. Empty: no "
+      "extrapolation.");
     prm.add_parameter(
       "Order",
       method_order,
-      "Order of convergence that theory has where everything is smooth: 2 for "
-      "time steps and displacements of elements of degree 1. An observed order "
+      "Theoretical order of convergence for smooth solutions: 2 for time "
+      "steps and displacements of elements of degree 1. An observed order "
       "above it is not relied on [-].",
       Patterns::Double(0.5, 10.));
     prm.add_parameter(
       "Dimensions",
       dimensions,
       "Directions in which cells become smaller: their size is the number of "
-      "cells to the power of minus one over this. Where all runs have as many "
-      "cells, it is the time step.",
+      "cells to the power of minus one over this. Where all runs have the "
+      "same number of cells, the size is the time step.",
       Patterns::Integer(1, 3));
     prm.leave_subsection();
 
@@ -166,10 +168,11 @@ namespace Voussoir
       "runs over \"Spread over\" at each intensity. Empty: no fragility.");
     prm.add_parameter("Criterion",
                       fragility_criterion,
-                      "What is looked for, as in section \"Study/Limit\".");
+                      "Criterion of the curve, as in section \"Study/Limit\".");
     prm.add_parameter("Confidence",
                       confidence,
-                      "That median and dispersion lie within their bounds [-].",
+                      "Probability that median and dispersion lie within "
+                      "their bounds [-].",
                       Patterns::Double(0.5, 0.999));
     prm.leave_subsection();
 
@@ -177,14 +180,14 @@ namespace Voussoir
     prm.add_parameter(
       "Change",
       change,
-      "Share by which each number that the file gives is moved down and up, in "
-      "two runs of its own, as 0.01; study_sensitivity.csv lists what changes, "
-      "the most sensitive first. Whole numbers, zeros and numbers within texts "
-      "stay as they are. 0: no sensitivity [-].",
+      "Share by which each number that the file gives is moved down and up, "
+      "in two runs of its own, as 0.01; study_sensitivity.csv lists the "
+      "changes of the quantities, the largest first. Integers, zeros and "
+      "numbers within texts are not moved. 0: no sensitivity [-].",
       Patterns::Double(0., 0.5));
     prm.add_parameter("Entries",
                       moved,
-                      "Which entries are moved, by their paths, separated by "
+                      "Entries that are moved, by their paths, separated by "
                       "semicolons; a star stands for any letters, as in "
                       "\"Materials/*\".");
     prm.leave_subsection();
@@ -193,22 +196,23 @@ namespace Voussoir
     prm.add_parameter(
       "Fitted",
       fitted,
-      "Entries that are fitted to measured numbers, separated by semicolons, as "
-      "\"Materials/concrete/Young's modulus; Materials/rock/Young's modulus\", "
-      "in each combination. The search begins at their values in this file; "
-      "study_calibration.csv has what was found. Empty: no calibration.");
+      "Entries that are fitted to measured numbers, separated by semicolons, "
+      "as \"Materials/concrete/Young's modulus; Materials/rock/Young's "
+      "modulus\", in each combination. The search begins at their values in "
+      "this file; study_calibration.csv has the values found. Empty: no "
+      "calibration.");
     prm.add_parameter(
       "Measured",
       measured,
       "Measured numbers, separated by semicolons, \"PATH = VALUE\" by their "
       "paths in summary.json, as \"modes/modes/0/frequency [Hz] = 5.45\", at "
-      "least as many as fitted entries. The sum of the squares of relative "
-      "differences becomes smallest.");
+      "least as many as fitted entries. The search minimises the sum of the "
+      "squares of the relative differences.");
     prm.add_parameter(
       "Error",
       measurement_error,
-      "Relative standard error of a measured number, from which "
-      "those of the fitted entries follow [-].",
+      "Relative standard error of a measured number, from which the standard "
+      "errors of the fitted entries follow [-].",
       Patterns::Double(1e-6, 1.));
     prm.add_parameter(
       "Accuracy",
@@ -217,8 +221,8 @@ namespace Voussoir
       Patterns::Double(1e-6, 0.1));
     prm.add_parameter("Iterations",
                       max_iterations,
-                      "Most steps of the search, each of which takes one run "
-                      "and one for each fitted entry.",
+                      "Largest number of steps of the search; each takes one "
+                      "run and a further one for each fitted entry.",
                       Patterns::Integer(1, 100));
     prm.leave_subsection();
   }
@@ -332,7 +336,7 @@ namespace Voussoir
       return;
     if (fragility_criteria().empty())
       throw UserError("\"Criterion\" in section \"Study/Fragility\" is empty; "
-                      "say what happens at larger intensities.");
+                      "give the condition that is met at larger intensities.");
     for (const StudyValues &values : combinations())
       for (const auto &[entry, value] : values)
         if (entry == intensity && !(parse_number(value).value_or(0.) > 0.))

@@ -15,7 +15,7 @@ namespace Voussoir
 
   namespace
   {
-    /** What a file holds on the first rank; empty: nothing, or no file. */
+    /** Contents of a file on the first rank; empty if there is no file. */
     std::string
     read_text(const std::string &name, const MPI_Comm communicator)
     {
@@ -29,7 +29,7 @@ namespace Voussoir
     }
 
 
-    /** What a study has noted of a run: "identity" and, once the run has ended,
+    /** Record of a study on a run: "identity" and, once the run has ended,
      *  "summary". Null: the run has not been begun. */
     nlohmann::json
     read_record(const std::string &name, const MPI_Comm communicator)
@@ -42,7 +42,7 @@ namespace Voussoir
           (!json.contains("summary") || is_summary(json.at("summary"))))
         return json;
       throw UserError("\"" + name +
-                      "\" is not what a study notes of a run, or was changed; "
+                      "\" is no record of a run by a study, or was changed; "
                       "remove it, and the study does this run again.");
     }
 
@@ -59,7 +59,7 @@ namespace Voussoir
       if (!recorded.is_array())
         throw UserError("The run in \"" + run_folder +
                         "\" has been done by an earlier version of the "
-                        "program, which did not note its entries" +
+                        "program, which did not record its entries" +
                         remedy);
       if (const auto difference = first_difference(recorded, now))
         throw UserError("The run in \"" + run_folder +
@@ -123,7 +123,7 @@ namespace Voussoir
                       record     = run_folder + ".json";
     Case                 run(file_of(values));
     const nlohmann::json identity = result_identity_of(run);
-    // of no interest where all is done anew
+    // not read where all runs are done anew
     const nlohmann::json known =
       options.overwrite ? nlohmann::json() : read_record(record, group);
     const bool has_ended = known.is_object() && known.contains("summary");
@@ -131,7 +131,7 @@ namespace Voussoir
     if (has_ended)
       known.at("summary").get_to(summary);
     const bool has_been_done = has_ended && summary.end != RunEnd::failed;
-    // entries of a run that failed may have been mended
+    // entries of a failed run may have been corrected
     if (known.is_object() && (has_been_done || !has_ended))
       check_same(known.at("identity"), identity, run_folder);
     const Timer clock_of_run;
@@ -200,7 +200,7 @@ namespace Voussoir
         summary.end    = RunEnd::failed;
         summary.reason = error.what();
       }
-    // results of the first rank
+    // the results are on the first rank
     return nlohmann::json::parse(
       Utilities::MPI::broadcast(group, nlohmann::json(summary).dump()));
   }
@@ -219,7 +219,7 @@ namespace Voussoir
             {outcome.values, outcome.folder, outcome.summary});
         for (const Limit &limit : limits)
           mine["limits"].push_back({limit.values, limit.fails, limit.meets});
-        // as text, which keeps the order of the columns
+        // as text, to keep the order of the columns
         for (const nlohmann::ordered_json &line : calibrations)
           mine["calibrations"].push_back(line.dump());
       }

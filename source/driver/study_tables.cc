@@ -10,7 +10,7 @@ namespace Voussoir
 
   namespace
   {
-    /** "none" where no criterion is met, empty where it is unknown. */
+    /** The criteria met; "none" if none is, empty if that is unknown. */
     std::string
     text_of(const std::optional<std::vector<std::string>> &met)
     {
@@ -48,7 +48,7 @@ namespace Voussoir
     }
 
 
-    /** A table that is evaluated from the runs in sentences, for the log. */
+    /** A table evaluated from the runs, in sentences for the log. */
     std::vector<std::string>
     in_words(const std::vector<nlohmann::ordered_json> &lines)
     {
@@ -85,7 +85,7 @@ namespace Voussoir
                         value("band about the fine one") + ", extrapolated " +
                         value("extrapolated");
             }
-          StudyValues others; // entries, which have a section
+          StudyValues others; // paths with a section are entries
           for (const auto &item : line.items())
             if (item.key().find('/') != std::string::npos)
               others.emplace_back(item.key(), item.value());
@@ -136,7 +136,7 @@ namespace Voussoir
   }
 
 
-  // Of the limits, if they are sought, and of the runs otherwise.
+  // Table of the limits, if they are sought, and of the runs otherwise.
   std::string
   Study::statistics() const
   {
@@ -156,7 +156,7 @@ namespace Voussoir
           names.push_back(number.path);
         for (const Outcome &outcome : outcomes)
           {
-            // what failed is not beyond the others
+            // a failed run is not beyond the others
             if (outcome.summary.end == RunEnd::failed)
               continue;
             samples.push_back({outcome.values, {}});

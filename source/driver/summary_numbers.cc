@@ -60,7 +60,7 @@ namespace Voussoir
     }
 
 
-    /** Value beside a number under one of two names, or null. */
+    /** The value beside a number that has one of two names, or null. */
     nlohmann::json
     beside(const nlohmann::json &around,
            const std::string    &own_name,
@@ -209,8 +209,8 @@ namespace Voussoir
     const std::optional<double> value = number->in(summary);
     if (!value && !was_stopped)
       throw UserError("The summary of the run has no number \"" + number->path +
-                      "\"; take one that its summary.json has, "
-                      "or add the observer that gives it.");
+                      "\"; take a number that its summary.json has, or add "
+                      "the observer that writes it.");
     return {value, value && (above ? *value > limit : *value < limit)};
   }
 

@@ -14,7 +14,7 @@ namespace Voussoir
   namespace
   {
     // Interval of checks of cracks and slips [s], and limit of the opening of a
-    // crack over its cell: at a fiftieth, it detaches a block.
+    // crack over its cell, a fiftieth: a wider crack detaches a block.
     constexpr double check_interval = 0.1, widest_share = 0.02;
   } // namespace
 
@@ -65,7 +65,7 @@ namespace Voussoir
     keep(state.displacement, last_good.displacement);
     keep(state.velocity, last_good.velocity);
     last_good.time = state.time;
-    if (has_memory) // cracks would have grown since
+    if (has_memory) // the internal variables belong to a later state
       return;
     last_good.memory.resize(state.memory.size());
     for (unsigned int i = 0; i < state.memory.size(); ++i)

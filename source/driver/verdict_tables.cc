@@ -12,19 +12,21 @@ namespace Voussoir
 
   namespace
   {
-    // Limits that the program sets itself. Energy: from there on runs warn (see
-    // Supervision). Below a scaled Jacobian of a tenth a cell is close to flat.
+    // Limits that the program sets itself. Energy: runs warn above these limits
+    // (see Supervision). Below a scaled Jacobian of a tenth a cell is close to
+    // flat.
     constexpr double most_energy = 0.01, most_of_losses = 0.03,
                      least_jacobian = 0.1, most_lowered = 10., // [%]
       intensity_carried = 0.9, most_slip = 0.5, widest_crack_share = 0.02;
 
-    // An opening or slip below is that of an elastic mesh [mm]; a surface that
-    // slides faster at the end has not come to rest [mm/s].
+    // Smaller openings and slips arise from elastic deformation of the mesh
+    // [mm]; a surface that slides faster at the end has not come to rest
+    // [mm/s].
     constexpr double visible = 0.1, at_rest = 1.;
 
 
-    /** Largest stress of this sign in a uniaxial test up to some times the
-     *  elastic limit [Pa]; 0 without such a limit. */
+    /** Largest stress of this sign in a uniaxial test far beyond the elastic
+     *  limit [Pa]; 0 without such a limit. */
     double
     strength_of(const Material &material, const double band, const double sign)
     {
@@ -52,14 +54,14 @@ namespace Voussoir
         }
       catch (const UserError &)
         {
-          // no strength is left
+          // the strength is exhausted
         }
       return most;
     }
 
 
-    /** Reduction of a strength in cells with a wide crack band against short
-     *  ones [%]. */
+    /** Reduction of a strength in cells with this width of the crack band,
+     *  against short cells [%]. */
     double
     lowered_by(const Material &material, const double band, const double sign)
     {
@@ -74,9 +76,10 @@ namespace Voussoir
     {
       double          share    = 0.; // [%]
       unsigned int    material = 0;
-      const Material *law      = nullptr; // of the run or of the static state
-      double          sign     = 1.;      // tension
-      double          band     = 0.;      // widest [m]
+      const Material *law      = nullptr; // law of the run or of the static
+                                          // state
+      double sign = 1.;                   // tension
+      double band = 0.;                   // widest [m]
     };
 
 
@@ -98,9 +101,9 @@ namespace Voussoir
     }
 
 
-    /** The refinement of its cells that leaves a strength, and what it costs:
-     *  each halving makes eight cells of one, and no more than doubles the
-     *  number of steps. */
+    /** The refinement of cells that preserves a strength, and its cost: each
+     *  halving makes eight cells of one and at most doubles the number of
+     *  steps. */
     std::string
     remedy_for(const LoweredStrength &lowered, const Model &model)
     {
@@ -136,8 +139,7 @@ namespace Voussoir
     }
 
 
-    /** The least frequency that the cells of a material carry [Hz], and which
-     *  material that is. */
+    /** The smallest carried frequency of the materials [Hz]; its material. */
     std::pair<double, std::string>
     least_carried(const Model &model)
     {
@@ -163,7 +165,7 @@ namespace Voussoir
     }
 
 
-    /** A line with the name of its object. */
+    /** Adds the name of its object to a line. */
     nlohmann::json
     of(nlohmann::json line, const std::string &what)
     {
@@ -183,8 +185,8 @@ namespace Voussoir
     }
 
 
-    /** The object of several in which a number is largest; null if none has it.
-     */
+    /** The object with the largest value of a number; null if none has the
+     *  number. */
     std::pair<std::string, nlohmann::json>
     with_largest(const nlohmann::json &objects, const std::string &number)
     {
@@ -208,7 +210,8 @@ namespace Voussoir
     }
 
 
-    /** Met if it is below what can be distinguished, else to be judged. */
+    /** A line that is met if the slip is too small to be distinguished, else to
+     *  be judged. */
     nlohmann::json
     slip_line(const double slip)
     {
@@ -284,7 +287,7 @@ namespace Voussoir
           if (const nlohmann::json &safety = block.at("smallest safety");
               safety.is_number())
             {
-              // below one the block slid: its slip is to be judged
+              // below one the block has slid: its slip is to be judged
               nlohmann::json &line = results[name + ": safety against sliding"];
               line                 = at_least(safety, 1.);
               if (safety < 1.)

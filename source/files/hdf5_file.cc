@@ -148,7 +148,7 @@ namespace Voussoir
                     const RowRange    &rows,
                     const unsigned int width)
   {
-    // either all ranks continue or none, as the next call is collective
+    // all ranks continue or none does, as the next call is collective
     const Selection  selection(rows, width, not_written);
     const HDF5Handle data(H5Dcreate2(file,
                                      name.c_str(),

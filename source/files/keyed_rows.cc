@@ -28,7 +28,7 @@ namespace Voussoir
     }
 
 
-    /** Rows of zeros are not kept. */
+    /** Whether a row has only zeros; such rows are not stored. */
     bool
     is_kept(const double *row, const unsigned int width)
     {
@@ -74,8 +74,8 @@ namespace Voussoir
     }
 
 
-    /** Sends each key to the rank that keeps it: any, but the same for all who
-     *  have that key. */
+    /** Sends each key to a rank that follows from the key alone, so that it is
+     *  the same for all ranks that hold the key. */
     struct Addresses
     {
       Addresses(const Words &keys, const MPI_Comm communicator)
@@ -184,7 +184,7 @@ namespace Voussoir
     for (std::size_t i = 0; i < kept.keys.size(); ++i)
       place[kept.keys[i]] = i;
 
-    // in parts, as most rows may be zeros that only the ranks' memory holds
+    // in parts, as most numbers may be zeros, which have no rows
     const std::size_t last =
       Utilities::MPI::max(values.items.size(), communicator);
     for (std::size_t first = 0; first < last; first += items_at_once)

@@ -64,7 +64,7 @@ namespace Voussoir
     }
 
 
-    /** Whether the disk has space for the rows, as far as that can be known. */
+    /** Checks for disk space for the rows, where the system reports it. */
     void
     check_room(const std::string  &file,
                const StateContent &content,
@@ -98,7 +98,7 @@ namespace Voussoir
         close(open_file);
       if (!on_disk || std::rename(unfinished.c_str(), file.c_str()) != 0)
         throw FileProblem{std::strerror(errno)};
-      // the name itself, where the file system can synchronise folders
+      // the new name, too, where the file system can synchronise folders
       const std::string folder = std::filesystem::path(file).parent_path();
       const int open_folder    = open(folder.c_str(), O_RDONLY | O_DIRECTORY);
       if (open_folder >= 0)
@@ -118,7 +118,7 @@ namespace Voussoir
   {
     const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
     const std::string unfinished = file + ".unfinished";
-    std::error_code   ignored; // stands for an error when the file is written
+    std::error_code   ignored; // an error shows when the file is written
     if (first)
       std::filesystem::create_directory(
         std::filesystem::path(file).parent_path(), ignored);

@@ -9,8 +9,9 @@ namespace Voussoir
 {
   namespace
   {
-    /** A spreadsheet takes a text with such a first character for a formula,
-     *  unless there is an apostrophe before it; numbers are safe. */
+    /** Whether a spreadsheet would read a text as a formula because of its
+     *  first character; an apostrophe before it prevents that. Numbers are
+     *  safe. */
     bool
     is_like_formula(const std::string &text)
     {
@@ -28,7 +29,7 @@ namespace Voussoir
         line << (i > 0 ? "," : "");
         const std::string cell =
           (is_like_formula(titles[i]) ? "'" : "") + titles[i];
-        // quoted() doubles the quotation marks inside, as RFC 4180 has it
+        // quoted() doubles the quotation marks inside, after RFC 4180
         if (cell.find_first_of(",\"\r\n") != std::string::npos)
           line << std::quoted(cell, '"', '"');
         else
@@ -46,7 +47,7 @@ namespace Voussoir
     for (std::size_t i = 0; i < values.size(); ++i)
       {
         line << (i > 0 ? "," : "");
-        // a number that does not exist, as the safety of a surface without
+        // infinite stands for undefined, as the safety of a surface without
         // shear
         if (!std::isinf(values[i]))
           line << values[i];
@@ -110,8 +111,8 @@ namespace Voussoir
         flush();
       }
     // After a restart the table stays unchanged until its first line is
-    // written: the line at the start time, which is in the checkpoint's size,
-    // too, is written anew.
+    // written. The checkpoint's size includes the line at the start time, which
+    // is written anew.
   }
 
 

@@ -9,8 +9,8 @@ namespace Voussoir
 
   namespace
   {
-    /** The element of field data. Strings are the numbers of their bytes, each
-     *  with a zero at its end. */
+    /** The element of field data. A string is written as the numbers of its
+     *  bytes, with a zero at the end. */
     std::string
     field_data(const double time, const std::vector<VtuText> &texts)
     {
@@ -67,8 +67,8 @@ namespace Voussoir
     output.set_flags(flags);
 
     // deal.II's own writer of parallel files leaves the other ranks waiting
-    // when one cannot write, and has no strings. The time is among them: of
-    // several elements of field data VTK reads the last one only.
+    // when one cannot write, and has no strings. The time stands with the
+    // strings: of several elements of field data VTK reads only the last one.
     const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
     std::ostringstream own, part;
     output.write_vtu(own);

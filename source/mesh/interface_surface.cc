@@ -13,13 +13,13 @@ namespace Voussoir
 
   namespace
   {
-    // Number of each face on an interface, from either side.
+    // Number of each face of an interface, given from either side.
     using FaceNumbers = std::map<std::pair<unsigned int, unsigned int>, int>;
 
 
     /**
-     * Which sides of two faces, which share an edge, are connected through
-     * cells around that edge.
+     * Finds which sides of two faces with a common edge are connected through
+     * cells around this edge.
      */
     class Surface
     {
@@ -50,9 +50,8 @@ namespace Voussoir
           }
       }
 
-      /** By face, which of its sides (0 or 1) lies on the same side of the
-       *  surface as side 0 of the lowest face connected to it; and that face.
-       */
+      /** For each face: which side (0 or 1) corresponds to side 0 of the lowest
+       *  face connected to it; and that lowest face. */
       std::vector<std::pair<unsigned int, unsigned int>>
       orient() const
       {
@@ -83,7 +82,8 @@ namespace Voussoir
              std::vector<std::pair<unsigned int, unsigned int>> &result,
              std::vector<unsigned int>                          &front) const
       {
-        // at the end of the surface the way leads to the other side
+        // where the surface ends the way around the edge leads to the other
+        // side
         if (faces_at_edge.at(edge).size() == 1)
           return;
         if (faces_at_edge.at(edge).size() > 2)
@@ -100,7 +100,7 @@ namespace Voussoir
             const unsigned int g = numbers.at({end.cell, end.face});
             const unsigned int arrival =
               end.cell == interface.faces[g][0].cell ? 0 : 1;
-            // side of f in the direction of the piece, transferred to g
+            // the side of g that corresponds to side 0 of the lowest face
             const unsigned int same =
               side == result[f].first ? arrival : 1 - arrival;
             if (result[g].first == none)
@@ -117,8 +117,9 @@ namespace Voussoir
           }
       }
 
-      // From a face of the interface, seen from one of its cells, around an
-      // edge to the next one; cell `none` if the mesh ends before.
+      // Walks from a face of the interface, given by one of its cells, around
+      // an edge to the next face of the interface; cell `none` if the mesh ends
+      // before.
       Face
       walk(Face face, const Edge &edge) const
       {
@@ -196,7 +197,7 @@ namespace Voussoir
     InterfaceSurface surface;
     surface.name = name;
     FaceNumbers numbers;
-    // how often each side of a face was named
+    // number of times that each side of a face was named
     std::vector<std::array<int, 2>> named;
     for (const Face &face : set)
       {
@@ -223,8 +224,8 @@ namespace Voussoir
       throw UserError(place + ": the face set \"" + name +
                       "\" is empty; an interface needs faces.");
 
-    // The majority in each connected piece; where it is undecided the face
-    // with the lowest number was listed first.
+    // The majority in each connected piece; with equal numbers, the face of the
+    // lowest number, which was listed first, decides.
     const auto orientation = Surface(mesh, neighbours, surface, place).orient();
     std::vector<int> votes(surface.faces.size(), 0);
     for (unsigned int f = 0; f < votes.size(); ++f)

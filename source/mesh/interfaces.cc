@@ -43,8 +43,8 @@ namespace Voussoir
     }
 
 
-    // Give each group of cells around a vertex that is connected through faces
-    // outside the interfaces a vertex of its own. Returns the copies.
+    // Gives a vertex of its own to each group of cells around a vertex that are
+    // connected through faces outside the interfaces. Returns the copies.
     std::vector<unsigned int>
     split_vertex(CoarseMesh                      &mesh,
                  const FaceNeighbours            &neighbours,

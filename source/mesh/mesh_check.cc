@@ -22,7 +22,7 @@ namespace Voussoir
 
   namespace
   {
-    // Corners flatter than this are round-off of a flat corner.
+    // Corners flatter than this are flat but for round-off.
     constexpr double flat_corner = 1e-6;
 
     // Peak memory of a run per unknown of elastic cells [bytes]; measured with

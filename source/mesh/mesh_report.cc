@@ -38,7 +38,7 @@ namespace Voussoir
     }
 
 
-    // The shortest and the longest one [m].
+    // Lengths of the shortest and the longest edge [m].
     std::pair<double, double>
     edge_lengths(const CoarseMesh &mesh)
     {
@@ -60,8 +60,9 @@ namespace Voussoir
     }
 
 
-    // How many vertices lie where a vertex of lower number is already. The bins
-    // are much wider than the tolerance, so most vertices search one only.
+    // Number of vertices that coincide with a vertex of lower number. The bins
+    // are much wider than the tolerance, so that most vertices search only one
+    // bin.
     unsigned int
     n_coincident_vertices(const CoarseMesh &mesh, const double shortest_edge)
     {

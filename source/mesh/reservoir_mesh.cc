@@ -68,9 +68,9 @@ namespace Voussoir
           normal *= -1.;
       }
 
-      /** Distance in front of this piece of another one that faces it; none if
-       *  the other is not in front, or further away than the size of this one.
-       */
+      /** Distance to another piece that faces this one; none if the other is
+       *  not in front of this piece, or further away than the size of this
+       *  piece. */
       std::optional<double>
       distance_to(const Piece &other) const
       {
@@ -88,8 +88,8 @@ namespace Voussoir
     };
 
 
-    // Water that was meshed on its own may leave a gap, across which water
-    // would not press on the dam.
+    // Refuses a gap at water that was meshed on its own, as the water would not
+    // press on the dam across it.
     void
     check_gap(const CoarseMesh               &mesh,
               const std::vector<bool>        &is_water,

@@ -37,7 +37,7 @@ namespace Voussoir
     const std::vector<std::string> quadrilateral_types =
       {"S4", "R3D4", "M3D4", "SFM3D4", "CPS4", "CPE4"};
 
-    // Keywords that make nodes or elements by rules.
+    // Keywords that generate nodes or elements.
     const std::vector<std::string> refused_keywords = {"NGEN",
                                                        "NFILL",
                                                        "NCOPY",
@@ -119,8 +119,8 @@ namespace Voussoir
       }
 
 
-      // Numbers of nodes and elements start anew in each part. They are in the
-      // part or in its instance, whichever was meshed.
+      // Numbers of nodes and elements start anew in each part. The part or its
+      // instance has them, depending on which was meshed.
       void
       read_part(const AbaqusKeyword &keyword)
       {
@@ -266,7 +266,8 @@ namespace Voussoir
       }
 
 
-      // Plain numbers in the assembly are those of its reference points.
+      // Whether numbers without an instance are those of the mesh; in the
+      // assembly they are those of its reference points.
       bool
       is_ours(const AbaqusKeyword &keyword) const
       {
@@ -332,7 +333,7 @@ namespace Voussoir
       }
 
 
-      // Whether the element is known.
+      // Whether the element of this number has been read.
       bool
       add_side(const std::string &name,
                const std::int64_t number,
@@ -396,8 +397,7 @@ namespace Voussoir
       }
 
 
-      // An element of another type is left out, one that does not exist is an
-      // error.
+      // An element of another type is left out; a missing element is an error.
       void
       refuse_missing(const std::string &name, const std::int64_t number) const
       {
@@ -433,7 +433,7 @@ namespace Voussoir
       std::set<std::string> parts;
       bool is_in_assembly = false; // but not within an instance
 
-      // index by element number
+      // indices by element number
       std::unordered_map<std::int64_t, unsigned int> hexahedra, quadrilaterals;
       std::set<std::int64_t> others; // numbers of elements that are not read
     };

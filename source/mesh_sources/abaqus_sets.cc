@@ -110,8 +110,8 @@ namespace Voussoir
   }
 
 
-  // A member is a number or the name of a set given before, both maybe with
-  // the name of an instance and a point before it; names with blanks stand in
+  // A member is a number or the name of an earlier set, with or without the
+  // name of an instance and a point before it; names with blanks are in
   // quotation marks.
   AbaqusSets::Numbers
   AbaqusSets::members_of(std::string_view item, bool is_ours) const
@@ -145,8 +145,8 @@ namespace Voussoir
   }
 
 
-  // Abaqus keeps sets of the part and of the assembly apart even if they have
-  // one name; only for internal sets this is not ambiguous.
+  // Abaqus distinguishes sets of the part and of the assembly that have the
+  // same name; only for internal sets the name is not ambiguous here.
   const AbaqusSets::Set &
   AbaqusSets::add(const AbaqusKeyword &keyword,
                   const Numbers       &numbers,

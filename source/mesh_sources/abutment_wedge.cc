@@ -28,12 +28,13 @@ namespace Voussoir
       elevation,
       "Elevation at which the base plane of the wedge meets the bank on the "
       "dam's middle surface; columns of cells, and so the joints of that "
-      "bank, are moved to it [m above the base]. 0: no wedge.",
+      "bank, are moved to this place [m above the base]. 0: no wedge.",
       Patterns::Double(0.));
     prm.add_parameter(
       "Dip",
       dip,
-      "Dip of the base plane; cells beside a steep one become flat [degrees].",
+      "Dip of the base plane; cells beside a steep plane become flat "
+      "[degrees].",
       Patterns::Double(0., 45.));
     prm.add_parameter(
       "Dip direction",
@@ -53,8 +54,8 @@ namespace Voussoir
                       Patterns::Double(1e-3));
     prm.add_parameter("Cut",
                       cut,
-                      "Length of the gully at the wedge's downstream end, "
-                      "rounded to cells [m].",
+                      "Length of the cut, where rock is removed, downstream "
+                      "of the wedge, rounded to cells [m].",
                       Patterns::Double(1e-3));
   }
 

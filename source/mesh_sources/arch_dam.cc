@@ -20,7 +20,7 @@ namespace Voussoir
 
   namespace
   {
-    // Columns between the abutments that the shape of a dam needs.
+    // Least number of columns between the abutments for the shape of a dam.
     constexpr double least_columns = 8.;
 
 
@@ -33,9 +33,9 @@ namespace Voussoir
       {
         prm.add_parameter("Shape",
                           shape_name,
-                          "A built-in dam, or \"custom\" for the one that the "
-                          "section \"Custom shape\" describes, which is "
-                          "ignored otherwise.",
+                          "A built-in dam, or \"custom\" for the dam of "
+                          "section \"Custom shape\", which is ignored "
+                          "otherwise.",
                           Patterns::Selection(
                             join(ArchDamShape::preset_names(), "|") +
                             "|custom"));
@@ -54,10 +54,10 @@ namespace Voussoir
         prm.add_parameter(
           "Row height",
           row_height,
-          "Height of the dam's cells [m], rounded so that rows fill its "
-          "height; 0: as high as they are long along the crest, or as the "
-          "steeper bank rises over that, if that is more. Where a bank is "
-          "steeper, cells become shorter along the crest.",
+          "Height of the dam's cells [m], rounded so that rows fill the "
+          "height of the dam; 0: the larger of their length along the crest "
+          "and the rise of the steeper bank over that length. Where a bank "
+          "is steeper, cells become shorter along the crest.",
           Patterns::Double(0.));
         prm.add_parameter("Cells through thickness",
                           n_thickness,
@@ -66,8 +66,8 @@ namespace Voussoir
                           Patterns::Integer(1, 200));
         prm.add_parameter("Rock extent",
                           rock_extent,
-                          "Rock below and on all sides of the dam over its "
-                          "height [-].",
+                          "Extent of the rock below and on all sides of the "
+                          "dam, over the height of the dam [-].",
                           Patterns::Double(1., 20.));
         prm.add_parameter("Growth",
                           growth,
@@ -84,8 +84,8 @@ namespace Voussoir
         prm.add_parameter(
           "Reservoir level",
           water_level,
-          "Fill the canyon with water up to the row of cells nearest to this "
-          "level, cell set \"reservoir\" [m above the base]; 0: no water.",
+          "Level of the reservoir, moved to the nearest row of cells [m "
+          "above the base]; its cells are the set \"reservoir\". 0: no water.",
           Patterns::Double(0.));
         prm.add_parameter(
           "Reservoir length",
@@ -139,12 +139,12 @@ namespace Voussoir
       unsigned int
       columns_per_block(const ArchDamSections &sections) const;
 
-      /** Of the contour over one of so many columns [m]. */
+      /** Rise of the contour over one of so many columns [m]. */
       static double
       largest_rise(const ArchDamSections &sections,
                    const unsigned int     n_columns);
 
-      /** The true surfaces of the dam and its canyon. */
+      /** Sets the chart with the true surfaces of the dam and its canyon. */
       void
       add_surfaces(const std::shared_ptr<const ArchDamSections> &sections,
                    const std::shared_ptr<const ArchDamSweep>    &sweep,
@@ -154,14 +154,14 @@ namespace Voussoir
       void
       check_cells(const ArchDamSections &sections, const double height) const;
 
-      /** Dimensions of a wedge beside those given, and its volume. */
+      /** Dimensions of a wedge beside the given ones, and its volume. */
       std::string
       describe_wedge(const AbutmentWedge       &wedge,
                      const ArchDamSweep        &sweep,
                      const ArchDamCrossSection &section,
                      const CoarseMesh          &mesh) const;
 
-      /** The wedges of the case; lines of the section are made straight for
+      /** The wedges of the case; lines of the section are straightened for
        *  them. */
       std::vector<AbutmentWedge>
       make_wedges(const ArchDamSweep        &sweep,
@@ -241,7 +241,7 @@ namespace Voussoir
       const double crest    = sections.left_end - sections.right_end;
       double       columns  = std::max(least_columns, crest / (2. * cell_size));
       const auto   in_block = [&] {
-        // more are refused later
+        // larger numbers are refused later
         return std::clamp(std::round(columns / (n_joints + 1.)), 1., 1e9);
       };
       constexpr double many = 1e5;
@@ -274,8 +274,8 @@ namespace Voussoir
     }
 
 
-    // Rows of the section's grid are as high as its columns are wide, or as
-    // the steeper bank rises over one.
+    // By default rows of the section's grid are as high as the columns are
+    // wide, or as high as the steeper bank rises over one column.
     void
     ArchDam::check_cells(const ArchDamSections &sections,
                          const double           height) const
@@ -340,7 +340,7 @@ namespace Voussoir
       mesh.remarks.push_back(cells.str());
       for (const AbutmentWedge &wedge : wedges)
         mesh.remarks.push_back(describe_wedge(wedge, *sweep, section, mesh));
-      // the planes that wedges slide on are planes in space only
+      // the base planes of wedges are plane in space, not in the chart
       if (wedges.empty())
         add_surfaces(sections, sweep, mesh.chart);
       else

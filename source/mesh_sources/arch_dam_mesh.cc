@@ -90,7 +90,7 @@ namespace Voussoir
       }
 
 
-      // Its vertices are marked, and numbered in place_vertices().
+      // Marks the vertices of the cell, which place_vertices() numbers.
       void
       add_cell(const unsigned int q, const unsigned int layer)
       {
@@ -141,7 +141,7 @@ namespace Voussoir
       }
 
 
-      // Rock may be cut away before a wedge; there is no face then.
+      // Visits a face, unless its rock is cut away in front of a wedge.
       template <typename Visitor>
       void
       visit_face(const unsigned int quad,
@@ -167,7 +167,7 @@ namespace Voussoir
       }
 
 
-      // Faces towards downstream or upstream.
+      // Names the faces towards downstream and upstream.
       void
       name_faces_across_sweep()
       {
@@ -187,7 +187,7 @@ namespace Voussoir
       }
 
 
-      // Faces that the edges of the cross-section sweep out.
+      // Names the faces that the edges of the cross-section sweep out.
       void
       name_faces_along_sweep()
       {
@@ -289,7 +289,8 @@ namespace Voussoir
       }
 
 
-      // The interface of dam and rock, and the walls of the canyon beside it.
+      // Names the interface of dam and rock, and the walls of the canyon beside
+      // it.
       void
       name_contour(const Side &dam, const Side &rock)
       {
@@ -312,7 +313,7 @@ namespace Voussoir
 
       CoarseMesh mesh;
 
-      // By line of the sweep and its points, by quadrilateral and layer.
+      // By line of the sweep and point; by quadrilateral and layer.
       std::vector<unsigned int> vertex_number, cell_number;
     };
   } // namespace

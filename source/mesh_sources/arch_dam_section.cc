@@ -12,14 +12,14 @@ namespace Voussoir
 
   namespace
   {
-    // Over the height of a row: how near the surface of a reservoir may come to
-    // the next row, and how far it must and may lie above the point where its
-    // own row meets the contour.
+    // Over the height of a row: least distance of the surface of a reservoir
+    // from the next row, and least and largest distance above the point where
+    // its own row meets the contour.
     constexpr double surface_distance = 0.3;
 
     constexpr std::pair<double, double> surface_rise{0.2, 0.4};
 
-    // Sweeps of smoothing, until the vertices hardly move.
+    // Number of smoothing sweeps after which the vertices hardly move.
     constexpr unsigned int n_first_steps = 120;
   } // namespace
 
@@ -104,7 +104,7 @@ namespace Voussoir
   }
 
 
-  // Rows so high that the contour crosses at most one of them per column.
+  // Rows are so high that the contour crosses at most one of them per column.
   void
   ArchDamCrossSection::place_rows(const double wanted, const RockGrading &rock)
   {
@@ -147,7 +147,7 @@ namespace Voussoir
   }
 
 
-  // The row next to the contour in each column.
+  // Finds the row next to the contour in each column.
   void
   ArchDamCrossSection::step_rows()
   {
@@ -178,7 +178,7 @@ namespace Voussoir
   }
 
 
-  // The grid's vertices, those next to the contour moved onto it.
+  // Makes the grid's vertices and moves those next to the contour onto it.
   void
   ArchDamCrossSection::follow_contour()
   {
@@ -194,9 +194,9 @@ namespace Voussoir
   }
 
 
-  // The surface is the row of vertices, or of middles between two rows, that
-  // is nearest to the level. Its ends on the banks stay where the
-  // columns meet the contour.
+  // The surface is the row of vertices, or of midpoints between two rows,
+  // nearest to the level. The ends of the surface stay where the columns meet
+  // the contour.
   void
   ArchDamCrossSection::lay_surface(const double water_level)
   {
@@ -287,7 +287,7 @@ namespace Voussoir
   }
 
 
-  // Divide a triangle or quadrilateral into quadrilaterals around its centre.
+  // Divides a triangle or quadrilateral into quadrilaterals around its centre.
   void
   ArchDamCrossSection::subdivide(const std::vector<unsigned int> &corners,
                                  const unsigned int               column,
@@ -324,14 +324,14 @@ namespace Voussoir
            around[i],
            static_cast<unsigned int>(vertices.size() - 1),
            around[(i + n - 1) % n]}};
-        // Begin all at the lower right-bank corner, so that neighbours have the
+        // All begin at the lower right-bank corner, so that neighbours have the
         // same orientation.
         std::rotate(quad.begin(),
                     std::min_element(quad.begin(), quad.end(), is_further_down),
                     quad.end());
-        // the corners of a cell in the canyon are one or two at its foot
+        // a cell in the canyon has one or two lower corners
         const int half_row = 2 * row + (i < n - 2 ? 0 : 1);
-        // those beside the contour are as wide as high
+        // quadrilaterals beside the contour are as wide as high
         const double side = std::sqrt(cell_width * cell_height);
         quads.push_back({quad,
                          column,

@@ -8,17 +8,17 @@ namespace Voussoir
 
   namespace
   {
-    // Initial thickness of a layer, over the distance to the vertices beyond;
-    // smoothing changes it.
+    // Initial thickness of a layer, before smoothing, over the distance to the
+    // vertices beyond.
     constexpr double first_thickness = 0.4;
   } // namespace
 
 
   // Without these layers three, five or six quadrilaterals meet on the contour
-  // wherever it steps to another row, and the edge of dam and rock is where
-  // stresses are sharpest. So the quadrilaterals of either side are detached
-  // from the contour, get copies of its vertices, and a layer of new ones fills
-  // the gap (Mitchell and Tautges 1995, "pillowing").
+  // wherever it steps to another row, and stresses concentrate at the edge of
+  // dam and rock. So the quadrilaterals of either side are detached from the
+  // contour and get copies of its vertices, and a layer of new quadrilaterals
+  // fills the gap (Mitchell and Tautges 1995, "pillowing").
   void
   ArchDamCrossSection::line_contour()
   {
@@ -43,7 +43,7 @@ namespace Voussoir
   ArchDamCrossSection::add_layer(const std::vector<Side> &sides,
                                  const bool               inside)
   {
-    // The first vertices beyond those of the contour.
+    // The copies of the contour's vertices, beyond the layer.
     std::map<unsigned int, unsigned int> copies;
     for (const Side &side : sides)
       for (const unsigned int i : {0, 1})
@@ -79,8 +79,8 @@ namespace Voussoir
   }
 
 
-  // Along the crest and the ground from their common point, along a ledge from
-  // its foot, along a column from where it meets the contour.
+  // The layer grows along the crest and the ground from their common point,
+  // along a ledge from its foot, along a column from its point on the contour.
   bool
   ArchDamCrossSection::layer_leads(const unsigned int v,
                                    const unsigned int u,

@@ -14,7 +14,7 @@ namespace Voussoir
 
   namespace
   {
-    // How much a bank must rise over a ledge from its first column on, over the
+    // Least rise of a bank above a ledge from its first column on, over the
     // height of a row.
     constexpr double ledge_rise = 0.3;
 
@@ -26,7 +26,7 @@ namespace Voussoir
     // several columns.
     constexpr double columns_to_joint = 3.;
 
-    // Steps in which a ledge is moved.
+    // Number of smoothing steps after a ledge is moved.
     constexpr unsigned int n_later_steps = 20;
 
     // Beside a ledge: least sine of the angle between edges of a quadrilateral,
@@ -35,8 +35,9 @@ namespace Voussoir
   } // namespace
 
 
-  // A ledge that dips meets each section of the dam at another place, which
-  // joints must not follow: its foot is in a column well between them.
+  // A dipping ledge meets each section of the dam at another place, which
+  // joints must not follow: the foot of the ledge is in a column well between
+  // joints.
   void
   ArchDamCrossSection::place_foot(Ledge &ledge, const int bank)
   {
@@ -73,7 +74,7 @@ namespace Voussoir
         .first *
       end;
 
-    // change of width of the columns on both sides of one
+    // change of width of the columns on both sides of a column
     const auto stretch = [&](const int i) {
       const double towards = foot / columns[i],
                    beyond  = (end - foot) / (end - columns[i]);
@@ -109,8 +110,8 @@ namespace Voussoir
   }
 
 
-  // From its foot to the column nearest to the width. The rows above and below
-  // are moved.
+  // The ledge reaches from its foot to the column nearest to the width. The
+  // rows above and below are moved.
   void
   ArchDamCrossSection::lay_ledge(Ledge &ledge, const int bank)
   {

@@ -12,8 +12,8 @@ namespace Voussoir
 
   namespace
   {
-    // Lengths over the size of a cell, and part of Newton's step that lets
-    // neighbours move at the same time.
+    // Lengths over the size of a cell, and share of Newton's step with which
+    // neighbours can move at the same time.
     constexpr double relative_probe = 0.01, largest_step = 0.05;
     constexpr double relaxation = 0.6;
 
@@ -26,9 +26,9 @@ namespace Voussoir
 
 
     /**
-     * How badly shaped the quadrilaterals around a vertex are: the sum over
-     * their corners of |J^-1|^8, J holding the two edges over the cell's size
-     * in the grid. It grows steeply as a cell becomes small, flat, slanted or
+     * Distortion of the quadrilaterals around a vertex: the sum over their
+     * corners of |J^-1|^8, where J has the two edges over the cell's size in
+     * the grid. The sum grows steeply as a cell becomes small, flat, slanted or
      * inverted.
      */
     class Distortion
@@ -45,7 +45,7 @@ namespace Voussoir
             quads_at[v].push_back(q);
       }
 
-      /** With vertex @p v at @p place. */
+      /** The distortion with vertex @p v at @p place. */
       double
       operator()(const unsigned int v, const Vertex &place) const
       {
@@ -58,8 +58,8 @@ namespace Voussoir
                 const Tensor<1, 2> a = x[(i + 1) % 4] - x[i],
                                    b = x[(i + 3) % 4] - x[i];
                 const double det     = a[0] * b[1] - a[1] * b[0];
-                // stays positive where a corner is turned inside out, so that
-                // smoothing can turn it back
+                // the size stays positive where a corner is inverted, so that
+                // smoothing can restore the corner
                 const double size =
                   0.5 * (det + std::sqrt(det * det + flat * flat));
                 const double inverse =
@@ -107,7 +107,7 @@ namespace Voussoir
       }
 
     private:
-      // Over the size of the quadrilateral.
+      // The edges over the size of the quadrilateral.
       std::array<Tensor<1, 2>, 4>
       corners(const Quad        &quad,
               const unsigned int moved,

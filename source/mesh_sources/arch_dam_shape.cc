@@ -224,8 +224,8 @@ namespace Voussoir
   }
 
 
-  // A cubic with, at each arch, the slope of the parabola through it and its
-  // neighbours: quadratic functions are met.
+  // A cubic whose slope at each arch is that of the parabola through the arch
+  // and its neighbours: exact for quadratic functions.
   template <typename Quantity>
   double
   ArchDamShape::interpolated(const double z, const Quantity &quantity) const
@@ -448,7 +448,7 @@ namespace Voussoir
     if (s <= right_end || s >= left_end)
       return shape.height;
 
-    // How far the section ends beyond the canyon, into the rock.
+    // Distance by which the section ends beyond the canyon, in the rock.
     const Line section       = crest(s);
     const auto depth_in_rock = [&](const double z) {
       const double x = cut(section, z);

@@ -18,7 +18,7 @@ namespace Voussoir
     constexpr double relative_turning_length_of_sweep = 0.35;
 
 
-    // Part of a cell by which the foot of a ledge moves in one step.
+    // Share of a cell by which the foot of a ledge moves in one step.
     constexpr double relative_step = 0.1;
 
 
@@ -40,7 +40,8 @@ namespace Voussoir
     }
 
 
-    // On the downstream (-1) or the upstream (1) face, or between them.
+    // The point on the downstream (-1) or the upstream (1) face, or between
+    // them.
     Point<2>
     face(const ArchDamSections::Line &line, const double side)
     {

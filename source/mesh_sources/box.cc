@@ -36,8 +36,8 @@ namespace Voussoir
         prm.add_parameter(
           "Distortion",
           distortion,
-          "Displacement of the inner vertices over the cell size, to test "
-          "cells of general shape.",
+          "Displacement of the inner vertices over the cell size, for tests "
+          "of cells of general shape.",
           Patterns::Double(0., 0.4));
       }
 

@@ -15,7 +15,7 @@ namespace Voussoir
       std::string  name;
     };
 
-    // By Gmsh's numbers.
+    // Types of elements by Gmsh's numbers.
     const std::map<std::int64_t, ElementType> element_types = {
       {1, {1, 2, "lines"}},
       {2, {2, 3, "triangles"}},
@@ -96,7 +96,8 @@ namespace Voussoir
                 (one.front() != 1 && one.back() != 1))
               file.fail("the file should be binary, as it says one line above, "
                         "but is not; export it again.");
-            // of the other order of bytes than here
+            // whether the byte order of the file differs from that of this
+            // machine
             is_swapped = value_of<std::int32_t>(one) != 1;
           }
         file.expect("$EndMeshFormat");
@@ -322,7 +323,7 @@ namespace Voussoir
 
       using Groups = std::vector<Group>;
 
-      // From its nodes on.
+      // Reads an element from its nodes on.
       void
       read_element(const std::int64_t type,
                    const std::int64_t number,
@@ -357,7 +358,7 @@ namespace Voussoir
       }
 
 
-      // Format 2 gives an element once for each of its groups.
+      // Format 2 repeats an element for each of its groups.
       void
       add_hexahedron(const std::int64_t                  number,
                      const std::array<std::int64_t, 27> &nodes,

@@ -65,8 +65,8 @@ namespace Voussoir
                           Patterns::List(Patterns::Integer(1), 3, 3));
         prm.add_parameter("Rock extent",
                           rock_extent,
-                          "Rock below, upstream and downstream of the dam [m]; "
-                          "0: no rock.",
+                          "Extent of the rock below, upstream and downstream "
+                          "of the dam [m]; 0: no rock.",
                           Patterns::Double(0.));
         prm.add_parameter("Growth",
                           growth,
@@ -76,14 +76,15 @@ namespace Voussoir
         prm.add_parameter(
           "Reservoir level",
           water_level,
-          "Water upstream of the dam up to the row of cells nearest to this "
-          "level, cell set \"reservoir\" [m above the base]; 0: no water.",
+          "Level of the water upstream of the dam, moved to the nearest row "
+          "of cells [m above the base]; its cells are the set \"reservoir\". "
+          "0: no water.",
           Patterns::Double(0.));
         prm.add_parameter(
           "Reservoir length",
           water_length,
-          "Length of the water [m], with rock rounded to its cells; 0: to the "
-          "end of the rock.",
+          "Length of the water [m], rounded to the cells of the rock if "
+          "there is rock; 0: to the end of the rock.",
           Patterns::Double(0.));
       }
 
@@ -232,7 +233,8 @@ namespace Voussoir
         return result;
       }
 
-      /** Which of the values from the first on is nearest to one. */
+      /** Index of the value, from the first on, that is nearest to the wanted
+       *  one. */
       static unsigned int
       nearest(const std::vector<double> &values,
               const unsigned int         first,
@@ -310,8 +312,8 @@ namespace Voussoir
              5);
       }
 
-      /** y of the faces at an elevation [m]; they are plane between the bends.
-       */
+      /** y of the faces at an elevation [m]; the faces are plane between the
+       *  bends. */
       double
       upstream_face(const double z) const
       {
@@ -347,8 +349,8 @@ namespace Voussoir
         return levels;
       }
 
-      /** Distances from the dam, up to @p extent, of the rows of rock or water
-       *  that begin with a size. */
+      /** Distances from the dam, up to @p extent, of rows of rock or water
+       *  whose first has this size. */
       std::vector<double>
       distances(const double extent, const double size) const
       {
@@ -361,7 +363,7 @@ namespace Voussoir
         return result;
       }
 
-      /** Elevations of the rows from below; each bend is one of them. */
+      /** Elevations of the rows from below; each bend is at a row. */
       std::vector<double>
       rows() const
       {

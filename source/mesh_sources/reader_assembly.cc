@@ -125,9 +125,9 @@ namespace Voussoir
       }
 
 
-      // A program that numbers the top before the bottom writes good cells in
-      // mirror order; a cell that is really inverted would then overlap its
-      // neighbour, which check_mesh() finds.
+      // A program that numbers the top before the bottom writes valid cells in
+      // mirror order; an inverted cell that is turned overlaps its neighbour,
+      // which check_mesh() finds.
       void
       turn_mirrored_cells()
       {

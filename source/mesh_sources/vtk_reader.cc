@@ -126,7 +126,7 @@ namespace Voussoir
         else if (section == "CELL_DATA" || section == "POINT_DATA")
           {
             is_cell_data = (section == "CELL_DATA");
-            n_data       = file.count("a number of data");
+            n_data       = file.count("the number of tuples");
           }
         else if (section == "METADATA")
           do
@@ -137,8 +137,8 @@ namespace Voussoir
       }
 
 
-      // From version 5 on the cells are offsets into one list of points, before
-      // that each cell begins with its number of points.
+      // From version 5 on the cells are offsets into one list of points; in
+      // earlier versions each cell begins with its number of points.
       void
       read_cells()
       {
@@ -262,7 +262,7 @@ namespace Voussoir
       }
 
 
-      // Numbers of points and cells, and types.
+      // Converts numbers of points and cells, and types, to integers.
       std::vector<double>
       whole(std::vector<double> values) const
       {

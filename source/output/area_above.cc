@@ -8,8 +8,8 @@ namespace Voussoir
 
   namespace
   {
-    /** Share of a triangle in which a linear function, given at its corners, is
-     *  positive. */
+    /** Share of a triangle in which the linear function with these values at
+     *  its corners is positive. */
     double
     positive_share(std::array<double, 3> values)
     {

@@ -18,7 +18,7 @@ namespace Voussoir
     std::string
     file_name(const unsigned long long step)
     {
-      // names sort as numbers do
+      // the names sort in the order of the numbers
       std::ostringstream name;
       name << beginning << std::setw(12) << std::setfill('0') << step << ending;
       return name.str();
@@ -62,7 +62,8 @@ namespace Voussoir
                     const StateContent      &content) const
   {
     write_state(folder + "/" + file_name(step), header, content, communicator);
-    // the one before stays; newer ones are damaged, or this run would be older
+    // the checkpoint before stays; newer ones are damaged, as the run continues
+    // from the newest whole one
     const std::string written = folder + "/" + file_name(step);
     const auto        all     = files();
     const auto        place   = std::find(all.begin(), all.end(), written);
@@ -88,8 +89,8 @@ namespace Voussoir
   }
 
 
-  // The smallest (cell, place in the cell) among the cells around a node: all
-  // of them are owned or ghosts where the node is owned.
+  // The key of a node is the smallest (cell, place in the cell) among its
+  // cells; the cells around an owned node are owned or ghosts.
   NodalKeys::NodalKeys(const Discretization &discretization)
     : keys(discretization.n_owned_nodes(),
            std::numeric_limits<std::uint64_t>::max())

@@ -13,12 +13,13 @@ namespace Voussoir
   {
     constexpr unsigned int no_number = numbers::invalid_unsigned_int;
 
-    // the places of edges that no other rank has, and of the two faces
+    // marks for edges that no other rank has, and for the two faces
     constexpr std::array<int, 3> nowhere{{0, 0, 0}},
       faces[2]{{{1, 0, 0}}, {{2, 0, 0}}};
 
 
-    /** Of the edge of a cell that begins in a corner, along an axis. */
+    /** Direction of the edge of a cell that begins in a corner, along an axis.
+     */
     std::array<int, 3>
     direction_at(const Discretization::Cell &cell,
                  const unsigned int          corner,
@@ -102,7 +103,8 @@ namespace Voussoir
     if (!std::is_sorted(order.begin(), order.end(), is_wider))
       std::stable_sort(order.begin(), order.end(), is_wider);
 
-    // eighths, edges and the two faces; of each chain, one that others have
+    // eighths, edges and the two faces; of each connected group, one member
+    // that other ranks have
     const unsigned int first_edge = n_eighths(),
                        first_face = first_edge + shared_edges.size();
     std::vector<Edge> known_outside(first_edge,
@@ -147,7 +149,7 @@ namespace Voussoir
           if (cell.touching[face][corner])
             join(i, first_face + face);
         if (chains.find_set(first_face) == chains.find_set(first_face + 1))
-          break; // what follows is narrower
+          break; // the next eighths are narrower
       }
     return joints;
   }

@@ -12,15 +12,16 @@ namespace Voussoir
 
   namespace
   {
-    // Steps from one evaluation to the next, which takes as long as two or
-    // three: 100 at most, one in models that are small enough to afford it ...
+    // Steps from one evaluation of the balance, which takes as long as two or
+    // three steps, to the next: 100 at most, one in models small enough for
+    // that cost ...
     unsigned int
     most_steps_between(const types::global_dof_index n_unknowns)
     {
       return std::min<types::global_dof_index>(100, 1 + n_unknowns / 1000);
     }
 
-    // ... and no more than the trapezoidal rule needs: the loss of the cells
+    // ... and no more than the trapezoidal rule allows: the loss of the cells
     // may change by this share of itself, or this share of the energy that came
     // in.
     constexpr double largest_change = 0.06, share_that_counts = 0.01;
@@ -128,14 +129,14 @@ namespace Voussoir
                                const double             next,
                                const double             last)
   {
-    // of the steps in between, the ends with the weight that makes one step
-    // exact
+    // losses of the steps in between; the weights of the ends make a single
+    // step exact
     const unsigned int n = first ? 0 : step - loss_step;
     const double       loss =
       n == 0 ? known_loss :
                      known_loss + 0.5 * ((n + 1.) * next_loss + (n - 1.) * next) +
                  0.5 * ((n - 1.) * last_loss + (n + 1.) * last);
-    // evaluations beside the schedule do not change it
+    // evaluations outside the schedule do not change the schedule
     if (!first && (n == 0 || !is_due(step)))
       return loss;
 
@@ -224,7 +225,7 @@ namespace Voussoir
     terms.closing      = sums[8];
     terms.input        = sums[9];
     terms.constraints  = sums[10];
-    // less the part of its static forces in the work of contact
+    // subtracts the work of the static contact forces
     if (initial_state.contact_force.size() > 0)
       {
         moved.add(-0.5 * time_step, state.velocity); // in the half step
@@ -238,13 +239,14 @@ namespace Voussoir
   EnergyBalance::least_scale(const unsigned long long step) const
   {
     // the energy of waves that pass through the rock is a thousand times the
-    // one that stays; the balance cannot be more accurate than the round-off of
-    // that and of the static energy
+    // energy that stays; the balance cannot be more accurate than the round-off
+    // of the former and of the static energy
     const bool   is_exact = equation.discretization.reproducible;
     const double net      = terms_now.input - terms_now.boundary;
     const double round_off =
       equation.discretization.single_precision ? 5e-4 : 1e-12;
-    // which grows with each step, as the last digits of exact sums do
+    // this round-off grows with each step, as does that of the terms of exact
+    // sums
     const double of_step =
       std::numeric_limits<double>::epsilon() * static_work +
       (is_exact ? 0x1p-62 * equation.discretization.owned_dofs.size() : 0.);
@@ -295,7 +297,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Decrease of the losses of damping, which must not fall [J]. */
+    /** Decrease of the losses by damping, which must not decrease [J]. */
     double
     given_back(const EnergyTerms &terms, const double most_damping)
     {
@@ -346,16 +348,17 @@ namespace Voussoir
                "strained by more than a sixteenth, where \"Sums = "
                "reproducible\" does not hold" :
                "the motion is no longer finite (NaN or infinite)";
-    // with an unstable step the sum is constant: strain energy falls as the
-    // kinetic grows, as it does, within bounds, when parts fall
+    // with an unstable step the sum is constant: strain energy decreases as
+    // kinetic energy grows, which is also the case, within bounds, when parts
+    // fall
     if (std::max(terms_now.kinetic, terms_now.stored()) >
         100. * (came_in + static_work + 1e-9))
       return "the motion has grown to a hundred times all energy that came in";
     if (relative_error() > limit)
       {
         std::ostringstream text;
-        text << std::setprecision(3) << 100. * relative_error()
-             << " % of the energy that came in are the energy-balance error ("
+        text << std::setprecision(3) << "the energy-balance error is "
+             << 100. * relative_error() << " % of the energy that came in ("
              << terms_now.error(initial) << " J residual, "
              << given_back(terms_now, most_damping)
              << " J of negative loss by damping, " << made_by_closing(terms_now)

@@ -42,11 +42,12 @@ namespace Voussoir
         prm.add_parameter(
           "Interval",
           interval,
-          "Averaging interval of the mean acceleration, whose -3 dB frequency "
-          "is 0.44 divided by it, and sampling interval of the "
-          "acceleration of a single step [s]. Displacement and velocity are "
-          "sampled each twentieth of the shortest period that the mesh "
-          "carries with eight nodes per wavelength, if that is shorter.",
+          "Averaging interval of the mean acceleration, whose -3 dB "
+          "frequency is 0.44 divided by this interval, and sampling interval "
+          "of the acceleration of a single step [s]. Displacement and "
+          "velocity are sampled each twentieth of the shortest period that "
+          "the mesh carries with eight nodes per wavelength, if that is "
+          "shorter.",
           Patterns::Double(1e-6));
         prm.add_parameter("Stress",
                           wants_stress,
@@ -55,11 +56,11 @@ namespace Voussoir
         prm.add_parameter(
           "Stress interval",
           stress_interval,
-          "Time between two samples of these [s]; 0 for a "
-          "twentieth of the shortest period that the mesh "
-          "carries with eight nodes per wavelength, or longer if samples "
-          "would cost more than 2 % of the time steps: the fewer cells, the "
-          "shorter. summary.json has it.",
+          "Time between two samples of the stresses [s]; 0 for a twentieth "
+          "of the shortest period that the mesh carries with eight nodes per "
+          "wavelength, or longer if samples would take more than 2 % of the "
+          "time of the steps, which depends on the number of cells. "
+          "summary.json has the interval.",
           Patterns::Double(0.));
         prm.add_parameter(
           "Stress in",
@@ -201,8 +202,8 @@ namespace Voussoir
           }
       }
 
-      /** A law without strength has no limit of tension, concrete and rock
-       *  have. */
+      /** Warns of tension that exceeds any concrete and rock in a material
+       *  whose law has no strength. */
       void
       check_tension(const unsigned int material, const nlohmann::json &found)
       {
@@ -275,8 +276,8 @@ namespace Voussoir
       Schedule schedule, samples, stress_schedule;
       Vector   largest, accelerations;
       Vector   previous,
-        last_sample; // velocities of a step and of a sample before
-      unsigned long long last_step         = 0;  // of that sample
+        last_sample; // velocities of the step and of the sample before
+      unsigned long long last_step         = 0;  // of the last sample
       double             sampling_interval = 0.; // of the stress [s]
       std::unique_ptr<StressEnvelope> stress;    // null: not wanted
     };

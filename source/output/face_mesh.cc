@@ -11,7 +11,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Patches of a surface, as deal.II's writers want them. */
+    /** Patches of a surface for deal.II's writers. */
     class SurfaceOutput : public DataOutInterface<2, 3>
     {
     public:
@@ -139,7 +139,7 @@ namespace Voussoir
   void
   FaceMesh::number_nodes(const NodeNumbers &nodes, const unsigned int n_sets)
   {
-    // the owner of a node numbers it, in each set it lies in
+    // the owner of a node numbers it in each of its sets
     std::vector<std::pair<types::global_dof_index, unsigned int>> records;
     for (const auto &item : nodes)
       records.emplace_back(item.first.second, item.first.first);

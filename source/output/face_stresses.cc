@@ -163,8 +163,8 @@ namespace Voussoir
       static constexpr unsigned int n_extremes = 6,
                                     n_values   = 2 * n_extremes + 4;
 
-      /** Of the extremes every other one, from the first, is a largest
-       *  value. */
+      /** Whether an extreme is a largest value, as every other one is from the
+       *  first on. */
       static bool
       is_largest(const unsigned int c)
       {
@@ -206,9 +206,9 @@ namespace Voussoir
       // of each node: arch, cantilever
       std::vector<std::array<Tensor<1, 3>, 2>> directions;
 
-      // of each node: largest and smallest arch stress, cantilever stress,
-      // largest principal stress at its largest, smallest at its smallest
-      // [MPa]; when they were [s]; and the four stresses at t = 0 [MPa]
+      // of each node: largest and smallest arch and cantilever stress, largest
+      // of the largest and smallest of the smallest principal stress [MPa];
+      // their times [s]; and the four stresses at t = 0 [MPa]
       std::vector<double> envelopes;
     };
 

@@ -17,7 +17,7 @@ namespace Voussoir
 
   namespace
   {
-    /** Strain of a displacement at the points of a cell that are drawn. */
+    /** Strain of a displacement at the points of a cell that pictures show. */
     class DrawnStrains
     {
     public:
@@ -46,7 +46,7 @@ namespace Voussoir
     };
 
 
-    /** Strain and temperature of the static stage there. */
+    /** Strain and temperature of the static state at these points. */
     struct InitialPoints
     {
       explicit InitialPoints(const ObservedRun &run)
@@ -149,7 +149,7 @@ namespace Voussoir
 
     private:
       const ObservedRun                   &run;
-      const QIterated<3>                   points;  // that are drawn
+      const QIterated<3>                   points;  // that pictures show
       const std::unique_ptr<InitialPoints> initial; // null: no static stage
       const std::unique_ptr<DrawnStrains>  memory;  // null: none
     };
@@ -203,7 +203,7 @@ namespace Voussoir
       const std::vector<NodalField> &fields;
       const std::vector<CellField>   cell_fields = {};
 
-      // principal stresses and the displacement they are of; null: not written
+      // principal stresses and their displacement; null: not written
       std::unique_ptr<const PrincipalStresses> stress   = nullptr;
       Vector                                   filtered = {};
     };

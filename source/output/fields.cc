@@ -135,6 +135,7 @@ namespace Voussoir
 
     const Registry<Observer>::Add<Fields> registered_fields(
       "fields",
-      "The whole model at chosen times, in fields.pvd for ParaView.");
+      "Pictures of the whole model at chosen times, in fields.pvd for "
+      "ParaView.");
   } // namespace
 } // namespace Voussoir

@@ -62,7 +62,7 @@ namespace Voussoir
     , w(uniform ? Vector() : u)
   {
     const auto &partitioner = *u.get_partitioner();
-    // for this rank and for those whose ghosts they are
+    // entries that this rank needs, and ghosts of other ranks
     std::vector<bool> wanted(u.locally_owned_size(), false);
     for (const auto index : needed)
       if (partitioner.in_local_range(index))

@@ -13,7 +13,7 @@ namespace Voussoir
     {
       std::string name, unit;
     };
-    // those of PointMotion, then displacements from later states
+    // quantities of PointMotion, then displacements since later states
     constexpr unsigned int n_point_quantities = 6, n_recorded = 4;
     const std::array<PointQuantity, n_point_quantities> all_quantities{
       {{"displacement", "m"},
@@ -40,8 +40,8 @@ namespace Voussoir
         recorder.declare_parameters(
           prm,
           "Name of the point whose motion is subtracted from that of the "
-          "others, as the headings then say; the motion of the named point "
-          "stays absolute. Empty for absolute motion.");
+          "others, as the headings show; the motion of the named point stays "
+          "absolute. Empty for absolute motion.");
         prm.add_parameter("Quantities",
                           quantities,
                           "Columns to write: displacement [m], velocity [m/s], "
@@ -57,13 +57,13 @@ namespace Voussoir
           "Filter frequency",
           filter_frequency,
           "Filter frequency of the filtered acceleration, which is the mean "
-          "over 0.443 of its period: amplitudes at this frequency are "
-          "multiplied by 0.71 [Hz]; 0 for the highest that the mesh carries "
-          "with eight nodes per wavelength.",
+          "over 0.443 of the period of this frequency: amplitudes at this "
+          "frequency are multiplied by 0.71 [Hz]; 0 for the highest that the "
+          "mesh carries with eight nodes per wavelength.",
           Patterns::Double(0.));
         declare_interval(prm,
-                         "Time between two lines [s]; the largest amounts in "
-                         "summary.json are those of all steps.");
+                         "Time between two lines [s]; the largest magnitudes "
+                         "in summary.json are those of all steps.");
       }
 
       double
@@ -154,8 +154,8 @@ namespace Voussoir
           }
       }
 
-      /** Whether the motion of a point is written relative to another one,
-       *  which itself is not. */
+      /** Whether the motion of a point is written relative to the reference
+       *  point, whose own motion is absolute. */
       bool
       is_relative(const unsigned int point) const
       {
@@ -249,10 +249,10 @@ namespace Voussoir
 
       double filtered_at = 0.; // [Hz]
 
-      // of each quantity and point: the displacement it counts from [m]
+      // of each quantity and point: the displacement from which it counts [m]
       std::array<std::vector<Tensor<1, 3>>, n_point_quantities> origins;
 
-      // of each point: amounts of its motion
+      // of each point: magnitudes of its motion
       std::vector<std::array<double, n_point_quantities>> largest;
       std::vector<double> time_of_largest; // [s]
     };

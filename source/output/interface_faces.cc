@@ -34,8 +34,8 @@ namespace Voussoir
                       const std::vector<NamedPoint> &places,
                       const MPI_Comm                 communicator)
   {
-    // distance, in micrometres so that round-off does not choose, position,
-    // surface, rank, number
+    // distance, rounded to micrometres so that round-off does not decide,
+    // position, surface, rank, number
     using Candidate         = std::tuple<double,
                                  double,
                                  double,
@@ -101,7 +101,7 @@ namespace Voussoir
                                                extremes[k])});
     const auto arrived = discretization.send_to_owners(records);
 
-    // and from there, one by one, to all ranks with a face at the node
+    // and from there to each rank with a face at the node
     const auto         &nodes = mesh.sets_and_nodes();
     std::vector<double> values(n_envelopes * nodes.size());
     Vector              known(discretization.owned_dofs,

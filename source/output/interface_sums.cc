@@ -66,9 +66,9 @@ namespace Voussoir
   std::array<double, n_surface_columns>
   surface_values(const double *sum, const double *largest, const double area)
   {
-    // Of the plane as a whole, (c A + mu N) / T. Infinite without shear, as in
-    // an open joint without keys or one whose keys prevent slip, or with nearly
-    // none.
+    // Safety of the plane as a whole, (c A + mu N) / T. Infinite without shear
+    // or with nearly none, as in an open joint without keys, or one whose keys
+    // prevent slip.
     const Tensor<1, 3> shear({sum[shear_x], sum[shear_y], sum[shear_z]}),
       driving({sum[driving_x], sum[driving_y], sum[driving_z]});
     const double safety = driving.norm() > 1e-6 * sum[resistance] ?
@@ -107,7 +107,7 @@ namespace Voussoir
       {
         const double *sum  = sums + n_quantities * plane.surface;
         const double  area = areas[plane.surface];
-        // it cannot slide as long as keys prevent it
+        // the block cannot slide as long as keys prevent slip
         if (sum[locked_area] > 0.)
           return std::numeric_limits<double>::infinity();
         force += force_on_block(plane, sums);

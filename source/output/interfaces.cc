@@ -34,29 +34,30 @@ namespace Voussoir
                           points_text,
                           "Named places \"name: x y z\" [m], separated by "
                           "\";\". The nearest pair of nodes of any interface "
-                          "is taken; its opening and slip, level and upwards, "
-                          "are written.");
+                          "is taken; its opening and its level and upward "
+                          "slip are written.");
         prm.add_parameter(
           "Blocks",
           blocks_text,
           "Blocks of rock whose safety against sliding as a whole is "
           "evaluated: \"cell set: surface, surface\", separated by \";\", "
-          "with all surfaces of contact of the block, one for each plane. It "
-          "is that of limit equilibrium under the driving forces, weight, "
-          "water, uplift, thrust of the dam, and its inertia as if it moved "
-          "with its base: along one plane or along the line where two of them "
-          "meet, zero if the block lifts off, infinite without a driving "
-          "force or if other planes prevent the slip. The mobilised ratio is "
-          "the shear of the contact forces over the resistance of the planes, "
-          "one where the block slides. Both are means over 0.443 of the shortest "
-          "period that the mesh carries.");
+          "with all surfaces of contact of the block, one for each plane. "
+          "The safety is that of limit equilibrium under the driving forces "
+          "(weight, water, uplift, thrust of the dam, and the inertia of the "
+          "block as if it moved with its base), against sliding along one "
+          "plane or along the line where two planes meet; zero if the block "
+          "lifts off, infinite without a driving force or if other planes "
+          "prevent the slip. The mobilised ratio is the shear of the contact "
+          "forces over the resistance of the planes, one where the block "
+          "slides. Both are means over 0.443 of the shortest period that the "
+          "mesh carries.");
         declare_interval(
           prm,
-          "Time between two lines of interfaces.csv [s]. In it "
-          "the sliding safety of a surface is (c A + mu N) / T, "
-          "the resistance by friction and cohesion over the "
-          "resultant of the shear, both where no keys prevent slip. "
-          "Extremes in summary.json are those of all steps.");
+          "Time between two lines of interfaces.csv [s]. The sliding safety "
+          "of a surface in this file is (c A + mu N) / T, the resistance by "
+          "cohesion and friction over the resultant of the shear, both where "
+          "no keys prevent slip. Extremes in summary.json are those of all "
+          "steps.");
       }
 
       void
@@ -64,9 +65,9 @@ namespace Voussoir
       {
         if (model.interfaces == nullptr)
           throw UserError(
-            "\"Observers\" in section \"Output\" names \"interfaces\", but the "
-            "case has none; list some in section \"Interfaces\", or remove "
-            "the observer.");
+            "\"Observers\" in section \"Output\" names \"interfaces\", but "
+            "the case has no interfaces; list some in section "
+            "\"Interfaces\", or remove the observer.");
         parse_points(points_text, points_entry);
         find_sliding_blocks(blocks_text,
                             blocks_entry,
@@ -264,7 +265,7 @@ namespace Voussoir
               largest_opening[s] = {{sample.largest[2 * s], sample.time}};
             const double safety = values.back();
             smallest_safety[s]  = std::min(smallest_safety[s], safety);
-            // sliding points are at their limit, except for waves inside the
+            // sliding points are at their limit, apart from waves inside the
             // block
             if (safety < 1. + 1e-3)
               time_at_one[s] += since;
@@ -327,8 +328,8 @@ namespace Voussoir
         std::fill_n(means, n_sums, 0.);
       }
 
-      /** Stores the contact forces of the planes of a block, and the force that
-       *  drives it: D - M (a - a_s) , see safety_from_sums. */
+      /** Stores the contact forces of the planes of a block, and its driving
+       *  force D - M (a - a_s) , see safety_from_sums. */
       void
       keep_forces(const unsigned int  b,
                   const double       *sums,
@@ -445,11 +446,11 @@ namespace Voussoir
       std::vector<SlidingBlock>  blocks;
       std::vector<SafetyHistory> safety_of_blocks;
 
-      // of each block: contact forces of its planes, and the force that drives
-      // it [N]
+      // of each block: contact forces of its planes, and its driving force [N]
       std::vector<std::vector<double>> forces_at_smallest;
 
-      // largest open area [m2] and opening [m] of each surface, and when [s]
+      // largest open area [m2] and opening [m] of each surface, and their times
+      // [s]
       std::vector<std::array<double, 2>> largest_open, largest_opening;
 
       // of each block its present values, then sums times their time since

@@ -17,7 +17,7 @@ namespace Voussoir
     place              = model.discretization.place_of(cell);
     const auto &points = model.discretization.points(number).get_points();
     for (unsigned int i = 1; i < points.size(); ++i)
-      // of equally near ones the first, independent of round-off
+      // the first one of equally near points, independent of round-off
       if (points[i].distance(unit) < points[q].distance(unit) - 1e-10)
         q = i;
   }

@@ -20,12 +20,12 @@ namespace Voussoir
 
 
     /**
-     * Opening of the crack of an active point at its last step [m], and not
-     * more than the largest one so far, an internal variable: the largest
-     * principal value of e_in = e - C^-1 : sigma times the band, but not more
-     * than the strain across the crack, n . e . n. Where that strain is
-     * compressive the crack is closed, also if shear opens it along an inclined
-     * strut; and the expansion of crushed concrete is no crack.
+     * Opening of the crack of an active point at its last step [m]: the band
+     * times the largest principal value of e_in = e - C^-1 : sigma or the
+     * strain across the crack, n . e . n, if that is less; at most the largest
+     * opening so far, an internal variable. Where that strain is compressive
+     * the crack is closed, even if shear along an inclined strut gives an
+     * opening; the expansion of crushed concrete is no crack.
      */
     double
     opening_of(const Material            &material,
@@ -77,7 +77,7 @@ namespace Voussoir
 
 
     /** Calls visit(cell, band, values of these names) for all points of a
-     *  material; with a band of zero [m] where the point is still elastic. */
+     *  material; the band is zero [m] where the point is still elastic. */
     void
     for_each_point(
       const Material                                         &material,

@@ -11,7 +11,7 @@ namespace Voussoir
 
   namespace
   {
-    /** With numbers in their order: "block 2" comes before "block 10". */
+    /** Sorts names with numbers by value: "block 2" comes before "block 10". */
     std::vector<std::string>
     sorted(std::vector<std::string> names)
     {
@@ -73,7 +73,7 @@ namespace Voussoir
   {
     const auto &triangulation = grid.triangulation();
 
-    // of each tag, the places in the list of its sets
+    // of each tag, the indices of its sets in the list
     std::vector<std::vector<unsigned int>> sets_of_tag;
     for (const CellTag &tag : grid.tags())
       {

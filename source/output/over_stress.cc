@@ -35,9 +35,9 @@ namespace Voussoir
 
 
     /**
-     * Over-stress of the faces of a dam after a linear analysis: how far, how
-     * long and on what area the tension exceeds the strength, and whether that
-     * calls for a non-linear analysis (see OverStressLimits).
+     * Over-stress of the faces of a dam in a linear analysis: amount, time and
+     * area of the tension above the strength, and whether these call for a
+     * non-linear analysis (see OverStressLimits).
      */
     class OverStress : public Observer
     {
@@ -64,7 +64,7 @@ namespace Voussoir
           "Strengths of materials",
           of_materials,
           "The same by material, \"concrete: 2e6; crest: 3e6\", where "
-          "\"Tensile strength\" is 0. Without it the strengths of the linear "
+          "\"Tensile strength\" is 0. Empty for the strengths of the linear "
           "elastic materials.");
         limits.declare_parameters(prm);
       }
@@ -89,7 +89,8 @@ namespace Voussoir
       void
       observe(const State &state) override
       {
-        if (state.step < next_step) // that of the checkpoint, evaluated before
+        if (state.step < next_step) // the state of the checkpoint has been
+                                    // evaluated before
           return;
         const double interval = state.step == 0 ? 0. : run().time_step;
         next_step             = state.step + 1;
@@ -234,7 +235,8 @@ namespace Voussoir
         return strength;
       }
 
-      /** The tension in cracked concrete is no measure of the demand. */
+      /** Refuses materials that crack, as the tension in cracked concrete is no
+       *  measure of the demand. */
       static void
       check_elastic(const ObservedModel            &model,
                     const std::vector<std::string> &face_sets)
@@ -307,7 +309,7 @@ namespace Voussoir
           ratio_of_node[node] /= strength_of_node[node];
       }
 
-      /** Sums the areas of waiting moments over the ranks. */
+      /** Sums the areas of the pending moments over the ranks. */
       void
       flush() override
       {
@@ -325,7 +327,7 @@ namespace Voussoir
         waiting_times.clear();
       }
 
-      /** Time above each ratio, the time above the next one included, of a node
+      /** Time of a node above each ratio, including the time above the next one
        *  [s]. */
       std::vector<double>
       accumulated_times(const unsigned int node) const
@@ -343,7 +345,8 @@ namespace Voussoir
         const auto          communicator = mesh->communicator();
         std::vector<double> ratio, ever(n_areas()), accumulated(n_areas()),
           beyond_rest(n_areas()), resting(n_areas());
-        // of each set: largest ratio, time, place; that of the static state
+        // of each set: largest ratio, its time and place; the same of the
+        // static state
         constexpr double none = -std::numeric_limits<double>::max();
         std::vector<std::array<double, 5>> most(names.size(), {{none}});
         std::vector<std::array<double, 4>> most_at_rest(names.size(), {{none}});
@@ -469,25 +472,25 @@ namespace Voussoir
       std::unique_ptr<AreaAbove>  areas;
 
       // of each node: arch and cantilever stress if they are needed, strength
-      // [Pa], ratio now, largest one and when [s], and for each ratio of the
-      // list the time above it, but not above the next one [s]
+      // [Pa], ratio now, largest one and its time [s], and for each ratio of
+      // the list the time between this ratio and the next one [s]
       std::vector<std::array<Tensor<1, 3>, 2>> directions;
       std::vector<double>                      strength_of_node, ratio_of_node;
       std::vector<double>                      largest, times;
       std::vector<double>                      at_rest; // ratio at t = 0
 
-      unsigned long long next_step = 0; // to be counted
+      unsigned long long next_step = 0; // to be evaluated
 
-      // of each set and ratio the largest area at a moment [m2], and when [s];
-      // areas of this rank at the moments that are not evaluated yet
+      // of each set and ratio the largest area at a moment [m2], and its time
+      // [s]; areas of this rank at the pending moments
       std::vector<std::array<double, 2>> at_once;
       std::vector<double>                waiting_areas, waiting_times;
     };
 
     const Registry<Observer>::Add<OverStress> registered_over_stress(
       "over-stress",
-      "How far, how long and on what area the tension on the faces of a dam "
-      "exceeds its strength, in over_stress.csv and over_stress.vtu, and "
-      "whether a linear analysis suffices.");
+      "Tension above the strength on the faces of a dam, by amount, time and "
+      "area, in over_stress.csv and over_stress.vtu, and whether a linear "
+      "analysis suffices.");
   } // namespace
 } // namespace Voussoir

@@ -24,23 +24,23 @@ namespace Voussoir
       "Longest time",
       longest_time,
       "Accumulated time above the ratio 1 that is allowed in a linear "
-      "analysis [s]. It falls linearly to zero at the \"Largest ratio\". "
-      "The default is of no code that was read: the limit is the user's." +
+      "analysis [s]. It falls linearly to zero at the \"Largest ratio\". The "
+      "default comes from no code of practice: the user chooses the limit." +
         usually(Usual::accumulated_time),
       Patterns::Double(0.));
     prm.add_parameter(
       "Largest ratio",
       largest_ratio,
       "Demand-capacity ratio that is allowed in a linear analysis [-]. The "
-      "default is of no code that was read: the limit is the user's." +
+      "default comes from no code of practice: the user chooses the limit." +
         usually(Usual::demand_capacity_ratio),
       Patterns::Double(1.));
     prm.add_parameter(
       "Largest share",
       largest_share,
       "Share of a face above the ratio 1 at any time that is allowed in a "
-      "linear analysis [%]. The default is of no code that was read: the "
-      "limit is the user's.",
+      "linear analysis [%]. The default comes from no code of practice: the "
+      "user chooses the limit.",
       Patterns::Double(0., 100.));
   }
 
@@ -89,8 +89,8 @@ namespace Voussoir
       reasons.push_back("the demand-capacity ratio of the " + face.name +
                         " is " + text(face.largest_at_rest) +
                         " in the static state");
-    // where the curve is furthest above its limit; the
-    // duration of the static state does not count
+    // the ratio at which the time is furthest above its limit; the static state
+    // has no duration
     unsigned int worst  = 0;
     double       excess = 0.;
     for (unsigned int r = 0; r < ratios.size(); ++r)

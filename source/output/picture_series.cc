@@ -22,8 +22,8 @@ namespace Voussoir
   {
     prm.add_parameter("Interval",
                       interval,
-                      "Time between two pictures [s]; 0 for none but those "
-                      "under \"Times\".",
+                      "Time between two pictures [s]; 0 for the pictures of "
+                      "\"Times\" only.",
                       Patterns::Double(0.));
     prm.add_parameter("Times",
                       times,

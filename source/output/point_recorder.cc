@@ -95,7 +95,7 @@ namespace Voussoir
   PointRecorder::observe(const State &state)
   {
     const double time_step = record.run->time_step;
-    // after a restart the last one comes once more
+    // after a restart the last state comes once more
     if (!record.velocities.empty() && !record.has_last)
       record.velocities.pop_back();
     record.velocities.push_back(record.weights->share(state.velocity));

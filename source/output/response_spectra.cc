@@ -22,8 +22,8 @@ namespace Voussoir
       {
         recorder.declare_parameters(
           prm,
-          "Name of the point by whose largest acceleration the summary "
-          "divides spectra for the amplification; empty for none.");
+          "Name of the point whose largest acceleration is the reference of "
+          "the amplification in summary.json; empty for none.");
         prm.add_parameter("Components",
                           components,
                           "Directions of motion.",
@@ -42,14 +42,14 @@ namespace Voussoir
                           Patterns::Double(1e-3));
         prm.add_parameter("Number of periods",
                           n_periods,
-                          "At constant ratio [-].",
+                          "Number of periods, at constant ratio [-].",
                           Patterns::Integer(2));
         prm.add_parameter("Interval",
                           interval,
-                          "Time between two samples of the acceleration [s]; a "
-                          "whole number of steps is taken, at least one, and "
-                          "no more than a twentieth of the shortest period "
-                          "that the mesh carries with eight nodes per "
+                          "Time between two samples of the acceleration [s]; "
+                          "rounded to a whole number of steps, at least one, "
+                          "and to no more than a twentieth of the shortest "
+                          "period that the mesh carries with eight nodes per "
                           "wavelength.",
                           Patterns::Double(1e-6));
       }
@@ -136,7 +136,7 @@ namespace Voussoir
         return accelerations[point * directions.size() + direction];
       }
 
-      /** A spectrum in the summary. */
+      /** Adds a spectrum to the summary. */
       void
       describe(const unsigned int         point,
                const unsigned int         direction,

@@ -56,9 +56,9 @@ namespace Voussoir
                           "Face sets on which the lines end.");
         declare_interval(prm,
                          "Time between two lines of section_forces.csv [s]; "
-                         "extremes are those of a twentieth of the shortest "
-                         "period that the mesh carries with eight nodes per "
-                         "wavelength, if that is shorter.");
+                         "extremes are sampled each twentieth of the "
+                         "shortest period that the mesh carries with eight "
+                         "nodes per wavelength, if that is shorter.");
       }
 
       void

@@ -57,8 +57,8 @@ namespace Voussoir
       double a, b, distance;
     };
 
-    /** Where the line p + distance * direction pierces the surface; an infinite
-     *  distance if it does not. */
+    /** Point where the line p + distance * direction pierces the surface; the
+     *  distance is infinite if there is none. */
     Hit
     pierce(const Surface      &surface,
            const Point<3>     &p,
@@ -77,7 +77,7 @@ namespace Voussoir
               jacobian[d][2] = -direction[d];
             }
           if (std::abs(determinant(jacobian)) < 1e-4 * s.norm() * t.norm())
-            break; // all but parallel
+            break; // nearly parallel
           const Tensor<1, 3> step =
             invert(jacobian) *
             (p + hit.distance * direction - surface.at(hit.a, hit.b));
@@ -117,7 +117,7 @@ namespace Voussoir
           const double da =
             (tt * (s * difference) - st * (t * difference)) / det;
           double a = std::clamp(hit.a + da, 0., 1.);
-          // the best b for this a, and the best a for this b
+          // the best b for this a, and then the best a for this b
           const double b =
             std::clamp(hit.b + (t * difference - st * (a - hit.a)) / tt,
                        0.,
@@ -139,8 +139,8 @@ namespace Voussoir
     }
 
 
-    /** Distances along the line at which it goes from cell to cell, from all
-     *  ranks, and the owned cells near it. */
+    /** Distances along the line, from all ranks, at which it passes from cell
+     *  to cell, and the owned cells near the line. */
     std::vector<double>
     find_breaks(const Discretization              &discretization,
                 const Point<3>                    &begin,
@@ -221,7 +221,7 @@ namespace Voussoir
 
 
     /** Horizontal unit normal at a point of the face; where cell faces meet in
-     *  it, of the mean of their normals. */
+     *  the point, of the mean of their normals. */
     Tensor<1, 3>
     horizontal_normal(const std::vector<FaceCorners> &faces,
                       const Point<3>                 &point,
@@ -246,8 +246,8 @@ namespace Voussoir
     }
 
 
-    /** Where the line along @p normal first meets the downstream face [m];
-     *  negative behind the point. */
+    /** Distance along @p normal to the first point of the downstream face [m];
+     *  negative against the normal. */
     double
     distance_of_downstream_face(const std::vector<FaceCorners> &faces,
                                 const Point<3>                 &point,
@@ -273,7 +273,7 @@ namespace Voussoir
     }
 
 
-    /** Where a point lies in the reference cell, if it lies in the cell. */
+    /** Coordinates of a point in the reference cell, if it lies in the cell. */
     std::optional<Point<3>>
     position_in(const Discretization::Cell &cell,
                 const Point<3>             &x,
@@ -348,7 +348,7 @@ namespace Voussoir
     normal = horizontal_normal(faces[0], upstream, size, refuse);
     const double downstream =
       distance_of_downstream_face(faces[1], upstream, normal, size, refuse);
-    // outward is away from the downstream face, at whatever distance
+    // the normal points away from the downstream face
     if (downstream > 0.)
       normal *= -1.;
     thickness = std::abs(downstream);

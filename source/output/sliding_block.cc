@@ -22,7 +22,7 @@ namespace Voussoir
             const Grid        &grid,
             const std::string &place)
     {
-      // faces of the first side, and those of the block among them
+      // numbers of the faces of the first side, and of those of the block
       std::vector<double>     sums(2);
       const std::vector<bool> of_block = grid.tags_in({block});
       grid.for_each_face(surface, [&](const auto &cell, const unsigned int) {
@@ -180,7 +180,7 @@ namespace Voussoir
         smallest         = safety;
         time_of_smallest = time;
       }
-    // sliding planes are at their limit, except for waves inside the block
+    // sliding planes are at their limit, apart from waves inside the block
     if (safety < 1. + 1e-3)
       time_at_one += interval;
     return is_smallest;

@@ -12,7 +12,7 @@ namespace Voussoir
   namespace
   {
     /** Entries that the evaluation of this rank's cells in these sets reads:
-     *  those of their nodes, and of those that lead hanging ones. */
+     *  those of their nodes, and of the nodes that constrain hanging nodes. */
     IndexSet
     entries_in(const Discretization           &discretization,
                const std::vector<std::string> &sets)

@@ -21,8 +21,8 @@ namespace Voussoir
 
   namespace
   {
-    /** A place, or the sum of several of one point under a law that is linear:
-     *  its stress under their summed strains is the sum of their stresses. */
+    /** A place, or the sum of several places of one point under a linear law,
+     *  whose stress under the summed strains is the sum of the stresses. */
     struct Sample
     {
       unsigned int point;
@@ -51,7 +51,8 @@ namespace Voussoir
         for (const auto &carrier : discretization.carriers(nodes[j]))
           {
             const Tensor<1, 3> unit = scalar.shape_grad(j, place.unit);
-            // at a node only the gradients along its own lines are not zero
+            // at a node only the gradients along the lines through it are not
+            // zero
             if (unit.norm() > 1e-12)
               sample.weights[carrier.node] +=
                 carrier.weight * (to_space * unit);

@@ -16,9 +16,9 @@ namespace Voussoir
 
     /**
      * Forces of supports and prescribed motions on the model, by face set. At a
-     * fixed node it is the residual of its equation of motion,
+     * fixed node the force is the residual of its equation of motion,
      *   R = M a_base + f(u) - F(t) ,
-     * and the reaction of the static stages; at a prescribed node the
+     * and the reaction of the static stages; at a prescribed node it is the
      * impulse of a step over its length.
      */
     class SupportForces : public TableObserver
@@ -89,7 +89,8 @@ namespace Voussoir
         std::string               name;
         std::vector<unsigned int> nodes;      // of this rank
         Tensor<1, 3>              at_rest;    // of the static stages [N]
-        Tensor<1, 3>              fixed_mass; // that a rigid base drives [kg]
+        Tensor<1, 3>              fixed_mass; // to which a rigid base gives
+                                              // inertial force [kg]
       };
 
       void
@@ -203,7 +204,7 @@ namespace Voussoir
         return result;
       }
 
-      /** Mass of each owned node, as if none were fixed; zero where a rigid
+      /** Mass of each owned node, including fixed nodes; zero where a rigid
        *  base exerts no inertial force [kg]. */
       std::vector<double>
       driven_mass() const

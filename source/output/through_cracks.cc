@@ -15,8 +15,9 @@ namespace Voussoir
     const std::string cracks_section = "section \"Output/through cracks\"";
 
 
-    /** Shares of the integration points of a cell in the mean of each eighth:
-     *  those in it, and those between it and its neighbours by halves. */
+    /** Weights of the integration points of a cell in the mean of each eighth:
+     *  those in the eighth count whole, those on its borders with other eighths
+     *  half. */
     std::vector<std::array<double, 8>>
     shares_in_eighths(const Quadrature<3> &points)
     {
@@ -148,8 +149,7 @@ namespace Voussoir
       struct Openings
       {
         std::vector<double> now;
-        std::vector<double> ever; // the largest, which need not be of one
-                                  // moment
+        std::vector<double> ever; // the largest, possibly at different moments
       };
 
       void
@@ -159,8 +159,8 @@ namespace Voussoir
           most = {{opening, time, where[0], where[1], where[2]}};
       }
 
-      /** Openings, or zero where none can be part of a path from face to face.
-       */
+      /** Openings of the eighths; zero where no path from face to face is
+       *  possible. */
       Openings
       find_openings()
       {
@@ -189,7 +189,7 @@ namespace Voussoir
       }
 
       /** Whether points that have left the elastic range lead from face to
-       *  face: until then no crack does, whatever its openings. */
+       *  face; otherwise no crack does, whatever its openings. */
       bool
       has_active_path()
       {
@@ -248,19 +248,19 @@ namespace Voussoir
       std::vector<std::array<std::bitset<8>, 2>> touching;
       std::optional<CrackPaths>                  paths;
 
-      // points that had left the elastic range, and whether they led from face
-      // to face
+      // number of points that have left the elastic range, and whether they
+      // lead from face to face
       std::size_t n_active    = 0;
       bool        active_path = false;
 
-      // largest opening from face to face at one moment [mm], when [s], and
-      // where it was narrowest [m]
+      // largest opening from face to face at one moment [mm], its time [s], and
+      // its narrowest place [m]
       std::array<double, 5> most{};
     };
 
     const Registry<Observer>::Add<ThroughCracks> registered_through_cracks(
       "through cracks",
-      "Cracks that go through the dam: how wide they are open at one moment "
-      "all the way from one face to the other, in through_cracks.csv.");
+      "Through cracks of the dam: their opening at one moment all the way "
+      "from one face to the other, in through_cracks.csv.");
   } // namespace
 } // namespace Voussoir

@@ -1,11 +1,11 @@
-# What goes where by "cmake --install", and the Debian package that "cpack" makes of it.
+# The files of "cmake --install", and the Debian package that "cpack" makes of them.
 include(GNUInstallDirs)
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON) # the tests' classes are not installed
 set(_data ${CMAKE_INSTALL_DATADIR}/voussoir)
 set(_doc ${CMAKE_INSTALL_DATADIR}/doc/voussoir)
 
-# A package has the library once for any processor and once for each faster level,
-# of which the dynamic linker takes the highest that the processor has: ld.so(8),
+# A package has the library once for any processor and once for each faster level;
+# the dynamic linker takes the highest level of the processor: ld.so(8),
 # glibc-hwcaps.
 set(_libraries lib/${CMAKE_LIBRARY_ARCHITECTURE}/voussoir)
 set(_rpath "$ORIGIN/../${_libraries}")
@@ -13,7 +13,7 @@ if(VOUSSOIR_LEVEL AND NOT VOUSSOIR_LEVEL STREQUAL "x86-64")
   string(APPEND _libraries /glibc-hwcaps/${VOUSSOIR_LEVEL})
 endif()
 set_target_properties(voussoir PROPERTIES INSTALL_RPATH "${_rpath}")
-if(NOT VOUSSOIR_LEVEL) # packages are of Debian's libraries alone
+if(NOT VOUSSOIR_LEVEL) # packages use Debian's libraries alone
   set_target_properties(voussoir voussoir_library PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 endif()
 install(TARGETS voussoir_library LIBRARY DESTINATION ${_libraries} COMPONENT library)
@@ -26,13 +26,13 @@ install(DIRECTORY prm DESTINATION ${_data} FILES_MATCHING PATTERN *.prm PATTERN 
 foreach(_program voussoir voussoir-run)
   install(FILES source/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME ${_program})
 endforeach()
-# if they are there, by "bootstrap manual" or "bootstrap package"
+# if "bootstrap manual" or "bootstrap package" has made them
 install(DIRECTORY ${CMAKE_BINARY_DIR}/manual/html DESTINATION ${_doc} OPTIONAL PATTERN .buildinfo EXCLUDE)
 install(FILES ${CMAKE_SOURCE_DIR}/build/vtk.js/package/vtk.js ${CMAKE_SOURCE_DIR}/build/vtk.js/package/LICENSE
   DESTINATION ${_data}/vtk.js OPTIONAL)
 
 set(VOUSSOIR_MAINTAINER "The Voussoir maintainers <maintainers@voussoir.invalid>" CACHE STRING
-  "Of the Debian package, with a mail address")
+  "Maintainer of the Debian package, with a mail address")
 file(STRINGS /etc/os-release _release REGEX "^VERSION_ID=")
 string(REGEX MATCH "[0-9.]+" _release "${_release}")
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1~deb${_release})
@@ -50,7 +50,7 @@ foreach(_program voussoir voussoir-run voussoir-report voussoir-paraview)
   install(FILES ${CMAKE_BINARY_DIR}/package/voussoir.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME ${_program}.1.gz)
 endforeach()
 
-# "cpack" packs the levels of these build folders with its own
+# "cpack" packs the libraries of these build folders with its own
 set(VOUSSOIR_FASTER_BUILDS "" CACHE STRING "Build folders with a higher VOUSSOIR_LEVEL, for the package")
 set(CPACK_INSTALL_CMAKE_PROJECTS "${CMAKE_BINARY_DIR};voussoir;ALL;/")
 foreach(_folder ${VOUSSOIR_FASTER_BUILDS})
@@ -72,7 +72,7 @@ contact, concrete that cracks, absorbing boundaries and compressible water. A
 parameter file describes a case; a report of one page comes out.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR})
-# mpirun, and what makes reports
+# mpirun, and the packages of the report
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
   "openmpi-bin, python3, python3-numpy, python3-matplotlib, python3-vtk9 | python3-paraview, python3-jinja2, xvfb")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "paraview, weasyprint, bash-completion")

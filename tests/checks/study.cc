@@ -125,9 +125,10 @@ namespace Voussoir
           {
             end = error.what();
           }
-        verdicts.is_true("of which two stand, and one was stopped",
-                         end.find("Of 3 runs in \"failing\" 2 stand, 1 was "
-                                  "stopped, 0 failed") == 0);
+        verdicts.is_true("of which two are complete, and one was stopped",
+                         end.find(
+                           "Of 3 runs in \"failing\" 2 are complete, 1 was "
+                           "stopped, 0 failed") == 0);
         MPI_Barrier(communicator);
         const nlohmann::json runs = study_json("failing").at("runs");
         verdicts.is_true("three runs", runs.size() == 3);
@@ -136,7 +137,7 @@ namespace Voussoir
             const bool        slides  = i == 1; // the slope has tan = 0.25
             const std::string verdict = runs.at(i).at("verdict");
             verdicts.is_true(slides ? "the second is reported as stopped" :
-                                      "another stands",
+                                      "another is complete",
                              (verdict.rfind("stopped: ", 0) == 0) == slides);
             verdicts.is_true("  and has its number or none",
                              runs.at(i).contains("quantities") != slides);
@@ -218,7 +219,7 @@ namespace Voussoir
                  communicator);
         verdicts.is_true(
           "one of two runs fails: an error, and the other's line",
-          holds(one_of_two, "1 stands, 0 were stopped, 1 failed") &&
+          holds(one_of_two, "1 is complete, 0 were stopped, 1 failed") &&
             lines_of("no_limit/study.csv") == 3);
       }
 

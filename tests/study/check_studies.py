@@ -45,20 +45,20 @@ def check_ends(scratch):
     code, said = study(slope, folder, "Study/Limit/Entry=", friction + "0.5, 0.1, 0.8")
     is_true("one of three slides away: exit code 2", code == 2, said)
     is_true("  its last line counts",
-            ends_with(said, f'Of 3 runs in "{folder}" 2 stand, 1 was stopped, 0 failed; '), said)
+            ends_with(said, f'Of 3 runs in "{folder}" 2 are complete, 1 was stopped, 0 failed; '), said)
     code, said = study(slope, folder, "Study/Limit/Entry=", friction + "0.5, 0.1, 0.8")
     is_true("the same again: exit code 2, nothing is done twice",
             code == 2 and said.count(": taken, ") == 3, said)
     code, said = study(slope, folder, "Study/Limit/Entry=", friction + "0.5, 0.8")
-    is_true("those that stand: exit code 0", code == 0, said)
+    is_true("those that are complete: exit code 0", code == 0, said)
     is_true("  its last line counts",
-            ends_with(said, f'Of 2 runs in "{folder}" 2 stand, 0 were stopped, 0 failed'), said)
+            ends_with(said, f'Of 2 runs in "{folder}" 2 are complete, 0 were stopped, 0 failed'), said)
     code, said = study(slope, scratch / "mistake", "Study/Limit/Entry=",
                        friction + "0.5, 0.8 & Loads/weight/Cell sets = block, nowhere")
-    is_true("one has a mistake in its file: exit code 2", code == 2 and "1 stands, 0 were stopped, 1 failed"
+    is_true("one has a mistake in its file: exit code 2", code == 2 and "1 is complete, 0 were stopped, 1 failed"
             in said.splitlines()[-1], said)
     code, said = study(slope, scratch / "all", "Study/Limit/Entry=", friction + "0.1, 0.05")
-    is_true("none stands: exit code 1", code == 1 and "0 stand, 2 were stopped" in said.splitlines()[-1], said)
+    is_true("none is complete: exit code 1", code == 1 and "0 are complete, 2 were stopped" in said.splitlines()[-1], said)
     is_true("  sentences end with one full stop", ".." not in said.replace(str(scratch), ""), said)
     code, said = study(slope, scratch / "limit", "Study/Limit/Accuracy=0.5")
     is_true("a limit at which runs are stopped is what was asked for: exit code 0",
@@ -69,7 +69,7 @@ def check_ends(scratch):
 def check_notes(scratch):
     columns, folder = cases / "study_columns.prm", scratch / "columns"
     code, said = study(columns, folder)
-    is_true("four runs", code == 0 and "4 stand" in said, said)
+    is_true("four runs", code == 0 and "4 are complete" in said, said)
     note = folder / "Young-s-modulus-1e9_Density-2000.json"
     whole = note.read_text()
     for text in ("{}", "[]", "null", "?", '{"identity": 1, "summary": 3}', whole[:-100]):

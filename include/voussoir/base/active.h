@@ -5,8 +5,8 @@
 
 namespace Voussoir
 {
-  /** Declares the entry "Active" of the section at @p path, in which @p prm
-   *  stands, and returns its value in the file. */
+  /** Declares the entry "Active" of the section at @p path, which @p prm has
+   *  entered, and returns its value in the file. */
   bool
   declared_active(dealii::ParameterHandler &prm,
                   const ParameterFile      &file,

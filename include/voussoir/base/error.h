@@ -18,9 +18,8 @@ namespace Voussoir
   };
 
   /**
-   * A run or a static stage that comes to no equilibrium, or whose energy
-   * balance is violated: an outcome of the case, which a criterion of a study
-   * may name.
+   * A static stage without equilibrium, or a run whose energy balance is
+   * violated: an outcome of the case, which a criterion of a study may name.
    */
   class RunStopped : public UserError
   {

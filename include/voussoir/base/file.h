@@ -8,36 +8,37 @@
 
 namespace Voussoir
 {
-  /** Why a file that was written is not there any more. */
+  /** Reason why a file that was written is missing. */
   inline constexpr char removed_meanwhile[] =
     "it was removed while the run went on";
 
-  /** What an error number of the system means, as the end of a sentence:
-   *  "... because the disk is full". */
+  /** Meaning of an error number of the system, as the end of a sentence: "...
+   *  because the disk is full". */
   std::string
   reason_of(const int error);
 
   /**
-   * Writes a file under a temporary name and renames it, so that either the
-   * whole file or the one before is there. A device or a pipe is written to as
-   * it is.
+   * Writes a file under a temporary name and renames it, so that the name
+   * always belongs to a whole file, the old or the new one. A device or a pipe
+   * is written to directly.
    *
-   * @return why the writing failed, see reason_of(); empty: written
+   * @return reason of a failure, see reason_of(); empty: written
    */
   std::string
   write_file(const std::string &name, const std::string &text);
 
   /**
-   * The same with one part from each rank, in their order; makes the folder of
-   * the file. All ranks must call this together, and get the same.
+   * The same with one part from each rank, in the order of ranks; makes the
+   * folder of the file. All ranks must call this together; the result is the
+   * same on all.
    */
   std::string
   write_file_in_parts(const std::string &name,
                       const std::string &part,
                       const MPI_Comm     communicator);
 
-  /** A lock between programs, which the system takes away when the program
-   *  ends, however that comes about. On file systems without locks all get it.
+  /** A lock between programs, which the system releases when the program ends
+   *  for whatever reason. On file systems without locks every program gets it.
    */
   class FileLock
   {
@@ -47,7 +48,7 @@ namespace Voussoir
     ~FileLock();
 
     /** Takes the lock of this file, which is made if need be; returns whether
-     *  nobody else has it. */
+     *  no other program has the lock. */
     bool
     take(const std::string &name);
 
@@ -62,17 +63,17 @@ namespace Voussoir
   };
 
   /** A text file that grows. Text that cannot be written waits in memory and is
-   * written with the next one; no part of a text is left in the file. A file
-   * that was removed, replaced or cut off meanwhile is not made anew, as its
-   * beginning would be lost. */
+   *  written with the next text; the file never holds a part of a text. A file
+   *  that was removed, replaced or cut off meanwhile is not made anew, as its
+   *  beginning would be lost. */
   class GrowingFile
   {
   public:
-    /** Continues this file after the bytes to keep; none: a new file. */
+    /** Continues this file after @p keep bytes; 0: begins a new file. */
     void
     open(const std::string &name, const std::uintmax_t keep = 0);
 
-    /** Empty: not open. */
+    /** Name of the file; empty: not open. */
     const std::string &
     name() const;
 
@@ -83,7 +84,8 @@ namespace Voussoir
     void
     append(const std::string &text);
 
-    /** Writes the text that waits; returns why that failed, see reason_of(). */
+    /** Writes the waiting text; returns the reason of a failure, see
+     *  reason_of(). */
     std::string
     flush();
 
@@ -91,7 +93,7 @@ namespace Voussoir
     has_waiting() const;
 
   private:
-    /** Why the written part is lost; empty: it is there. */
+    /** Reason why the written part is lost; empty: it is not. */
     std::string
     loss() const;
 

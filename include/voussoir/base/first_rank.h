@@ -7,7 +7,7 @@
 
 namespace Voussoir
 {
-  /** Runs an action on the first rank; its exceptions are thrown on all. */
+  /** Runs an action on the first rank; all ranks throw its exceptions. */
   template <typename Action>
   void
   on_first_rank(const MPI_Comm communicator, const Action &action)

@@ -8,11 +8,11 @@
 
 namespace Voussoir
 {
-  /** Exit code of a run that was stopped on request and can continue: that of
-   *  temporary failures in sysexits.h, for scripts that then start it again. */
+  /** Exit code of a run that was stopped on request and can continue:
+   *  EX_TEMPFAIL of sysexits.h, for scripts that start such a run again. */
   constexpr int exit_code_stopped = 75;
 
-  /** The program ends because it was asked to, which is no error. */
+  /** The program ends on request, which is no error. */
   class Stopped : public std::runtime_error
   {
   public:
@@ -20,9 +20,10 @@ namespace Voussoir
   };
 
   /**
-   * From now on signals are requests and do not kill: SIGUSR1 for a checkpoint;
-   * SIGINT, SIGTERM, SIGHUP, SIGXCPU and SIGUSR2 for a checkpoint and the end.
-   * A second SIGINT kills. A SIGHUP that was ignored, as by nohup, still is.
+   * From now on signals are requests and do not end the program: SIGUSR1 for a
+   * checkpoint; SIGINT, SIGTERM, SIGHUP, SIGXCPU and SIGUSR2 for a checkpoint
+   * and the end. A second SIGINT ends it at once. A SIGHUP that was ignored, as
+   * under nohup, stays ignored.
    */
   void
   listen_to_signals();
@@ -39,8 +40,8 @@ namespace Voussoir
   [[noreturn]] void
   stop(const std::string &sentence);
 
-  /** Stops if any rank has been asked to, during set-up or static stages, from
-   *  which no run can continue. Called on all ranks. */
+  /** Stops if any rank has been asked to stop. For set-up and static stages,
+   *  from which no run can continue. Called on all ranks. */
   void
   stop_if_requested(const MPI_Comm communicator);
 } // namespace Voussoir

@@ -12,9 +12,10 @@
 
 namespace Voussoir
 {
-  // Structs whose members have names in JSON, listed once for both directions:
-  // for_each_entry(part, entry) calls entry(name, member) for all of them.
-  // Unknown values, that is an empty optional, map or JSON, are left out.
+  // Structs whose members have names in JSON, listed once for writing and
+  // reading: for_each_entry(part, entry) calls entry(name, member) for all
+  // members. Unknown values, that is an empty optional, map or JSON, are left
+  // out.
 
   template <typename T>
   void

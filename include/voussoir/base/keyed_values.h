@@ -10,17 +10,18 @@
 namespace Voussoir
 {
   /**
-   * Live numbers that a checkpoint must hold beside nodal vectors, each group
-   * of @p width numbers with a key that does not depend on the ranks (see
-   * Grid::global_key). Ranks may hold the same group twice if they agree on it.
+   * Numbers of the state that a checkpoint holds besides nodal vectors: groups
+   * of @p width numbers, each with a key that does not depend on the ranks (see
+   * Grid::global_key). Two ranks may hold the same group if they agree on its
+   * numbers.
    */
   struct KeyedValues
   {
     unsigned int                                    width;
     std::vector<std::pair<std::uint64_t, double *>> items;
 
-    /** Copy the numbers of an item to a row and back, where they do not stand
-     *  one after the other; the pointers of the items are then null. */
+    /** Copy the numbers of an item to a row and back, where they are not
+     *  contiguous in memory; the pointers of the items are then null. */
     std::function<void(const std::size_t item, double *row)>       pack   = {};
     std::function<void(const std::size_t item, const double *row)> unpack = {};
 

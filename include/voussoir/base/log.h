@@ -53,9 +53,8 @@ namespace Voussoir
     void
     progress(const double share_done, const std::string &text);
 
-    /** Writes a warning, and again at the end and in the summary of a run.
-     *  Warnings are not repeated.
-     */
+    /** Writes a warning, which the end of the log and the summary of a run
+     *  repeat. A second warning of the same text is ignored. */
     template <typename... Parts>
     void
     warn(const Parts &...parts)
@@ -70,7 +69,7 @@ namespace Voussoir
 
     /**
      * Records an attempt to write a file of the results, on the first rank: a
-     * failure does not stop a run, but is a warning.
+     * failure is a warning and does not stop a run.
      *
      * @param reason of the failure, see reason_of(); empty: all is written
      * @param remark on the part that was not written
@@ -80,25 +79,25 @@ namespace Voussoir
               const std::string &reason,
               const std::string &remark = "");
 
-    /** Files that are not, or not completely, written, each with the reason;
-     *  all ranks must call this together. */
+    /** Files that are not written, or not completely, each with the reason; all
+     *  ranks must call this together. */
     std::map<std::string, std::string>
     missing_files() const;
 
     /**
-     * A file of the results that grows, on the first rank, from these bytes on.
-     * Appended text is on the disk before each checkpoint, see
+     * A growing file of the results on the first rank, continued after @p keep
+     * bytes. Appended text is on the disk before each checkpoint, see
      * write_growing_files().
      */
     std::shared_ptr<GrowingFile>
     grow(const std::string &filename, const std::uintmax_t keep);
 
-    /** Writes the text that waits in memory for one of them. */
+    /** Writes the waiting text of one growing file. */
     void
     write(GrowingFile &grown);
 
-    /** Writes the text that waits in memory for all of them; returns whether
-     *  all of it is written. All ranks must call this together. */
+    /** Writes the waiting text of all growing files; returns whether all of it
+     *  is written. All ranks must call this together. */
     bool
     write_growing_files();
 
@@ -107,7 +106,7 @@ namespace Voussoir
     std::map<std::string, std::uint64_t>
     sizes_of_growing_files() const;
 
-    /** Records which files that were written are missing or changed. */
+    /** Records which of the written files are missing or changed. */
     void
     check_for_lost_files();
 
@@ -118,7 +117,7 @@ namespace Voussoir
     void
     add_warning(const std::string &text);
 
-    /** On the terminal. */
+    /** Shows a text on the terminal. */
     void
     show(const std::string &text);
 
@@ -135,8 +134,8 @@ namespace Voussoir
 
     std::vector<std::string> all_warnings;
 
-    // on the first rank: files that are missing, with the reason; sizes of
-    // those that were written [bytes]; those that grow
+    // on the first rank: missing files with the reason; sizes of the written
+    // files [bytes]; growing files
     std::map<std::string, std::string>      missing;
     std::map<std::string, std::uintmax_t>   sizes;
     std::vector<std::weak_ptr<GrowingFile>> growing;

@@ -9,7 +9,7 @@
 
 namespace Voussoir
 {
-  /** Entry by entry sums of equally long lists over the ranks. */
+  /** Sums of equally long lists over the ranks, entry by entry. */
   template <typename Number>
   std::vector<Number>
   sum_over_ranks(const std::vector<Number> &values, const MPI_Comm communicator)
@@ -28,7 +28,7 @@ namespace Voussoir
     std::vector<T> joined;
     if constexpr (std::is_trivially_copyable_v<T>)
       {
-        // as they are: the library would compress them
+        // not by deal.II's all_gather, which would compress the lists
         const auto sizes =
           MPI::all_gather(communicator, static_cast<int>(list.size()));
         std::vector<int> begins(sizes.size(), 0);

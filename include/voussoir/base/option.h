@@ -13,8 +13,8 @@
 namespace Voussoir
 {
   /**
-   * The values of an entry that is one of a few words, and the words, in the
-   * order of the manual. Beside its enum each such entry has a function
+   * The values of an entry that takes one of a few words, with these words, in
+   * the order of the manual. Each such entry has an enum and a function
    *
    *   inline OptionNames<Partition>
    *   option_names(const Partition)
@@ -44,7 +44,7 @@ namespace Voussoir
   /**
    * ParameterHandler::add_parameter for such an entry.
    *
-   * @param allowed those of its values that the entry can have; empty: all
+   * @param allowed values that the entry can have; empty: all
    */
   template <typename Option>
   void

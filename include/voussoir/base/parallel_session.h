@@ -11,8 +11,8 @@ namespace Voussoir
   /**
    * Initialization and end of every program of the project: MPI with one thread
    * per rank, which the fused vector updates of the step need, and numbers
-   * below 1e-308 flushed to zero, since such tails of decaying waves cost a
-   * hundred times as much as others.
+   * below 1e-308 flushed to zero, since arithmetic with such numbers, as in the
+   * tails of decaying waves, takes a hundred times as long.
    */
   class ParallelSession
   {
@@ -21,7 +21,7 @@ namespace Voussoir
     ~ParallelSession();
 
   private:
-    /** Folder for the session files of Open MPI, of a run without mpirun. */
+    /** Folder of Open MPI's session files in a run without mpirun. */
     std::filesystem::path                                     session_folder;
     std::unique_ptr<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
   };

@@ -21,8 +21,7 @@ namespace Voussoir
   std::string
   section_text(const std::string &section);
 
-  /** Name today of an entry that had another one in earlier versions; empty for
-   *  all others. */
+  /** Present name of an entry that has been renamed; empty for all others. */
   std::string
   new_name_of(const std::string &path);
 
@@ -34,13 +33,13 @@ namespace Voussoir
     std::unique_ptr<dealii::Patterns::PatternBase> pattern;
   };
 
-  /** All of them by path. ParameterHandler has no way to ask for them but its
-   *  JSON form. */
+  /** All declared entries by path, from the handler's JSON form, as
+   *  ParameterHandler has no list of them. */
   std::map<std::string, DeclaredEntry>
   declared_entries(const dealii::ParameterHandler &prm);
 
-  /** Sets an entry. Refuses a value that its pattern does not allow by a
-   *  sentence with what is allowed; @p place says where the value stands. */
+  /** Sets an entry. Refuses a value that its pattern does not allow, with a
+   *  sentence on the allowed values; @p place is where the value stands. */
   void
   set_entry(dealii::ParameterHandler            &prm,
             const std::string                   &path,

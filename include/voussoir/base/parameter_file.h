@@ -13,15 +13,15 @@ namespace Voussoir
    * A parameter file as the user wrote it, with the `--set` changes applied.
    *
    * deal.II's ParameterHandler wants every entry declared before it parses, but
-   * which sections a case has depends on the names the user lists in it
-   * (materials, loads). So the file is read once here, `given()` returns the
-   * values that are needed to declare, and `parse()` then hands all of it to
-   * the ParameterHandler, strictly.
+   * which sections a case has depends on the names that the file lists
+   * (materials, loads). So the file is read here first: `given()` returns the
+   * values that the declarations need, and `parse()` then passes all values to
+   * the ParameterHandler.
    */
   class ParameterFile
   {
   public:
-    /** No file: everything at its default. */
+    /** Without a file: all entries at their defaults. */
     ParameterFile() = default;
 
     /**
@@ -46,13 +46,13 @@ namespace Voussoir
     given(const std::string &path, const std::string &otherwise = "") const;
 
     /**
-     * Sets all given values in @p prm. An entry that @p prm does not know, or a
-     * value it does not allow, is refused with file, line, section, entry, and
-     * what is allowed. Entries of a "Class", "Law" or "Type" that --set or a
-     * file that includes theirs has changed, and sections that "Names" then
-     * does not list any more, are left out.
+     * Sets all given values in @p prm. An entry that @p prm has not declared,
+     * or a value that it does not allow, is refused with file, line, section,
+     * entry and the allowed values. Left out are entries of a "Class", "Law" or
+     * "Type" that --set or an including file has changed, and sections that
+     * "Names" no longer lists after such a change.
      *
-     * @return a note for each of these
+     * @return a note for each section or entry left out
      */
     std::vector<std::string>
     parse(dealii::ParameterHandler &prm) const;
@@ -62,16 +62,15 @@ namespace Voussoir
     void
     parse_declared(dealii::ParameterHandler &prm) const;
 
-    /** Entries of @p prm that are given as numbers which need not be whole, or
-     *  as lists of such. */
+    /** Given entries of @p prm that are real numbers or lists of them. */
     std::vector<std::string>
     given_numbers(const dealii::ParameterHandler &prm) const;
 
-    /** Name of the file without folder and ending. */
+    /** Name of the file without folder and extension. */
     std::string
     name() const;
 
-    /** Folder of the file: relative names in it start there. */
+    /** Folder of the file, from which relative names in the file start. */
     std::string
     folder() const;
 
@@ -95,12 +94,13 @@ namespace Voussoir
     void
     change(const std::vector<std::string> &changes);
 
-    /** What stands at a place belonged to the value that an entry had there,
-     *  but has no more. */
+    /** Whether a later place, in another file or --set, has changed the value
+     *  that an entry had at this place. */
     bool
     is_replaced(const std::string &entry, const std::string &place) const;
 
-    /** The entry whose change leaves a section or an entry without use, or "".
+    /** The entry whose change makes a section or an entry unused; "" if there
+     *  is none.
      *  @param path  of the section or the entry
      *  @param place where it stands */
     std::string
@@ -109,7 +109,7 @@ namespace Voussoir
     std::string                  filename;
     std::map<std::string, Value> values; // by "Section/Subsection/Entry"
 
-    // texts that others took the place of, "" for the default
+    // replaced texts of the entries; "" stands for the default value
     std::map<std::string, std::vector<std::string>> replaced;
 
     std::map<std::string, std::string> sections; // path and place

@@ -5,7 +5,7 @@
 
 namespace Voussoir
 {
-  /** Does something in the section at a path ("Section/Subsection"). */
+  /** Runs an action in the section at a path ("Section/Subsection"). */
   template <typename Work>
   void
   in_section(dealii::ParameterHandler &prm,

@@ -11,8 +11,8 @@ namespace Voussoir
   /** No quantity in SI units is larger; squares of such numbers are finite. */
   constexpr double largest_number = 1e30;
 
-  /** The number that @p text is, without blanks around it; nothing if it is
-   *  none, no finite one, or beyond largest_number. */
+  /** The number in @p text, with or without blanks around it; none if the text
+   *  is no finite number or exceeds largest_number. */
   std::optional<double>
   parse_number(std::string_view text);
 

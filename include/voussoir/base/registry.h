@@ -15,8 +15,8 @@
 namespace Voussoir
 {
   /**
-   * The named classes of one kind (materials, loads, projections, observers).
-   * A class joins with one line in its own source file,
+   * The named classes of one kind (materials, loads, projections, observers). A
+   * class is registered by one line in its own source file,
    *
    *   const Registry<Material>::Add<LinearElastic> registered_linear_elastic(
    *     "linear elastic", "Isotropic Hooke's law.");
@@ -35,8 +35,9 @@ namespace Voussoir
     };
 
     /**
-     * The line above. Nothing can catch an error before `main` begins, so a
-     * second class of the same name ends the program at its start.
+     * Registers a class, as in the line above. Nothing can catch an error
+     * before `main` begins, so a second class of the same name ends the program
+     * at its start.
      */
     template <typename Class>
     struct Add
@@ -93,7 +94,7 @@ namespace Voussoir
     {
       const auto entry = entries().find(name);
       if (entry == entries().end())
-        throw UserError(place + " does not know \"" + name + "\"" +
+        throw UserError(place + " cannot be \"" + name + "\"" +
                         known_names(name, names()) + ".");
       return entry->second.create();
     }

@@ -8,10 +8,10 @@
 namespace Voussoir
 {
   /**
-   * Sum of the terms of all ranks that depends neither on their order nor on
-   * the ranks, bit for bit, to 2^-60 of the largest for each term: their digits
-   * are summed in three groups, none of which rounds anything (Demmel and
-   * Nguyen 2013). Holds for up to 2^33 terms.
+   * Sum of the terms of all ranks that depends, to the last bit, neither on
+   * their order nor on the ranks. Its error is 2^-60 of the largest term for
+   * each term: the digits are summed in three groups without rounding (Demmel
+   * and Nguyen 2013). Holds for up to 2^33 terms.
    */
   double
   reproducible_sum(const std::vector<double> &terms,

@@ -6,8 +6,8 @@
 
 namespace Voussoir
 {
-  /** Refuses names of sections that the user lists if one stands there twice or
-   *  has a "/", or if there are too many; @p place says where the list is. */
+  /** Refuses a list of names of sections that has one twice, has a name with
+   *  "/", or is too long; @p place is where the list stands. */
   void
   check_section_names(const std::vector<std::string> &names,
                       const std::string              &place);

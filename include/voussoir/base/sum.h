@@ -11,9 +11,10 @@
 namespace Voussoir
 {
   /**
-   * A sum of doubles; or an exact one of their multiples of 2^-62, which
-   * depends neither on the order of the terms nor on how they are shared among
-   * ranks. Terms are below 2^52 then, and their sum below 2^53.
+   * A sum of doubles, in floating-point arithmetic or exact. The exact sum
+   * takes each term as a multiple of 2^-62 and depends neither on the order of
+   * the terms nor on their distribution over the ranks; its terms are below
+   * 2^52 and the sum below 2^53.
    */
   class Sum
   {
@@ -72,7 +73,7 @@ namespace Voussoir
       return *this;
     }
 
-    /** NaN if it is exact and a term was NaN or too large. */
+    /** NaN if the sum is exact and a term was NaN or too large. */
     operator double() const
     {
       if (!exact)
@@ -95,14 +96,14 @@ namespace Voussoir
       *this = Sum(exact);
     }
 
-    /** Numbers of `save`. */
+    /** Number of values that `save` returns. */
     unsigned int
     n_saved() const
     {
       return exact ? 5 : 1;
     }
 
-    /** Its state, in numbers that a double represents exactly. */
+    /** State of the sum, in numbers that a double represents exactly. */
     std::vector<double>
     save() const
     {
@@ -148,7 +149,7 @@ namespace Voussoir
   };
 
 
-  /** Entry by entry, of equally long lists. */
+  /** Sums of equally long lists, entry by entry. */
   inline std::vector<double>
   sum_over_ranks(const std::vector<Sum> &sums, const MPI_Comm communicator)
   {

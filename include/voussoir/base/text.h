@@ -11,11 +11,11 @@ namespace Voussoir
   std::string
   join(const std::vector<std::string> &words, const std::string &separator);
 
-  /** With A-Z for a-z, other letters as they are. */
+  /** The text with A-Z for a-z, other letters unchanged. */
   std::string
   upper_case(const std::string_view text);
 
-  /** With a-z for A-Z, other letters as they are. */
+  /** The text with a-z for A-Z, other letters unchanged. */
   std::string
   lower_case(const std::string_view text);
 
@@ -28,16 +28,16 @@ namespace Voussoir
   /**
    * The candidate that differs from @p word by the fewest typing errors (a
    * letter too many, missing, wrong, or two exchanged; upper and lower case
-   * count as equal), or an empty string if none is near enough to be meant.
+   * count as equal), or an empty string if none is close enough.
    */
   std::string
   closest_match(const std::string              &word,
                 const std::vector<std::string> &candidates);
 
   /**
-   * The end of a sentence that says @p word is unknown: which name was perhaps
-   * meant and which there are, as in
-   * ` (did you mean "dam"?); known are: dam, rock`.
+   * The end of a message on an unknown @p word: the name that was probably
+   * meant and the known names, as in ` (did you mean "dam"?); known are: dam,
+   * rock`.
    */
   std::string
   known_names(const std::string              &word,

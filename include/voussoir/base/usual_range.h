@@ -8,7 +8,7 @@
 
 namespace Voussoir
 {
-  /** Quantities whose values show in which unit they were given. */
+  /** Quantities whose usual range shows whether the unit is right. */
   enum class Usual
   {
     modulus,

@@ -46,7 +46,7 @@ namespace Voussoir
     void
     declare(dealii::ParameterHandler &prm, const ParameterFile &file);
 
-    /** Refuses criteria without quantity, or with none or both limits. */
+    /** Refuses criteria without quantity, without limit or with both limits. */
     void
     check() const;
 
@@ -57,27 +57,26 @@ namespace Voussoir
     /**
      * A line for each of them, by its name: clause, load case, quantity,
      * source, "demand", limit as "at most" or "at least", "met", and where the
-     * summary knows them "of", "at the time [s]", "at [m]". If the summary has
-     * no such number, demand and "met" are null: it is not assessed.
+     * summary has them "of", "at the time [s]", "at [m]". If the summary has no
+     * such number, demand and "met" are null: the criterion is not assessed.
      */
     nlohmann::json
     table(const nlohmann::json &summary) const;
 
   private:
-    std::string names, load_cases;
-    std::list<AcceptanceCriterion>
-      criteria; // of which prm stores the addresses
+    std::string                    names, load_cases;
+    std::list<AcceptanceCriterion> criteria; // whose addresses prm stores
   };
 
   /** A number beside its limit, as a line of a table: "value", "at most" or "at
-   *  least", "met". One that is not finite is null, and not met. */
+   *  least", "met". A number that is not finite is null, and not met. */
   nlohmann::json
   at_most(const double value, const double limit);
 
   nlohmann::json
   at_least(const double value, const double limit);
 
-  /** One that nothing is compared with: "met" is null, it is to be judged. */
+  /** A number without a limit: "met" is null, it is to be judged. */
   nlohmann::json
   without_limit(const double value);
 

@@ -7,15 +7,14 @@
 namespace Voussoir
 {
   /**
-   * A step of Gauss and Newton towards the entries for which computed numbers
-   * are as near as possible to measured ones, in the least squares of their
-   * logarithms.
+   * A Gauss-Newton step towards the entries that fit computed to measured
+   * numbers, by least squares of the differences of their logarithms.
    */
   struct CalibrationStep
   {
     /**
-     * @param sensitivity change of the logarithm of a number, its row, over
-     *   that of an entry, its column
+     * @param sensitivity change of the logarithm of a number (row) over that of
+     *   an entry (column)
      * @param misfit      logarithms of computed over measured numbers
      * @param error       relative standard error of a measured number
      */
@@ -23,10 +22,10 @@ namespace Voussoir
                     const dealii::Vector<double>     &misfit,
                     const double                      error);
 
-    /** Whether the numbers tell the entries apart; if not, there is no step. */
+    /** Whether the numbers determine the entries; if not, there is no step. */
     bool determined = false;
 
-    /** Of the logarithms of the entries. */
+    /** Change of the logarithms of the entries. */
     dealii::Vector<double> change;
 
     /** Relative standard errors of the entries. */

@@ -25,10 +25,10 @@
 namespace Voussoir
 {
   /**
-   * The objects of one kind that a case names, each a section of its own: `set
-   * Names = concrete, rock` and, in the section of that name, the class it is
-   * of and the entries of that class. They have the values of the file and do
-   * not change; objects that change with a model or a run are made anew.
+   * The objects of one kind that a case names: `set Names = concrete, rock`
+   * and, in a section of each name, the class of the object and the entries of
+   * that class. The objects have the values of the file and do not change;
+   * objects that change with a model or a run are made anew.
    */
   template <typename Base>
   class NamedObjects
@@ -37,12 +37,12 @@ namespace Voussoir
     using List = std::vector<std::pair<std::string, std::unique_ptr<Base>>>;
 
     /**
-     * Declares those that the entry "Names" of a section lists.
+     * Declares the objects that the entry "Names" of a section lists.
      *
-     * @param section       where the list is
+     * @param section       section of the list
      * @param what          noun for an object, for the description
-     * @param default_class of one that names none
-     * @param can_rest      whether one can be inactive
+     * @param default_class class of an object that names none
+     * @param can_rest      whether an object can be inactive
      */
     void
     declare(dealii::ParameterHandler &prm,
@@ -52,7 +52,7 @@ namespace Voussoir
             const std::string        &default_class,
             const bool                can_rest);
 
-    /** Declares one, in the section @p place that @p prm has entered. */
+    /** Declares an object, in the section @p place that @p prm has entered. */
     void
     declare_one(dealii::ParameterHandler &prm,
                 const std::string        &name,
@@ -61,19 +61,19 @@ namespace Voussoir
                 const std::string        &place_of_class,
                 const bool                active = true);
 
-    /** Calls @p visit for each as long as the case is being read. */
+    /** Calls @p visit for each object, while the case is being read. */
     void
     for_each(
       const std::function<void(const std::string &place, Base &)> &visit);
 
-    /** New ones with the entries of the file, for those who change them. */
+    /** New objects with the entries of the file, free to change. */
     List
     make(const ParameterFile &file) const;
 
     std::vector<std::pair<std::string, const Base *>> objects;
 
-    /** Those with `set Active = false`, whose entries are checked all the same.
-     */
+    /** Objects with `set Active = false`; their entries are checked all the
+     *  same. */
     std::vector<std::pair<std::string, const Base *>> inactive;
 
   private:
@@ -142,7 +142,7 @@ namespace Voussoir
     Case();
 
     /** Declares, parses and checks; @p declare_more adds sections that the
-     *  caller reads himself. */
+     *  caller reads. */
     explicit Case(
       const ParameterFile                                   &file,
       const std::function<void(dealii::ParameterHandler &)> &declare_more = {});
@@ -176,13 +176,12 @@ namespace Voussoir
     StudyParameters                study;
     NamedObjects<Observer>         observers;
 
-    /** Observers that the file does not name, which evaluate strengths that it
-     *  gives: over-stress, and cracks that go through. One that does not fit
-     *  the mesh is left out. */
+    /** Observers that the file does not name, but for which it gives strengths:
+     *  over-stress and through cracks. An observer that does not fit the mesh
+     *  is left out. */
     std::vector<std::string> added_observers;
 
-    /** Values outside their usual range, and sections that are not used, for
-     *  the log. */
+    /** For the log: values outside their usual range, and unused sections. */
     std::vector<std::string> warnings, notes;
 
     /** The mesh that the case asks for, checked; a report goes to @p log. */
@@ -215,8 +214,9 @@ namespace Voussoir
     void
     add_observers();
 
-    /** Takes sections of observers that are not among these, as where "--set"
-     *  leaves one out: their entries are checked, and the log notes it. */
+    /** Reads sections of observers that "Observers" does not name, for example
+     *  because "--set" leaves one out: their entries are checked, and the log
+     *  notes that the section is not used. */
     void
     declare_unused_observers(const std::vector<std::string> &used);
 

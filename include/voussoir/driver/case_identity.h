@@ -12,7 +12,7 @@ namespace Voussoir
 {
   /**
    * Data that must not change between a checkpoint and the run that continues
-   * from it: each entry but those for the duration and for the times of output,
+   * from it: all entries except those for the duration and the times of output,
    * as "Section/Entry = value", and the checksums of the files that entries
    * name.
    */
@@ -29,9 +29,9 @@ namespace Voussoir
   nlohmann::json
   result_identity_of(const Case &parameters);
 
-  /** The first entry in which two identities differ, as each has it ("nothing"
-   *  if it does not). Files are compared by their contents: they may have been
-   *  moved. */
+  /** The first entry in which two identities differ, with its value in each
+   *  ("nothing" where it is missing). Files are compared by their contents, as
+   *  they may have been moved. */
   std::optional<std::pair<std::string, std::string>>
   first_difference(const nlohmann::json &one, const nlohmann::json &other);
 
@@ -39,7 +39,7 @@ namespace Voussoir
   std::string
   checksum(const std::string &bytes);
 
-  /** Refuses another identity; @p checkpoint names the file it is from. */
+  /** Refuses another identity; @p checkpoint names its file. */
   void
   check_identity(const Case           &parameters,
                  const nlohmann::json &identity,

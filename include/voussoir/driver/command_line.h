@@ -12,9 +12,9 @@ namespace Voussoir
   run_command_line(const int argc, char **argv, const MPI_Comm communicator);
 
   /**
-   * Calls @p action and turns its exceptions into one sentence on the first
-   * rank that has one and exit code 1, or for a stop on request the one for
-   * that.
+   * Calls @p action. The first rank with an exception reports it in one
+   * sentence, and the exit code is 1, or exit_code_stopped after a stop on
+   * request.
    */
   int
   guarded(const std::function<void()> &action, const MPI_Comm communicator);

@@ -15,7 +15,7 @@ namespace Voussoir
      *  that cannot enter the model in the given way. */
     EarthquakeMotion(const Model &model, Log &log);
 
-    /** None where the ground does not move; the earthquake takes them. */
+    /** None where the ground does not move; moved into the Earthquake. */
     GroundMotionSignals signals;
 
     /** Accelerations up to the end time in x, y, z [m/s2], every
@@ -23,8 +23,7 @@ namespace Voussoir
     std::array<std::vector<double>, 3> accelerations;
     static constexpr double            sample_interval = 1e-3;
 
-    /** Misfit of recorded components to the spectrum that they are matched to.
-     */
+    /** Misfit of recorded components to their target spectrum. */
     std::vector<SpectrumFit> fits;
 
     /** Time up to which a motion without end was deconvolved from the free

@@ -8,14 +8,15 @@
 
 namespace Voussoir
 {
-  /** Runs at one intensity of the motion, and how many meet a criterion. */
+  /** Numbers of runs at one intensity of the motion, and of those that meet a
+   *  criterion. */
   struct IntensityLevel
   {
     double       intensity;
     unsigned int n_runs, n_met;
   };
 
-  /** With bounds of the confidence that was asked for. */
+  /** An estimate with its confidence bounds. */
   struct BoundedEstimate
   {
     double value, lower, upper;
@@ -24,8 +25,8 @@ namespace Voussoir
   /**
    * The probability Phi(ln(intensity / median) / dispersion) that a criterion
    * is met, by maximum likelihood (Baker 2015, Earthquake Spectra 31, 579-599):
-   * the runs at each level are independent trials. Confidence bounds are those
-   * of Fisher's information on the logarithms of both.
+   * the runs at each level are independent trials. Confidence bounds follow
+   * from Fisher's information for the logarithms of median and dispersion.
    */
   struct FragilityCurve
   {
@@ -33,11 +34,11 @@ namespace Voussoir
     FragilityCurve(const std::vector<IntensityLevel> &levels,
                    const double                       confidence);
 
-    /** Of a curve that was found. */
+    /** The probability, if the curve was found. */
     double
     probability(const double intensity) const;
 
-    std::string                    verdict; // "found", or why it was not
+    std::string                    verdict; // "found", or the reason why not
     std::optional<BoundedEstimate> median, dispersion;
   };
 } // namespace Voussoir

@@ -18,7 +18,7 @@ namespace Voussoir
     /** @param folder of this run, claimed */
     KeptStates(const Model &model, const ResultFolder &folder, Log &log);
 
-    /** The kept state for this run; none if there is none, or it is damaged. */
+    /** The kept state for this run; none if it is missing or damaged. */
     std::optional<StaticState>
     find() const;
 

@@ -22,7 +22,7 @@ namespace Voussoir
     void
     declare(dealii::ParameterHandler &prm);
 
-    /** Runs the test on the material and returns its table. */
+    /** Runs the test on the material and writes its table. */
     void
     run(const Material &tested, std::ostream &csv) const;
   };

@@ -7,9 +7,10 @@
 namespace Voussoir
 {
   /**
-   * Warns of probable mistakes that can be computed all the same: a mesh in
-   * another unit or turned, an outer side without boundary condition, rock with
-   * weight, water whose pressure and whose added mass act on different faces.
+   * Warns of probable mistakes that do not prevent a run: a mesh in another
+   * unit or with another upward axis, an outer side without boundary condition,
+   * rock with weight, water whose pressure and whose added mass act on
+   * different faces.
    *
    * @param materials of the cells of @p mesh
    */

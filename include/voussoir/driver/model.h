@@ -23,13 +23,13 @@ namespace Voussoir
 
     ~Model();
 
-    /** Frequencies of the S waves that the largest cells of each material carry
-     *  well, with eight nodes per wavelength; 0 for a material without cells.
-     *  All ranks must call this together [Hz]. */
+    /** Carried frequency of each material: the highest one of S waves with
+     *  eight nodes per wavelength in its largest cells; 0 for a material
+     *  without cells. All ranks must call this together [Hz]. */
     std::vector<double>
     carried_frequencies() const;
 
-    /** The highest of them [Hz]. */
+    /** The highest carried frequency [Hz]. */
     double
     carried_frequency() const;
 
@@ -45,9 +45,9 @@ namespace Voussoir
     const Case &parameters;
 
   private:
-    /** The meshes that are needed only until the grids are made. One of a file
-     *  that METIS distributes is on one rank of each machine; the others have
-     *  its names and the faces of its sets. */
+    /** The meshes, which are needed only until the grids are made. A mesh from
+     *  a file that METIS distributes is on one rank of each machine; the other
+     *  ranks have its names and the faces of its sets. */
     struct Meshes
     {
       Meshes(const Case &parameters, Log &log);
@@ -78,8 +78,8 @@ namespace Voussoir
     /** Compressible water, or null. */
     const std::shared_ptr<const Reservoir> reservoir;
 
-    /** Cells of water that the natural modes need, or null; that of the run if
-     *  it has some. */
+    /** The reservoir that the natural modes need, or null; the reservoir of the
+     *  run if it has one. */
     const std::shared_ptr<const Reservoir> reservoir_of_modes;
 
     /** Springs, dashpots, masses and forces of boundary, loads and water on
@@ -106,8 +106,8 @@ namespace Voussoir
     void
     report_materials(Log &log) const;
 
-    /** The stiffness of springs follows from the distance to this point, which
-     *  may lie anywhere. */
+    /** Warns of a source point far outside the model, as the stiffness of
+     *  springs follows from the distance to it. */
     void
     check_source_point(Log &log) const;
 

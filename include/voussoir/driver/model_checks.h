@@ -6,24 +6,24 @@
 
 namespace Voussoir
 {
-  /** Refuses a part that shares no node with the others, as it was forgotten
-   *  when nodes were merged; a body without any support may be meant to move
-   *  freely, and is warned of. */
+  /** Refuses a part without support that shares no node with a supported one,
+   *  as its nodes were probably not merged. Warns of other separate parts,
+   *  which may be meant to move freely. */
   void
   check_parts(const Case              &parameters,
               const CoarseMesh        &solid,
               const InterfaceSurfaces &surfaces,
               Log                     &log);
 
-  /** Warns where loads and constraints act on the faces of an interface: on one
-   *  of its sides only. */
+  /** Warns of boundaries, loads and constraints on the faces of an interface,
+   *  as they act on one of its sides only. */
   void
   report_sets_on_interfaces(const Case              &parameters,
                             const CoarseMesh        &solid,
                             const InterfaceSurfaces &surfaces,
                             Log                     &log);
 
-  /** Warns of levels that do not fit each other: the loads and the added mass
+  /** Warns of levels that contradict each other: the loads and the added mass
    *  of the same water are in separate sections. */
   void
   check_levels(const Case &parameters, Log &log);

@@ -15,12 +15,12 @@ namespace Voussoir
   ParameterFile
   with_random_classes(const ParameterFile &file);
 
-  /** The same file with uniform materials: a study that changes entries of a
-   *  material looks for them in it. */
+  /** The same file with uniform materials, in which a study finds the entries
+   *  of a material that it changes. */
   ParameterFile
   without_random_fields(const ParameterFile &file);
 
-  /** Which cells of a coarse mesh are of the class of a material. */
+  /** The cells of a coarse mesh that belong to the class of a material. */
   class RandomClasses
   {
   public:

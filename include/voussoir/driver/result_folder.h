@@ -9,8 +9,8 @@
 
 namespace Voussoir
 {
-  /** Removes what a killed run left in a folder: files without
-   *  their end, and the locks of Open MPI beside them.
+  /** Removes incomplete files that a killed run left in a folder, and the locks
+   *  of Open MPI beside them.
    *  @param start of their names */
   void
   remove_unfinished(const std::string &folder, const std::string &start = "");
@@ -30,42 +30,41 @@ namespace Voussoir
     bool validate = false;
   };
 
-  /** Where the results of a run go, and the checkpoint there that it continues
-   *  from. */
+  /** The output folder of a run, and the checkpoint there from which the run
+   *  continues. */
   class ResultFolder
   {
   public:
     /**
-     * Looks for the folder, but writes nothing: the one that the case names,
-     * with the next free number added if it exists; a restart continues in the
-     * one with the newest checkpoint. Throws UserError if it cannot be written
-     * to or must not be overwritten, if another run is writing there, or if
-     * there is no checkpoint, or one of a different case.
+     * Chooses the folder without writing: the folder that the case names, with
+     * the next free number added if it exists; a restart continues in the
+     * folder with the newest checkpoint. Throws UserError if the folder cannot
+     * be written to or must not be overwritten, if another run is writing
+     * there, or if there is no checkpoint, or only one of a different case.
      */
     ResultFolder(const Case &parameters, const RunOptions &options, Log &log);
 
-    /** Takes the folder for this run and no other, puts the parameters as run
-     *  there, and lets the log write there. Throws UserError if that is
-     *  impossible. */
+    /** Claims the folder for this run alone, writes the parameters as run into
+     *  it, and opens the log there. Throws UserError if that is impossible. */
     void
     claim(Log &log);
 
-    /** Whether the run is to have one. */
+    /** Whether the run has an output folder. */
     bool
     wanted() const;
 
-    /** Whether it is claimed. */
+    /** Whether the folder is claimed. */
     bool
     exists() const;
 
-    /** Empty: not claimed. */
+    /** The claimed folder; empty: none is claimed. */
     std::string
     path() const;
 
     bool
     restarts() const;
 
-    /** Where the checkpoints are. */
+    /** Folder of the checkpoints. */
     std::string
     checkpoints() const;
 
@@ -73,7 +72,7 @@ namespace Voussoir
     const std::string &
     checkpoint_file() const;
 
-    /** Its header. */
+    /** Header of this checkpoint. */
     const nlohmann::json &
     checkpoint() const;
 
@@ -82,8 +81,8 @@ namespace Voussoir
     start_time() const;
 
   private:
-    /** Takes the newest checkpoint that is whole, in an older folder if the
-     *  newest one has none. */
+    /** Chooses the newest whole checkpoint, in an older folder if the newest
+     *  one has none. */
     void
     find_checkpoint(Log &log);
 

@@ -12,9 +12,9 @@
 namespace Voussoir
 {
   /**
-   * One earthquake on a model: its state, its observers, and the time loop. All
-   * that changes with time is its own, so that another run can be made on the
-   * same model and starts clean.
+   * One earthquake on a model: its state, its observers, and the time loop.
+   * Everything that changes with time belongs to the run, so that another run
+   * on the same model starts afresh.
    */
   class Run
   {
@@ -26,7 +26,7 @@ namespace Voussoir
         const ResultFolder &folder,
         Log                &log);
 
-    /** With a setup that was made before. */
+    /** A run with a setup that was made before. */
     Run(const StaticState        &static_state,
         const Modes              &modes,
         const ResultFolder       &folder,
@@ -34,7 +34,7 @@ namespace Voussoir
         Log                      &log);
 
     /** Steps to the end time: `begin`, each `step`, `end`. Throws StoppedRun if
-     *  the motion goes wrong. */
+     *  the energy balance is violated. */
     RunSummary
     march();
 

@@ -22,7 +22,7 @@ namespace Voussoir
     bool
     are_due(const unsigned long long step) const;
 
-    /** @return whether it was possible */
+    /** @return whether the checkpoint is written */
     bool
     write(State &state, const EnergyBalance &energy) const;
 
@@ -39,7 +39,7 @@ namespace Voussoir
     std::vector<double *>
     plain_sums_of_rank() const;
 
-    /** The live numbers that a checkpoint holds; documents are empty. */
+    /** The numbers that a checkpoint holds; documents are empty. */
     StateContent
     content_of(State &state) const;
 

@@ -8,8 +8,8 @@ namespace Voussoir
 {
   /**
    * The parts of a run that do not depend on its damping, which may be fitted
-   * to the natural modes and so depend on the static state. Mistakes in them
-   * are refused here, before these are computed.
+   * to the natural modes and so depend on the static state. Mistakes in these
+   * parts are refused here, before static state and modes are computed.
    */
   class RunPlan
   {

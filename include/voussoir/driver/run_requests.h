@@ -17,7 +17,7 @@ namespace Voussoir
                 const ResultFolder     &folder,
                 Log                    &log);
 
-    /** The loop begins, after this step. */
+    /** To be called when the loop begins, after this step. */
     void
     start(const unsigned long long step);
 
@@ -35,7 +35,7 @@ namespace Voussoir
     Requests
     poll(const unsigned long long step);
 
-    /** A checkpoint was tried. */
+    /** To be called after each attempt to write a checkpoint. */
     void
     checkpoint_tried();
 

@@ -15,12 +15,12 @@ namespace Voussoir
   {
   public:
     /**
-     * Throws UserError if there is no such time step.
+     * Throws UserError if the time step of the case is unstable.
      *
-     * @param modes  to which damping is fitted, if the case asks for that;
-     * before they are known there is no damping, which allows the longest step
-     * @param folder whose checkpoint, if the run continues from one, has the
-     * step
+     * @param modes to which damping is fitted, if the case asks for that; until
+     *   they are known the setup has no damping and so the longest step
+     * @param folder of the checkpoint, if the run continues from one, whose
+     *   time step is kept
      */
     RunSetup(RunPlan           &&plan,
              const Modes        &modes,
@@ -28,7 +28,7 @@ namespace Voussoir
              Log                &log);
 
   private:
-    /** Damping, and the cells that it is of. */
+    /** Damping, and the cells to which it applies. */
     struct DampedCells
     {
       DampedCells(const Model &model, const Modes &modes);
@@ -44,7 +44,7 @@ namespace Voussoir
              Log                &log);
 
   public:
-    RunPlan      plan; // whose motion the earthquake has
+    RunPlan      plan; // its motion has been moved into the earthquake
     const Model &model;
 
     const Damping damping;
@@ -58,8 +58,8 @@ namespace Voussoir
     const std::unique_ptr<WaterMotion> water; // compressible, or null
   };
 
-  /** Refuses time steps of a case that are unstable under any damping, with the
-   *  longest stable ones. */
+  /** Refuses a time step of the case that is unstable even without damping; the
+   *  message has the largest stable one. */
   void
   check_without_damping(const RunPlan      &plan,
                         const ResultFolder &folder,

@@ -40,7 +40,7 @@ namespace Voussoir
     DampingSummary damping;
   };
 
-  /** How a recorded component fits its target spectrum. */
+  /** Fit of a recorded component to its target spectrum. */
   struct FitSummary
   {
     double mean_misfit, largest_misfit; // [%]
@@ -55,7 +55,7 @@ namespace Voussoir
     double              damping_ratio;
     std::vector<double> periods; // [s]
 
-    /** In x, y, z [m/s2], those in which the ground moves. */
+    /** Spectra in x, y, z [m/s2]; none where the ground does not move. */
     std::array<std::optional<std::vector<double>>, 3> components;
   };
 
@@ -109,12 +109,12 @@ namespace Voussoir
     std::map<std::string, std::string> missing_files; // with the reason
 
     /** "stopped: ..." or "failed: ..."; else "not met: ..." or "to be judged:
-     *  ..." with the lines of the tables of which that is so, "with warnings,
+     *  ..." with the names of these lines of the tables; else "with warnings,
      *  see there" or "no objection". */
     std::string
     verdict() const;
 
-    /** The same without the advice that follows. */
+    /** The verdict without the advice at its end. */
     std::string
     short_verdict() const;
 
@@ -131,7 +131,7 @@ namespace Voussoir
   void
   from_json(const nlohmann::json &json, RunSummary &summary);
 
-  /** Whether this may be a summary: it has a verdict. */
+  /** Whether a JSON may be a summary, by its verdict. */
   bool
   is_summary(const nlohmann::json &json);
 

@@ -14,19 +14,19 @@ namespace Voussoir
   public:
     explicit RunTimes(const dealii::types::global_dof_index n_unknowns);
 
-    /** The loop begins, after this step. */
+    /** To be called when the loop begins, after this step. */
     void
     start(const unsigned long long step);
 
-    /** It has ended. */
+    /** To be called when the loop has ended. */
     void
     stop();
 
-    /** Since it began, or until it ended [s]. */
+    /** Duration of the loop, so far or until its end [s]. */
     double
     seconds() const;
 
-    /** Steps of the loop until this one. */
+    /** Number of steps of the loop up to this one. */
     unsigned long long
     n_steps(const unsigned long long step) const;
 

@@ -6,26 +6,26 @@
 
 namespace Voussoir
 {
-  /** A number that a parameter file gives, moved by a little. */
+  /** A number of a parameter file, moved by a small share. */
   struct MovedNumber
   {
     std::string entry;
     double      value;
     std::string name;   // of the entry, and its place in a list of numbers
     double      change; // over the value
-    std::string text;   // of the entry with it
+    std::string text;   // of the entry with the moved number
   };
 
-  /** Each number of a file that is not whole or zero by nature, twice: moved
-   *  down and up by a share.
+  /** Each real number of a file that is not zero, twice: moved down and up by a
+   *  share.
    *
-   *  @param prm of the case, which says what are numbers */
+   *  @param prm of the case, whose patterns show which entries are numbers */
   std::vector<MovedNumber>
   moved_numbers(const ParameterFile            &file,
                 const dealii::ParameterHandler &prm,
                 const StudyParameters          &parameters);
 
-  /** How a quantity changes with a number. */
+  /** Sensitivity of a quantity to a number. */
   struct Sensitivity
   {
     /**

@@ -8,9 +8,9 @@ namespace Voussoir
 {
   /**
    * The parameter file of this name or, where there is none, the shipped case
-   * of this name, with or without "prm/" in front; the name itself if that is
-   * not there either. Shipped cases are in share/voussoir/prm of an
-   * installation, and in prm beside the build folder.
+   * of this name, with or without "prm/" in front; the name itself if there is
+   * no such case. Shipped cases are in share/voussoir/prm of an installation,
+   * and in prm beside the build folder.
    */
   std::string
   find_case(const std::string &name);

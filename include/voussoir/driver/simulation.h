@@ -18,7 +18,7 @@ namespace Voussoir
                const RunOptions &options,
                const MPI_Comm    communicator);
 
-    ~Simulation(); // not in each file that has one: that takes long to compile
+    ~Simulation(); // defined in one file, as it takes long to compile
 
     Log          log;
     ResultFolder folder;

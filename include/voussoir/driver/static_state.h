@@ -9,7 +9,7 @@ namespace Voussoir
    *  earthquake. */
   struct StaticState
   {
-    /** Without static stages. */
+    /** The state of a model without static stages. */
     explicit StaticState(const Model &model);
 
     InitialState initial;
@@ -25,8 +25,8 @@ namespace Voussoir
   StaticState
   find_static_state(const Model &model, Log &log);
 
-  /** The same state with the moduli of a run, whose internal force this is; see
-   *  hand_over of the static state. */
+  /** The same state with the moduli of the run that has this internal force;
+   *  see hand_over of the static state. */
   StaticState
   handed_over(StaticState        &&found,
               const Model         &model,

@@ -6,7 +6,7 @@
 namespace Voussoir
 {
   /**
-   * Writes the static state into a file, so that it need not be found again;
+   * Writes the static state into a file, so that it need not be computed again;
    * throws UserError if that fails.
    *
    * @param identity by which other runs find the state, see

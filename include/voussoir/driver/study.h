@@ -11,10 +11,11 @@
 
 namespace Voussoir
 {
-  /** Of a study of which some runs stand, and others were stopped or failed. */
+  /** Exit code of a study in which some runs reached their end, and others were
+   *  stopped or failed. */
   constexpr int exit_code_incomplete = 2;
 
-  /** A study ends with that exit code. */
+  /** A study that ends with exit_code_incomplete. */
   class IncompleteStudy : public UserError
   {
   public:
@@ -22,17 +23,16 @@ namespace Voussoir
   };
 
   /**
-   * Many runs of one parameter file with some entries varied, the search for
-   * the value of one at which a criterion is met, for those with which the
-   * model is nearest to measured numbers, or each number moved by a little.
-   * Each run has a folder in that of the study; a study that is started again
-   * does only the missing runs.
+   * Many runs of one parameter file: with some entries varied, to find the
+   * value of an entry at which a criterion is met, to fit entries to measured
+   * numbers, or with each number moved by a small share. Each run has a folder
+   * in that of the study; a study that is started again does only the missing
+   * runs.
    */
   class Study
   {
   public:
-    /** Throws UserError for whatever is wrong with any of the runs, before the
-     *  first one. */
+    /** Throws UserError for a mistake in any run, before the first one. */
     Study(const ParameterFile &file,
           const RunOptions    &options,
           const MPI_Comm       communicator);
@@ -40,9 +40,9 @@ namespace Voussoir
     ~Study();
 
     /** All runs, then study.csv and study.json. A run that fails is reported,
-     *  and the others continue; in the end that is IncompleteStudy, or
-     *  UserError if no run stands. Throws UserError, too, if another study is
-     *  in progress in the folder. */
+     *  and the others continue; at the end throws IncompleteStudy, or UserError
+     *  if no run reached its end. Throws UserError, too, if another study is in
+     *  progress in the folder. */
     void
     run();
 
@@ -73,12 +73,12 @@ namespace Voussoir
       double      fails = 0., meets = 0.;
     };
 
-    /** One run as the file has it, and those with one number moved that the
-     *  program does not refuse. */
+    /** One run with the values of the file, and one for each moved number that
+     *  the program does not refuse. */
     void
     plan_moves(const Case &whole);
 
-    /** This file with the values of a run, which is no study itself. */
+    /** This file with the values of a run and without the study. */
     ParameterFile
     file_of(const StudyValues &values) const;
 
@@ -89,23 +89,23 @@ namespace Voussoir
     StudyValues
     shown(const StudyValues &values) const;
 
-    /** Number of runs, and what they leave out. */
+    /** Reports the number of runs, and what is left out. */
     void
     introduce() const;
 
-    /** Makes the folder and takes it for this study. */
+    /** Makes the folder and claims it for this study. */
     void
     claim_folder();
 
-    /** Says how many runs stand, and throws if these are not all. */
+    /** Reports how many runs reached their end, and throws if not all did. */
     void
     conclude() const;
 
-    /** Makes a run, or reads its results if they exist. */
+    /** Does a run, or reads its results if they exist. */
     const Outcome &
     outcome_of(const StudyValues &values);
 
-    /** @param may_go_on from a checkpoint that the folder has */
+    /** @param may_go_on whether from a checkpoint in the folder */
     RunSummary
     do_run(const Case        &parameters,
            const std::string &folder,
@@ -128,18 +128,19 @@ namespace Voussoir
     dealii::Vector<double>
     misfit(const StudyValues &values);
 
-    /** Finds the fitted entries that are nearest to what was measured. */
+    /** Finds the values of the fitted entries that fit the measured numbers
+     *  best. */
     void
     calibrate(const StudyValues &values);
 
     void
     report(const std::string &text) const;
 
-    /** Brings the outcomes of all groups together on each rank. */
+    /** Collects the outcomes of all groups on each rank. */
     void
     gather();
 
-    /** Writes study.csv, study.json and the tables of what is evaluated. */
+    /** Writes study.csv, study.json and the tables of the evaluations. */
     void
     write_tables() const;
 
@@ -164,7 +165,7 @@ namespace Voussoir
     nlohmann::json
     all_results() const;
 
-    /** Runs that this group will have done at the end, about. */
+    /** Approximate number of runs of this group in the whole study. */
     std::size_t
     n_expected() const;
 

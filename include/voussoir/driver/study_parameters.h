@@ -10,10 +10,10 @@
 
 namespace Voussoir
 {
-  /** Entries and their values in one run of a study, as they are written. */
+  /** Entries and their values in one run of a study, as text. */
   using StudyValues = std::vector<std::pair<std::string, std::string>>;
 
-  /** The name by which a study calls the number that divides strengths. */
+  /** Name, in a study, of the number that divides strengths. */
   inline const std::string strength_reduction = "strength reduction";
 
   /** The entries of the section "Study". */
@@ -27,7 +27,7 @@ namespace Voussoir
     double      from = 1., to = 2., accuracy = 0.05;
     bool        extend = true;
 
-    // of the extrapolation to cells and steps of no size
+    // of the extrapolation to cells and steps of size zero
     std::string  refined;
     double       method_order = 2.;
     unsigned int dimensions   = 3;
@@ -67,13 +67,12 @@ namespace Voussoir
     bool
     reduces_strengths() const;
 
-    /** Refuses lists of no values or of unequal length, and criteria that are
-     *  none. */
+    /** Refuses empty lists, lists of unequal length, and invalid criteria. */
     void
     check() const;
 
-    /** The values of each run, or of each search for a limit; one without any
-     *  if nothing is varied. */
+    /** The values of each run, or of each search for a limit; one empty item if
+     *  nothing is varied. */
     std::vector<StudyValues>
     combinations() const;
 
@@ -81,11 +80,11 @@ namespace Voussoir
     std::vector<std::string>
     spread_entries() const;
 
-    /** Those that make cells or steps smaller, with their partners. */
+    /** Entries that make cells or steps smaller, with their partners. */
     std::vector<std::string>
     refined_entries() const;
 
-    /** Those whose runs are trials and levels of a fragility curve. */
+    /** Entries whose runs are the trials and levels of a fragility curve. */
     std::vector<std::string>
     fragility_entries() const;
 
@@ -106,16 +105,16 @@ namespace Voussoir
     measured_numbers() const;
 
   private:
-    /** Refuses fewer numbers than entries, and what calibration cannot go
-     *  with. */
+    /** Refuses fewer numbers than entries, and other evaluations beside
+     *  calibration. */
     void
     check_calibration() const;
 
-    /** Refuses what extrapolation, fragility and sensitivity cannot go with. */
+    /** Refuses entries that exclude extrapolation, fragility or sensitivity. */
     void
     check_evaluations() const;
 
-    /** @param list of varied entries, @p place of which it is */
+    /** @param list of varied entries, in the entry @p place */
     std::vector<std::string>
     with_partners(const std::string &list, const std::string &place) const;
   };
@@ -129,7 +128,7 @@ namespace Voussoir
   other_values(const StudyValues              &values,
                const std::vector<std::string> &entries);
 
-  /** Runs of which only the values of some entries differ. */
+  /** Runs that differ only in the values of some entries. */
   template <typename Run>
   struct StudyGroup
   {

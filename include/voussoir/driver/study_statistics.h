@@ -13,14 +13,14 @@ namespace Voussoir
   struct Statistics
   {
     /**
-     * @param beyond where the runs without a value lie, infinitely high or low:
-     *   they count for the fractiles, not for mean and deviation
+     * @param beyond value of the runs without one, plus or minus infinity: they
+     *   count for the fractiles, not for mean and deviation
      */
     Statistics(const Sample &sample, const double beyond);
 
-    unsigned int          n = 0;                    // with a value
-    std::optional<double> mean, deviation;          // of a larger population
-    std::array<std::optional<double>, 3> fractiles; // none: beyond
+    unsigned int                         n = 0;           // with a value
+    std::optional<double>                mean, deviation; // of the population
+    std::array<std::optional<double>, 3> fractiles;       // none: beyond
   };
 
   /** A run, or the search for a limit, of a study. */
@@ -34,7 +34,7 @@ namespace Voussoir
    * A table of the statistics over some varied entries, a line for each
    * combination of the others and each quantity.
    *
-   * @param spread_entries over which
+   * @param spread_entries entries over which statistics are taken
    * @param names          of the quantities
    */
   std::string

@@ -15,15 +15,15 @@ namespace Voussoir
   /**
    * A number of summary.json by its path, as "histories/crest/largest
    * displacement [m]"; a star in a name stands for any letters, and elements of
-   * a list are named by their index, from 0. Of several numbers that fit the
-   * largest counts, or the smallest if the last name begins with that word.
+   * a list are named by their index, from 0. Of several matching numbers the
+   * largest counts, or the smallest if the last name begins with "smallest".
    */
   class SummaryNumber
   {
   public:
     explicit SummaryNumber(const std::string &path);
 
-    /** None if nothing fits that is a number. */
+    /** The number; none if no number matches. */
     std::optional<double>
     in(const nlohmann::json &summary) const;
 
@@ -33,20 +33,21 @@ namespace Voussoir
       double                   value;
       std::vector<std::string> names; // along the path, without stars
 
-      /** When [s] and where [m] that was, if the summary has it beside it: "at
-       *  the time [s]", or "time of the smallest safety [s]" beside "smallest
-       *  safety"; likewise "at [m]" and "place of the ...". Else null. */
+      /** Time [s] and place [m] of the number, if the summary has them beside
+       *  it: "at the time [s]", or "time of the smallest safety [s]" beside
+       *  "smallest safety"; likewise "at [m]" and "place of the ...". Else
+       *  null. */
       nlohmann::json time, place;
     };
 
     std::optional<Found>
     find(const nlohmann::json &summary) const;
 
-    /** The smallest or largest of those that fit, whatever it is called. */
+    /** The smallest or largest of the matching numbers, whatever its name. */
     std::optional<Found>
     find(const nlohmann::json &summary, const bool smallest) const;
 
-    /** Whether anything fits, be it a number or null for one that is not
+    /** Whether anything matches, a number or the null of one that is not
      *  finite. */
     bool
     is_in(const nlohmann::json &summary) const;
@@ -57,8 +58,8 @@ namespace Voussoir
     std::vector<std::string> names; // along the path
   };
 
-  /** Whether a name is that of a pattern, in which a star stands for any
-   *  letters. */
+  /** Whether a name matches a pattern, in which a star stands for any letters.
+   */
   bool
   fits(const std::string_view name, const std::string_view pattern);
 
@@ -66,19 +67,20 @@ namespace Voussoir
   bool
   is_smallest(const std::string &path);
 
-  /** As many digits as studies write where small changes are to be seen. */
+  /** Digits that studies write where small changes matter. */
   constexpr int fine_digits = 12;
 
-  /** With six digits, as studies write numbers, or others. */
+  /** A number as text, by default with six digits, as in studies. */
   std::string
   number_text(const double value, const int digits = 6);
 
-  /** Whether something has happened in a run: "PATH > VALUE" or "PATH < VALUE"
-   *  of a number of the summary, or "stopped", see RunStopped. */
+  /** A condition on the outcome of a run: "PATH > VALUE" or "PATH < VALUE" of a
+   *  number of the summary, or "stopped", see RunStopped. */
   class Criterion
   {
   public:
-    /** Throws UserError, which names the place, if it is none of these. */
+    /** Throws UserError, which names the place, if the text is none of these.
+     */
     Criterion(const std::string &text, const std::string &place);
 
     /** The number in the criterion, or null. */
@@ -86,8 +88,8 @@ namespace Voussoir
     about() const;
 
     /** The number, if the criterion has one, and whether it meets the
-     *  criterion. A run that was stopped meets criteria that were met before.
-     *  Throws UserError if a run that went to its end does not have the number.
+     *  criterion. A stopped run meets criteria that were met before its stop.
+     *  Throws UserError if a run that reached its end does not have the number.
      */
     std::pair<std::optional<double>, bool>
     evaluate(const RunSummary &summary) const;
@@ -101,7 +103,7 @@ namespace Voussoir
   };
 
   /** The criteria that a run meets. None: it failed, was stopped before it met
-   *  any, or lacks their numbers, so that nobody knows. */
+   *  any, or lacks their numbers, so that the answer is unknown. */
   std::optional<std::vector<std::string>>
   met_criteria(const std::vector<Criterion> &criteria,
                const RunSummary             &summary);

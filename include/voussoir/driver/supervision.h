@@ -27,15 +27,15 @@ namespace Voussoir
     void
     keep(const State &state);
 
-    /** Looks at cracks and slips from time to time, and at the end. */
+    /** Checks cracks and slips at intervals and at the end. */
     void
     check_motion(const State &state, const bool at_end);
 
-    /** Warns of contact that was not solved. */
+    /** Warns of unsolved contact. */
     void
     check_contact() const;
 
-    /** Draws the last good state into the folder of the run.
+    /** Writes a picture of the last good state into the folder of the run.
      *  @return name of the file there; empty if it cannot be written */
     std::string
     draw_last_good() const;
@@ -56,7 +56,7 @@ namespace Voussoir
     const bool           has_memory;
     const Schedule       checks; // of cracks and slips
 
-    /** What a picture needs, to its accuracy. */
+    /** Data of a picture, in single precision. */
     struct Motion
     {
       using Values = std::vector<float>; // of the owned unknowns

@@ -33,7 +33,7 @@ namespace Voussoir
              const double                 interval,
              Log                         &log);
 
-    /** Steps to this time [s]. */
+    /** Number of steps to this time [s]. */
     unsigned long long
     steps_to(const double time) const;
 

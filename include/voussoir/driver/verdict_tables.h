@@ -6,11 +6,11 @@
 namespace Voussoir
 {
   /**
-   * Whether the computation can be trusted, as far as that is known before the
-   * first step: time step, distortion of cells, strengths that cells too long
-   * for their fracture energy lower, and the frequency that the cells of all
-   * materials carry beside that of the earthquake. A table of lines as
-   * at_most() makes them. Called on all ranks.
+   * Numerical checks that are possible before the first step: time step,
+   * distortion of cells, strengths lowered by cells that are too long for their
+   * fracture energy, and the frequency that the cells of all materials carry
+   * against that of the earthquake. A table of lines as at_most() makes them.
+   * Called on all ranks.
    */
   nlohmann::json
   numerical_checks(const RunSetup &setup);
@@ -23,10 +23,10 @@ namespace Voussoir
   numerical_checks(const Run &run);
 
   /**
-   * Results of a run for the dam, from its summary, whether or not the case has
-   * criteria of its own: demand over strength, whether a crack goes through or
-   * a block is detached, slips and their rate at the end, safety of blocks. A
-   * table of lines as at_most() makes them.
+   * Engineering results of a run, from its summary, with or without criteria of
+   * the case: demand over strength, whether a crack goes through or a block is
+   * detached, slips and their rate at the end, safety of blocks. A table of
+   * lines as at_most() makes them.
    */
   nlohmann::json
   engineering_results(const nlohmann::json &summary);

@@ -15,8 +15,7 @@ namespace Voussoir
 {
   using Bytes = std::vector<std::uint8_t>;
 
-  /** An error of one rank with a file, of which the others are not informed
-   *  yet. */
+  /** An error of one rank with a file, not yet passed to the other ranks. */
   struct FileProblem
   {
     std::string what;
@@ -30,7 +29,7 @@ namespace Voussoir
   constexpr char hdf5_not_whole[] = "it is cut or damaged";
 
 
-  /** Which rows of a dataset are those of a rank. */
+  /** The rows of a dataset that belong to a rank. */
   struct RowRange
   {
     hsize_t first, n, all;
@@ -98,7 +97,7 @@ namespace Voussoir
           const unsigned int width);
 
     /** Throws on all ranks if one has an error. The file is then abandoned, as
-     *  the library cannot close a file on a full disk, and crashes later. */
+     *  the library cannot close a file on a full disk and would crash later. */
     void
     together(const std::function<void()> &action);
 

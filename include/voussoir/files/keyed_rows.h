@@ -17,7 +17,7 @@ namespace Voussoir
       : width(width)
     {}
 
-    /** The rows of some values, without those of zeros. */
+    /** The rows of some values, without rows of zeros. */
     explicit KeyedRows(const KeyedValues &values);
 
     const double *
@@ -35,11 +35,11 @@ namespace Voussoir
     std::vector<double>        numbers;
   };
 
-  /** Number of the rows of some values that are not zero, of this rank. */
+  /** Number of this rank's rows of some values that are not zero. */
   std::size_t
   n_kept_rows(const KeyedValues &values);
 
-  /** Sends the rows from any ranks to those that have their keys; numbers
+  /** Sends the rows from any ranks to the ranks that have their keys; numbers
    *  without a row become zero. */
   void
   distribute(const KeyedRows   &rows,

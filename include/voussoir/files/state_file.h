@@ -12,10 +12,10 @@
 
 namespace Voussoir
 {
-  /** The live numbers that a file of a state is written from and read into. */
+  /** The numbers that a state file is written from and read into. */
   struct StateContent
   {
-    /** Of nodes, cells and points, spread over the ranks, by name. */
+    /** Numbers of nodes, cells and points, spread over the ranks, by name. */
     std::map<std::string, KeyedValues> values;
 
     /** Documents that all ranks need, by name; those of the first rank are
@@ -26,12 +26,12 @@ namespace Voussoir
   /**
    * Writes one HDF5 file from all ranks: the header, the documents in CBOR, and
    * for each name of the values the sorted keys and the rows of numbers, with a
-   * checksum of each. Rows of zeros are left out. Many ranks write as few do,
-   * and any number of them may read it.
+   * checksum of each. Rows of zeros are left out. The file does not depend on
+   * the number of ranks, and any number of ranks may read it.
    *
    * The file appears under its name when it is whole and on the disk; until
-   * then an older one of that name stays. Throws UserError on all ranks if that
-   * fails.
+   * then an older file of that name stays. Throws UserError on all ranks if
+   * that fails.
    */
   void
   write_state(const std::string    &file,
@@ -43,15 +43,15 @@ namespace Voussoir
   nlohmann::json
   read_state_header(const std::string &file, const MPI_Comm communicator);
 
-  /** Damage of the file, which all ranks check together; empty
-   *  if it is whole. */
+  /** Error of a damaged file, which all ranks check together; empty if the file
+   *  is whole. */
   std::string
   damage_of_state(const std::string &file, const MPI_Comm communicator);
 
   /**
-   * Reads into the numbers of @p content, whose documents are those that are
-   * wanted; each rank reads its part. Throws UserError on all ranks if the file
-   * is damaged, holds other names, or belongs to another mesh.
+   * Reads the numbers and the documents that @p content lists; each rank reads
+   * its part. Throws UserError on all ranks if the file is damaged, holds other
+   * names, or belongs to another mesh.
    */
   void
   read_state(const std::string &file,

@@ -5,15 +5,15 @@
 
 namespace Voussoir
 {
-  /** Bytes of the first lines of a file whose first number is less than this
-   *  [s], and of a heading. Lines that are cut off or later belong to an
+  /** Bytes of the heading of a file and of its first lines whose first number,
+   *  the time, is less than this [s]. Later or incomplete lines belong to an
    *  interrupted run. */
   std::uintmax_t
   size_before(const std::string &filename, const double time);
 
   /** The heading of a file of comma-separated values, or another line of texts.
-   *  Texts with a comma, a quotation mark or a line break are quoted as RFC
-   *  4180 has it, so that each stays one column. */
+   *  Texts with a comma, a quotation mark or a line break are quoted after RFC
+   *  4180, so that each stays one column. */
   std::string
   csv_heading(const std::vector<std::string> &titles);
 
@@ -36,8 +36,8 @@ namespace Voussoir
     /**
      * Closes the previous file, if there was one.
      *
-     * @param log        takes note of what cannot be written; must live as long
-     *   as this
+     * @param log        records what cannot be written; must live as long as
+     *   this
      * @param columns    titles with units, without that of the time
      * @param time_step  [s]
      * @param start_time of a run that continues [s]: lines from here on are

@@ -24,7 +24,7 @@ namespace Voussoir
    * file then.
    *
    * @param output deal.II's patches and fields; gets its flags here
-   * @param file   name with folder and ending
+   * @param file   name with folder and extension
    * @param time   [s]
    * @return whether it is written
    */

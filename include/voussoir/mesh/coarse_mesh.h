@@ -12,7 +12,7 @@
 
 namespace Voussoir
 {
-  /** Where there is no vertex, edge or cell. */
+  /** Index of a vertex, edge or cell that does not exist. */
   constexpr unsigned int none = dealii::numbers::invalid_unsigned_int;
 
   /**
@@ -33,16 +33,16 @@ namespace Voussoir
 
     /**
      * The true geometry: coordinates in which cells are refined, so that new
-     * vertices lie on the surfaces that the coarse ones approximate. Like
-     * deal.II's ChartManifold, but each vertex keeps its coordinates: nothing
-     * has to be pulled back.
+     * vertices lie on the surfaces that the coarse faces approximate. Like
+     * deal.II's ChartManifold, but each vertex keeps its coordinates, so that
+     * no pull-back is needed.
      */
     struct Chart
     {
       using Points = std::vector<dealii::Point<3>>;
 
-      /** Coordinates of each vertex; none where cells are refined in space, by
-       *  the middles of their edges. */
+      /** Coordinates of each vertex; none if cells are refined in space, at the
+       *  midpoints of edges. */
       Points vertices;
 
       /** Maps such coordinates to space [m]. */
@@ -73,7 +73,7 @@ namespace Voussoir
     /** Sets of vertices (Abaqus NSET, Gmsh physical points). */
     std::map<std::string, std::vector<unsigned int>> vertex_sets;
 
-    /** Lines for the log: where it is not quite what was asked for. */
+    /** Lines for the log on deviations of the mesh from its entries. */
     std::vector<std::string> remarks;
   };
 } // namespace Voussoir

@@ -7,7 +7,7 @@
 
 namespace Voussoir
 {
-  /** By cell and face: the neighbour and its number of the face; cell
+  /** For each face of each cell the neighbour and its number of the face; cell
    *  `invalid_unsigned_int` at the mesh's surface. */
   using FaceNeighbours = std::vector<std::array<CoarseMesh::Face, 6>>;
 
@@ -22,10 +22,10 @@ namespace Voussoir
   };
 
   /**
-   * The surface of a face set, each face once. The first side is the one it was
-   * named from, in each connected piece by the majority of its faces; @p place
-   * names the entry with the set. Throws UserError if the set is empty, has
-   * outer faces, branches or has only one side.
+   * The surface of a face set, each face once. The first side is the side from
+   * which the set names its faces, in each connected piece by their majority;
+   * @p place names the entry with the set. Throws UserError if the set is
+   * empty, has outer faces, branches or has only one side.
    */
   InterfaceSurface
   make_interface_surface(const CoarseMesh                    &mesh,

@@ -24,10 +24,10 @@ namespace Voussoir
    * get vertices of their own at the same positions. Where an interface ends
    * inside the body the two sides stay connected, as at the tip of a crack.
    *
-   * The set "NAME" then holds the faces of the first side, which is the one
-   * that the set was named from, in each connected surface by the majority of
-   * its faces; "NAME" + `other_side` holds those of the second. Other sets keep
-   * their members; copies of a vertex belong to its sets.
+   * The set "NAME" then holds the faces of the first side, from which the set
+   * names its faces, in each connected surface by their majority; "NAME" +
+   * `other_side` holds the faces of the second side. Other sets keep their
+   * members; copies of a vertex belong to its sets.
    *
    * All interfaces of a mesh go into one call. @p place names the entry with
    * the sets. Throws UserError if a set is unknown or empty, has outer faces,

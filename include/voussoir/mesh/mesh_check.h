@@ -9,16 +9,15 @@
 
 namespace Voussoir
 {
-  /** No vertex of a mesh lies further out, in whatever unit. */
+  /** No coordinate of a mesh is larger, in whatever unit. */
   constexpr double largest_coordinate = 1e12;
 
   /**
    * Throw UserError, with a sentence that begins with @p where, if the mesh is
    * empty, has coordinates that are no finite numbers, cells that name a vertex
    * twice, or two vertices at one place, duplicate cells, inverted or tangled
-   * cells, cells that overlap across a face or in parts that share none, or
-   * faces with more than two cells. @p remedy says what to do about tangled
-   * cells.
+   * cells, cells that overlap across a common face or without one, or faces
+   * with more than two cells. @p remedy says what to do about tangled cells.
    */
   void
   check_mesh(const CoarseMesh  &mesh,
@@ -39,8 +38,8 @@ namespace Voussoir
              const std::string &place,
              const double       machines = 1.);
 
-  /** The same if each rank holds so many cells before refinement, as p4est
-   *  wants it. */
+  /** The same for p4est, with which each rank holds so many cells before
+   *  refinement. */
   void
   check_copies(const double n_cells, const MPI_Comm communicator);
 } // namespace Voussoir

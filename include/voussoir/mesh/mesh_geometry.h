@@ -13,7 +13,8 @@ namespace Voussoir
   std::array<unsigned int, 4>
   face_vertices(const CoarseMesh &mesh, const CoarseMesh::Face &face);
 
-  /** A face of a cell as found by its four vertices, whatever their order. */
+  /** A face of a cell with its four vertices, sorted so that both its cells
+   *  have the same. */
   struct SortedFace
   {
     std::array<unsigned int, 4> vertices; // ascending

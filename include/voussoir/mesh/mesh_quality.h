@@ -8,7 +8,7 @@
 
 namespace Voussoir
 {
-  /** How well shaped hexahedra are: the worst of those taken in. */
+  /** Quality of hexahedra: the worst values of the cells added. */
   struct MeshQuality
   {
     /** Least triple product of unit vectors along the edges of a corner: 1 at
@@ -25,7 +25,7 @@ namespace Voussoir
     void
     take(const std::array<dealii::Point<3>, 8> &vertices);
 
-    /** In words, for the log. */
+    /** The quality in words, for the log. */
     std::string
     describe() const;
   };

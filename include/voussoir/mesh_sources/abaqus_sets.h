@@ -23,7 +23,7 @@ namespace Voussoir
     std::string
     operator[](const std::string &parameter) const;
 
-    /** In upper case, without the asterisk. */
+    /** Name in upper case, without the asterisk. */
     std::string name;
 
     /** Values as written, without quotation marks, by names in upper case. */
@@ -59,18 +59,18 @@ namespace Voussoir
       Numbers     numbers;
     };
 
-    /** @p parameter is the one that names a set of this kind: ELSET, NSET,
-     * NAME. */
+    /** @p parameter names a set of this kind: ELSET, NSET, NAME. */
     AbaqusSets(MeshFile &file, const std::string &parameter);
 
     /**
      * The members that the data lines of the present keyword list. Numbers
-     * without an instance's name count only if @p is_ours.
+     * without an instance's name are members only if @p is_ours.
      */
     Numbers
     read_members(const AbaqusKeyword &keyword, const bool is_ours);
 
-    /** The one number that @p item is, or the numbers of the set it names. */
+    /** The number that @p item is, or the numbers of the set that @p item
+     *  names. */
     Numbers
     members_of(std::string_view item, bool is_ours) const;
 
@@ -80,7 +80,7 @@ namespace Voussoir
         const Numbers       &numbers,
         const bool           is_in_assembly);
 
-    /** By the name in upper case. */
+    /** The sets by their names in upper case. */
     const std::map<std::string, Set> &
     all() const;
 

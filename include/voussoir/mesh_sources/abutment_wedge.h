@@ -10,7 +10,7 @@
 
 namespace Voussoir
 {
-  /** The entries about a wedge of rock in one bank of an arch dam. */
+  /** The entries of a wedge, an abutment block in one bank of an arch dam. */
   struct AbutmentWedgeParameters
   {
     double elevation = 0.; // of the base plane; 0: no wedge
@@ -29,13 +29,13 @@ namespace Voussoir
   };
 
   /**
-   * A wedge of rock that can slide out of the bank of an arch dam.
+   * A wedge: an abutment block that can slide out of the bank of an arch dam.
    *
-   * In the cross-section it has the rock above a ledge and on the river's side
+   * In the cross-section it is the rock above a ledge and on the river's side
    * of an upright column; along the river it reaches from the dam's upstream
-   * face to where the rock before it is cut away. It is bounded by
-   * three release planes, base, lateral and rear, and daylights on the canyon's
-   * wall and in the cut.
+   * face to where the rock in front of it is cut away. It is bounded by three
+   * release planes, base, lateral and rear, and daylights on the canyon's wall
+   * and in the cut.
    */
   class AbutmentWedge
   {
@@ -45,13 +45,13 @@ namespace Voussoir
     {
       unsigned int dam_begin, dam_end, n;
 
-      /** Layers that come nearest to a length away from the dam. */
+      /** Number of layers whose length from the dam is nearest to this one. */
       std::function<unsigned int(const double length)> along;
     };
 
     /**
-     * On the ledge that @p section has in this bank. Throws UserError that
-     * names the @p place of the parameters.
+     * Places the wedge on the ledge of @p section in this bank. Throws
+     * UserError, which names the @p place of the parameters.
      *
      * @param bank 0 for the right one, 1 for the left
      */
@@ -67,7 +67,7 @@ namespace Voussoir
     std::string
     name() const;
 
-    /** Layers from its downstream end to the dam. */
+    /** Number of layers from the downstream end of the wedge to the dam. */
     unsigned int
     layers_before_dam() const;
 
@@ -75,7 +75,7 @@ namespace Voussoir
     contains(const ArchDamCrossSection::Quad &quad,
              const unsigned int               layer) const;
 
-    /** Whether the rock is cut away there. */
+    /** Whether the rock is cut away in this cell. */
     bool
     is_cut(const ArchDamCrossSection::Quad &quad,
            const unsigned int               layer) const;
@@ -97,7 +97,7 @@ namespace Voussoir
     bool
     is_in_columns(const ArchDamCrossSection::Quad &quad) const;
 
-    const unsigned int n_layers, dam_begin, end; // the back
+    const unsigned int n_layers, dam_begin, end; // end: at the rear plane
     unsigned int       begin, cut_begin;
 
     const ArchDamCrossSection::Ledge ledge;

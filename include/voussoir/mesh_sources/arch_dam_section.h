@@ -12,7 +12,7 @@
 
 namespace Voussoir
 {
-  /** How far the rock around a dam reaches, and how its cells grow outwards. */
+  /** Extent of the rock around a dam, and growth of its cells outwards. */
   struct RockGrading
   {
     double extent;       // over the height of the dam
@@ -25,24 +25,24 @@ namespace Voussoir
    * along the crest and elevation z [m], inside and outside of the canyon.
    *
    * They come from a grid of columns and rows in which the contour of the
-   * canyon runs along the rows or diagonally through cells, so that these fall
-   * into triangles; all are then halved in both directions, and a layer of
-   * quadrilaterals is put on each side along the contour. One row can be made
-   * level, as the surface of a reservoir, and one in each bank be put on a
-   * plane, to be the base plane of a wedge of rock.
+   * canyon runs along the rows or diagonally through cells, which fall into
+   * triangles; all cells are then halved in both directions, and a layer of
+   * quadrilaterals is added on each side of the contour. One row can be made
+   * level, as the surface of a reservoir, and one row in each bank be moved
+   * onto a plane, the base plane of a wedge of rock.
    */
   class ArchDamCrossSection
   {
   public:
-    /** A row that goes into a bank on a plane, from where a column meets the
-     *  contour to an upright column. */
+    /** A row that lies on a plane inside a bank, from the point where a column
+     *  meets the contour to an upright column. */
     struct Ledge
     {
       std::string place;     // of its entries, to be named in messages
       double elevation = 0.; // of its foot at the dam's middle; 0 for none [m]
       double width     = 0.; // wanted [m]
-      double laid      = 0.; // width that it has, along the crest [m]
-      double length    = 0.; // in which it is plane, downstream of the dam [m]
+      double laid      = 0.; // actual width, along the crest [m]
+      double length    = 0.; // of the plane, downstream of the dam [m]
       dealii::Tensor<1, 2> slope; // by which it rises along x and y [-]
 
       // columns at its two ends, and its row; -1 if there is none
@@ -67,10 +67,10 @@ namespace Voussoir
     /**
      * @param n_blocks          between the abutments at the crest
      * @param columns_per_block columns of the grid
-     * @param row_height        wanted for its rows [m]; 0 for that of the
-     *                          columns' width. They are higher where a bank
-     *                          rises more over a column.
-     * @param rock              whose columns and rows grow by halves
+     * @param row_height        wanted for its rows [m]; 0 for the columns'
+     *   width. Rows are higher where a bank rises more over a column.
+     * @param rock              whose columns and rows grow; each is halved
+     *   later
      * @param water_level       wanted for the surface of a reservoir [m]; 0
      *                          for no reservoir
      * @param ledges            wanted in the right and the left bank
@@ -99,14 +99,14 @@ namespace Voussoir
       double                      width, height; // wanted [m]
     };
 
-    /** Where a ledge lies in one layer of the sweep. */
+    /** Position of a ledge in one layer of the sweep. */
     struct LedgeLine
     {
       double                              foot;  // s [m]
       std::function<double(const double)> level; // elevation by s [m]
     };
 
-    /** At the middle of the dam. */
+    /** The mesh at the middle of the dam. */
     std::vector<Vertex> vertices;
     std::vector<Quad>   quads;
 
@@ -115,21 +115,21 @@ namespace Voussoir
     std::pair<double, double>
     height_and_length() const;
 
-    /** At the middle of the dam. */
+    /** The line of a ledge at the middle of the dam. */
     LedgeLine
     middle_line(const unsigned int bank) const;
 
     /**
-     * Moves vertices near @p lines, of both banks, onto them, and the others to
-     * where the quadrilaterals are little distorted. Vertices on the contour
-     * stay on it, and with @p in_dam those of joints in their columns.
+     * Moves vertices near @p lines, of both banks, onto them, and the others so
+     * that the quadrilaterals are little distorted. Vertices on the contour
+     * stay on it, and with @p in_dam vertices of joints stay in their columns.
      */
     void
     follow(const std::array<LedgeLine, 2> &lines,
            const bool                      in_dam,
            std::vector<Vertex>            &moved) const;
 
-    /** Throws UserError that names a ledge if quadrilaterals in its bank are
+    /** Throws UserError, which names a ledge, if quadrilaterals in its bank are
      *  nearly flat. */
     void
     check_shapes(const std::vector<Vertex> &moved) const;
@@ -141,7 +141,7 @@ namespace Voussoir
      *  canyon with a lower half_row; -1 without reservoir. */
     int surface_row = -1;
 
-    /** In the right and the left bank. */
+    /** Ledges in the right and the left bank. */
     std::array<Ledge, 2> ledges;
 
   private:
@@ -190,8 +190,8 @@ namespace Voussoir
       unsigned int quad, edge;
     };
 
-    /** Between the @p sides, all on the contour, and the vertices beyond them,
-     *  @p inside of the canyon or in the rock. */
+    /** Adds a layer between the @p sides, all on the contour, and the vertices
+     *  beyond them, @p inside of the canyon or in the rock. */
     void
     add_layer(const std::vector<Side> &sides, const bool inside);
 
@@ -240,7 +240,7 @@ namespace Voussoir
     // The row of each column that lies on the contour.
     std::vector<int> contour_rows;
 
-    // Of the reservoir's surface: elevation, and columns at which it is level.
+    // The reservoir's surface: elevation, and columns at which it is level.
     double              surface_level = 0.;
     std::pair<int, int> surface_columns;
 

@@ -27,7 +27,7 @@ namespace Voussoir
 
 
   /**
-   * The shape of an arch dam and of the canyon it closes, as a few numbers.
+   * The shape of an arch dam and of its canyon, in a few numbers.
    *
    * Axes: x across, positive towards the left bank, 0 at the crown; y upstream,
    * 0 at the upstream edge of the crest's crown; z up, 0 at the base. Lengths
@@ -47,8 +47,8 @@ namespace Voussoir
     declare(dealii::ParameterHandler &prm);
 
     /** The shape that the entries describe, by their numbers or by their
-     *  arches. Throws UserError that names the @p section, if they do not fit.
-     */
+     *  arches. Throws UserError, which names the @p section, if they contradict
+     *  each other. */
     ArchDamShape
     checked(const std::string &section) const;
 
@@ -107,7 +107,8 @@ namespace Voussoir
     void
     check_numbers(const std::string &section) const;
 
-    /** Between the arches of the table. */
+    /** A quantity at elevation @p z, interpolated between the arches of the
+     *  table. */
     template <typename Quantity>
     double
     interpolated(const double z, const Quantity &quantity) const;
@@ -133,8 +134,8 @@ namespace Voussoir
     /** s of the crest's end on the right bank (< 0) and the left bank. */
     double right_end, left_end;
 
-    /** The s whose section reaches the centre line, or its continuation, at
-     * @p x on the crest. */
+    /** The s whose section reaches the centre line, or the continuation of it,
+     *  at @p x on the crest. */
     double
     arc_length_at(const double x) const;
 
@@ -155,7 +156,8 @@ namespace Voussoir
     line(const double s, const double z) const;
 
   private:
-    /** Where the section cuts the crest's centre line, and its angle. */
+    /** The point where the section cuts the crest's centre line, and the angle.
+     */
     Line
     crest(const double s) const;
 

@@ -8,7 +8,7 @@
 namespace Voussoir
 {
   /**
-   * The lines that the vertices of the cross-section are swept along: through
+   * The lines along which the vertices of the cross-section are swept: through
    * the dam, and on both sides into the river's direction. They run in layers
    * from downstream to upstream, level except where a ledge dips: its vertices
    * have another place in the cross-section of each layer, on a plane in space,
@@ -18,8 +18,8 @@ namespace Voussoir
   {
   public:
     /**
-     * @param rock        on both sides of the dam, of whose layers the next to
-     *   it have the cell size
+     * @param rock        on both sides of the dam; its layers next to the dam
+     *   have the cell size
      * @param n_thickness layers in the dam
      * @param cell_size   [m]
      */
@@ -35,12 +35,13 @@ namespace Voussoir
     std::vector<dealii::Point<3>>
     operator()(const unsigned int vertex) const;
 
-    /** From s, layer, which may lie between two, and z to space [m]. Points
-     *  with the same s and z in a row cost least. */
+    /** Maps s, layer, which may lie between two, and z to space [m].
+     *  Consecutive points with the same s and z cost least. */
     std::vector<dealii::Point<3>>
     positions(const std::vector<dealii::Point<3>> &coordinates) const;
 
-    /** Layers beside the dam that come nearest to a length [m]. */
+    /** Number of layers beside the dam whose length is nearest to this one [m].
+     */
     unsigned int
     layers_along(const double length) const;
 
@@ -78,7 +79,7 @@ namespace Voussoir
                const unsigned int                layer,
                const double                      near) const;
 
-    /** Where a line that leaves the dam at an angle has come after a length. */
+    /** Offset, after a length, of a line that leaves the dam at an angle. */
     dealii::Tensor<1, 2>
     path(const double angle, const double length) const;
 

@@ -8,7 +8,7 @@
 
 namespace Voussoir
 {
-  /** A built-in mesh: the section of its name under "Mesh". */
+  /** A built-in mesh, described in the section of its name under "Mesh". */
   class MeshGenerator
   {
   public:

@@ -11,7 +11,7 @@ namespace Voussoir
    * cell sets, physical surfaces face sets, physical curves and points vertex
    * sets; a physical group without a name is called "volume 3", "surface 3",
    * "curve 3" or "point 3" after its number. Throws UserError. (Gmsh's library
-   * crashes on damaged files, takes a shortened binary file for a small mesh
+   * crashes on damaged files, accepts a truncated binary file as a small mesh
    * and reports no line of an error.)
    */
   FileMesh

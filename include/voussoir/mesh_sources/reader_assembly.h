@@ -58,9 +58,9 @@ namespace Voussoir
    * The mesh of a file: quadrilaterals become faces of cells, cells numbered in
    * mirror order are turned, vertices without a cell are dropped. Parts of the
    * file that are left out are noted in @p report (may be null), one line each.
-   * Throws UserError, with a sentence that begins with the name of the file, if
-   * elements other than hexahedra with eight vertices are among them or
-   * vertices are missing.
+   * Throws UserError, with a sentence that begins with the name of the file,
+   * for solid elements other than hexahedra with eight vertices and for missing
+   * vertices.
    */
   CoarseMesh
   assemble_mesh(const FileMesh    &file,

@@ -39,7 +39,7 @@ namespace Voussoir
     bool
     go_to(const std::string &text);
 
-    /** Take the next word and fail if it is another one. */
+    /** Take the next word; fail if it is not @p expected. */
     void
     expect(const std::string &expected);
 
@@ -63,8 +63,8 @@ namespace Voussoir
     std::size_t
     count(const std::string &expected);
 
-    /** @p n, the number of things that follow, unless the file cannot hold as
-     *  many. */
+    /** Returns @p n, the number of things that follow; fails if the file cannot
+     *  hold as many. */
     std::size_t
     check_count(const std::int64_t n, const std::string &expected) const;
 
@@ -72,7 +72,7 @@ namespace Voussoir
     double
     coordinate();
 
-    /** @p x, unless no mesh has such a coordinate. */
+    /** Returns @p x; fails if no mesh has such a coordinate. */
     double
     check_coordinate(const double x) const;
 
@@ -81,7 +81,8 @@ namespace Voussoir
     Number
     to_number(std::string_view text, const std::string &expected) const;
 
-    /** Throw UserError "FILE, line N: message", N of the piece taken last. */
+    /** Throw UserError "FILE, line N: message", N being the line of the piece
+     *  taken last. */
     [[noreturn]] void
     fail(const std::string &message) const;
 
@@ -102,7 +103,7 @@ namespace Voussoir
   in_quotes(const std::string_view text);
 
 
-  /** Without the blanks, tabs and carriage returns at both ends. */
+  /** The text without blanks, tabs and carriage returns at both ends. */
   std::string_view
   trimmed(std::string_view text);
 

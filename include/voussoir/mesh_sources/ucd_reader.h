@@ -10,8 +10,8 @@ namespace Voussoir
    * Read an AVS UCD file (ASCII). The material numbers of hexahedra make cell
    * sets "material 3", those of quadrilaterals face sets "boundary 3". Throws
    * UserError. (deal.II's GridIn::read_ucd() refuses quadrilaterals inside the
-   * mesh, which name interfaces here, and of a damaged file reports neither
-   * line nor remedy; VTK's own reader: see doc/architecture.md.)
+   * mesh, which name interfaces here, and reports neither line nor remedy for a
+   * damaged file; VTK's own reader: see doc/architecture.md.)
    */
   FileMesh
   read_ucd(MeshFile &file);

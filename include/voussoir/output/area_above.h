@@ -36,7 +36,8 @@ namespace Voussoir
     std::vector<FaceMesh::Quadrilateral> quadrilaterals;
     std::vector<double>                  levels;
 
-    // of the triangles between the edges and the middle, and all four [m2]
+    // of the four triangles between the edges and the middle, and their sum
+    // [m2]
     std::vector<std::array<double, 4>> areas;
     std::vector<double>                whole_areas;
   };

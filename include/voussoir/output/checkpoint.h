@@ -13,14 +13,14 @@ namespace Voussoir
   public:
     Checkpoint(const std::string &folder, const MPI_Comm communicator);
 
-    /** Throws UserError if that fails; the ones before then stay. */
+    /** Throws UserError if that fails; the earlier files then stay. */
     void
     write(const unsigned long long step,
           const nlohmann::json    &header,
           const StateContent      &content) const;
 
-    /** The newest file that is whole, or an empty name; @p damaged gets newer
-     *  ones with their errors. Called on all ranks. */
+    /** The newest whole file, or an empty name; newer damaged files go to @p
+     *  damaged with their errors. Called on all ranks. */
     std::string
     newest(std::vector<std::string> &damaged) const;
 

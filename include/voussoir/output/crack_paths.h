@@ -10,21 +10,21 @@ namespace Voussoir
   /** A path through cracked cells from one face to the other. */
   struct CrackPath
   {
-    double           opening = 0.; // smallest opening along it [mm]
-    dealii::Point<3> where;        // that is [m]
+    double           opening = 0.; // smallest one along the path [mm]
+    dealii::Point<3> where;        // its place [m]
   };
 
 
   /**
    * Paths through cracked cells from one face of a dam to the other. A cell
-   * cracks by eighths, one at each corner. Eighths of one cell are next to each
-   * other unless they lie across its middle, those of two cells if an edge of
-   * both begins in their corner.
+   * cracks by eighths, one at each corner. Eighths of one cell are neighbours
+   * unless they lie across its middle; eighths of two cells are neighbours if
+   * an edge of both cells begins in their corner.
    *
-   * Each rank joins its own eighths in the order of their openings (Kruskal's
-   * algorithm) and passes on the joints between edges that it shares with
-   * others, and the two faces: what is exchanged grows with the cracks at the
-   * borders of the ranks, not with those within.
+   * Each rank connects its own eighths in the order of their openings
+   * (Kruskal's algorithm) and sends the connections between edges that it
+   * shares with other ranks, and the two faces: the data exchanged grow with
+   * the cracks at the borders of the ranks, not with those inside.
    */
   class CrackPaths
   {
@@ -32,13 +32,13 @@ namespace Voussoir
     using Cell = Discretization::Cell;
 
     /**
-     * @param touching of each owned cell, which corners lie on the two faces
+     * @param touching corners of each owned cell that lie on the two faces
      */
     CrackPaths(const Discretization                             &discretization,
                const std::vector<std::array<std::bitset<8>, 2>> &touching);
 
-    /** Number of a cracked cell, in the order in which they were first asked
-     *  for; its eighths have the numbers from eight times that on. */
+    /** Number of a cracked cell, in the order of the first calls; its eighths
+     *  are numbered from eight times that on. */
     unsigned int
     number_of(const Cell &cell);
 
@@ -56,8 +56,8 @@ namespace Voussoir
     widest(const std::vector<double> &openings, const double least) const;
 
   private:
-    /** An edge of the mesh: where it begins, and its direction in thousandths,
-     *  as those of cells of other size begin there too. */
+    /** An edge of the mesh: its first vertex, and its direction in thousandths,
+     *  as edges of cells of other sizes may begin at the same vertex. */
     struct Edge
     {
       dealii::types::global_dof_index node;
@@ -71,11 +71,11 @@ namespace Voussoir
       }
     };
 
-    /** Two edges, or faces, that are joined by eighths of one rank. */
+    /** Two edges, or faces, connected by eighths of one rank. */
     struct Joint
     {
-      double                opening; // of the narrowest of them [mm]
-      std::array<double, 3> where;   // that is [m]
+      double                opening; // of the narrowest eighth [mm]
+      std::array<double, 3> where;   // its place [m]
       std::array<Edge, 2>   ends;
     };
 
@@ -97,7 +97,7 @@ namespace Voussoir
     std::vector<CrackedCell>     cells;
     std::map<Edge, unsigned int> number_of_edge;
 
-    // by their numbers; `nowhere` unless another rank may have them
+    // by their numbers; `nowhere` for edges that no other rank can have
     std::vector<Edge> shared_edges;
   };
 } // namespace Voussoir

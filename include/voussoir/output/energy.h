@@ -24,7 +24,7 @@ namespace Voussoir
     double strain      = 0.; // cells and boundary springs
     double memory      = 0.; // in the springs of the Maxwell branches
     double damping     = 0.; // lost in the material so far
-    double boundary    = 0.; // gone through the boundary dashpots so far
+    double boundary    = 0.; // radiated through the boundary dashpots so far
     double material    = 0.; // lost to cracks and plastic flow so far
     double closing     = 0.; // lost by cracks that closed so far
     double input       = 0.; // work of all forces and of a moving base so far
@@ -72,9 +72,9 @@ namespace Voussoir
    * reason to stop where it is violated.
    *
    * The losses of Maxwell branches and of viscosity in elastic cells are known
-   * exactly for one step, at the price of some products with the stiffness, and
-   * are summed over the steps between two evaluations by the trapezoidal rule:
-   * exactly if the balance is evaluated after every step.
+   * exactly for one step, at the cost of some products with the stiffness, and
+   * are summed over the steps between two evaluations by the trapezoidal rule,
+   * which is exact if the balance is evaluated after every step.
    */
   class EnergyBalance
   {
@@ -119,8 +119,8 @@ namespace Voussoir
     double
     made() const;
 
-    /** The error over the largest energy that came in and did not leave through
-     *  the boundary at once, so far. */
+    /** The error over the largest energy so far that came in and did not leave
+     *  through the boundary at once. */
     double
     relative_error() const;
 
@@ -129,8 +129,9 @@ namespace Voussoir
     double
     error_of_losses() const;
 
-    /** Why the run must stop: not finite, growing without bound, or an error
-     *  above this share of the energy that came in; else an empty text. */
+    /** Reason why the run must stop: motion that is not finite or grows without
+     *  bound, or an error above this share of the energy that came in; else an
+     *  empty text. */
     std::string
     alarm(const double limit) const;
 

@@ -39,7 +39,7 @@ namespace Voussoir
     bool
     is_level() const;
 
-    /** Refuses such faces; @p place names the entry with them. All ranks must
+    /** Refuses level faces; @p place names the entry with them. All ranks must
      *  call this together. */
     void
     check_not_level(const std::string &place) const;
@@ -57,7 +57,7 @@ namespace Voussoir
       std::array<unsigned int, 4> nodes;
     };
 
-    /** All of them. */
+    /** All quadrilaterals. */
     std::vector<Quadrilateral>
     quadrilaterals() const;
 
@@ -102,7 +102,7 @@ namespace Voussoir
      *
      * @param fields names of the values
      * @param values @p fields.size() numbers for each node
-     * @param name   of the file in the output folder, without its ending
+     * @param name   of the file in the output folder, without extension
      * @param time   [s]
      * @param texts  further ones for the file
      * @return its name in the output folder; empty if it cannot be written
@@ -180,12 +180,12 @@ namespace Voussoir
   };
 
   /**
-   * The stress at the nodes of such a mesh: the mean over the cells with a face
-   * of the set there, each evaluated at the node itself. For trilinear cells
-   * the strain along the face is constant in each cell, so that the mean is the
-   * central difference, of second order; extrapolation from the 2x2x2 Gauss
-   * points would give the same values. Across the face the cell's own strain is
-   * kept: with it the stresses balance the loads.
+   * The stress at the nodes of a face mesh: the mean over the cells with a face
+   * of the set at the node, each evaluated at the node itself. For trilinear
+   * cells the strain along the face is constant in each cell, so that the mean
+   * is the central difference, of second order; extrapolation from the 2x2x2
+   * Gauss points would give the same values. Across the face the cell's own
+   * strain is kept: with it the stresses balance the loads.
    */
   class FaceStress
   {

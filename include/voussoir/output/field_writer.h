@@ -13,8 +13,8 @@ namespace Voussoir
     std::vector<std::string> names; // one or three
   };
 
-  /** One number for each active cell to write; others than the owned ones are
-   *  not sampled. */
+  /** One number for each active cell to write; only those of owned cells are
+   *  sampled. */
   struct CellField
   {
     const dealii::Vector<float> *values;
@@ -29,7 +29,7 @@ namespace Voussoir
    * @param fields    of the nodes
    * @param stress_of state whose principal stresses are written [MPa], see
    *   LawStress; null for none
-   * @param name      of the file in the output folder, without its ending
+   * @param name      of the file in the output folder, without extension
    * @param time      [s]
    * @return its name in the output folder; empty if it cannot be written
    */

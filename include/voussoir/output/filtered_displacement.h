@@ -10,14 +10,14 @@ namespace Voussoir
    * Data for the elastic stress of the equation of motion, sigma = k D : B (u +
    * s w) , with the displacement u [m], the damping memory w [m] and the
    * damping factor s of each material, at the time of a state. The branches of
-   * w, which the state has from the step before, are advanced to its time; the
+   * w, which the state holds for the step before, are advanced to its time; the
    * velocity of stiffness-proportional damping and of the mesh viscosity is
    * that of the half step before, as in the step.
    */
   class FilteredDisplacement
   {
   public:
-    /** At all nodes, in vectors of the discretization. */
+    /** The data at all nodes, in vectors of the discretization. */
     explicit FilteredDisplacement(const StressModel &model);
 
     /** @param needed entries, of whole nodes; other entries are left at zero */
@@ -32,11 +32,11 @@ namespace Voussoir
     void
     update(const State &state);
 
-    /** u, and s w where all materials have the same s; with ghosts. */
+    /** u, plus s w if all materials have the same s; with ghosts. */
     const Vector &
     displacement() const;
 
-    /** w with ghosts where they have not; else null. */
+    /** w if the materials have different s, with ghosts; else null. */
     const Vector *
     memory() const;
 

@@ -81,10 +81,10 @@ namespace Voussoir
    * Safety of a block: resistance of its planes over the driving force. Its
    * balance is M a = D + R with the contact forces R and all others D: weight,
    * water, uplift, thrust of the dam. Without slip its acceleration would be a
-   * - a_s, less that of its slip, so that limit equilibrium is that of D - M (a
-   * - a_s) = -(R - M a_s) . As long as nothing slides this is -R; while it
-   * slides, when friction caps R, it shows by how much the driving forces
-   * exceed the resistance of the planes.
+   * - a_s, where a_s is the acceleration of its slip, so that limit equilibrium
+   * is that under D - M (a - a_s) = -(R - M a_s) . As long as nothing slides
+   * this force is -R; while the block slides and friction limits R, the force
+   * shows by how much the driving forces exceed the resistance of the planes.
    *
    * @param sums    over all ranks, of all surfaces one after the other
    * @param areas   of all surfaces [m2]
@@ -97,7 +97,7 @@ namespace Voussoir
                    const dealii::Tensor<1, 3> &inertia);
 
   /** Mean velocity of a block's slip, over the closed points of its planes;
-   *  zero if nothing is [m/s]. */
+   *  zero if no point is closed [m/s]. */
   dealii::Tensor<1, 3>
   slip_velocity(const SlidingBlock        &block,
                 const double              *sums,

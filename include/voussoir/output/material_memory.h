@@ -47,16 +47,16 @@ namespace Voussoir
   {
     double           opening = 0.; // [m]
     double           share   = 0.; // of the width of the cell across it
-    dealii::Point<3> where;        // middle of that [m]
+    dealii::Point<3> where;        // middle of the cell [m]
   };
 
-  /** Of all materials with crack openings, now, or @p ever; all ranks must call
-   *  this together. */
+  /** The widest crack of all materials with crack openings, now, or @p ever;
+   *  all ranks must call this together. */
   WidestCrack
   widest_crack(const ObservedRun &run, const bool ever = false);
 
   /**
-   * Of each material with internal variables: the share of its volume that has
+   * For each material with internal variables: the share of its volume that has
    * left the elastic range, energy lost in it [J], largest value of each of its
    * results. All ranks must call this together.
    *

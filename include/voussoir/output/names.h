@@ -12,7 +12,7 @@ namespace Voussoir
   class Contact;
 
   /**
-   * The one table of names behind the numbers in results. The number of a name
+   * The table of names behind the numbers in all results. The number of a name
    * is its index in the list of its kind, from zero. VTU files have the numbers
    * as fields and the lists beside them (see `write_vtu`), CSV files have their
    * columns in this order, and summary.json has the table as "names".
@@ -41,13 +41,13 @@ namespace Voussoir
     json() const;
   };
 
-  /** Place of a name in a list that has it. */
+  /** Index of a name in a list that contains the name. */
   unsigned int
   number_of(const std::string &name, const std::vector<std::string> &names);
 
   /**
    * For each active cell the number of the smallest of these cell sets that it
-   * lies in, which is its block if it has one; -1 if it lies in none, as do
+   * lies in, which is its block if it has one; -1 if it lies in none, and for
    * cells of other ranks. Called on all ranks.
    */
   dealii::Vector<float>

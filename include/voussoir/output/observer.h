@@ -58,8 +58,8 @@ namespace Voussoir
       return std::min(interval, resolving_interval());
     }
 
-    /** Warns of extremes that are sampled at an interval which the entry at
-     *  @p place sets coarser than that [s]. */
+    /** Warns of extremes that are sampled at a coarser interval [s], set by the
+     *  entry at @p place. */
     void
     warn_of_coarse_sampling(const double       interval,
                             const std::string &place) const;
@@ -110,8 +110,8 @@ namespace Voussoir
 
   /**
    * A writer of one kind of results: a section of the parameter file under
-   * "Output", called after each step and at the end. Its state from one step to
-   * the next is declared by `keep`, from which checkpoints follow.
+   * "Output", called after each step and at the end. `keep` declares its state
+   * from one step to the next, which checkpoints store.
    */
   class Observer
   {
@@ -121,15 +121,15 @@ namespace Voussoir
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 
-    /** Interval of its lines [s], of which the time step is made an integer
-     *  fraction if that costs little; 0: not needed. */
+    /** Interval of its lines [s]; the time step becomes an integer fraction of
+     *  it if that costs little; 0: not needed. */
     virtual double
     record_interval() const
     {
       return 0.;
     }
 
-    /** Refuses entries that do not fit the model with a UserError. */
+    /** Throws UserError for entries that do not fit the model. */
     virtual void
     check(const ObservedModel &) const
     {}
@@ -140,8 +140,8 @@ namespace Voussoir
     void
     begin(const ObservedRun &run);
 
-    /** Called for the initial state and after each step; after a restart
-     *  first for the state of the checkpoint, once more. */
+    /** Called for the initial state and after each step; after a restart called
+     *  first for the state of the checkpoint again. */
     virtual void
     observe(const State &state) = 0;
 
@@ -191,7 +191,7 @@ namespace Voussoir
       return observed->solid.grid().communicator();
     }
 
-    /** Adds a value to the state, which JSON can represent and is finite. */
+    /** Adds to the state a finite value that JSON can represent. */
     template <typename T>
     void
     keep(const std::string           &name,

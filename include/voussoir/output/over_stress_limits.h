@@ -14,17 +14,17 @@ namespace Voussoir
     std::string name;
     double      area; // [m2]
 
-    // largest demand-capacity ratio [-], when [s] and where [m]
+    // largest demand-capacity ratio [-], its time [s] and place [m]
     double           largest, time;
     dealii::Point<3> where;
 
-    // ratio of the static state [-], and where [m]
+    // largest ratio of the static state [-], and its place [m]
     double           largest_at_rest;
     dealii::Point<3> where_at_rest;
 
-    // of each ratio of the list: accumulated time of the point that has most
-    // [s], and of those that the static state has below the ratio, area of the
-    // static state, area ever above it and largest one at a moment [m2]
+    // of each ratio of the list: longest accumulated time of a point [s], the
+    // same of the points below the ratio in the static state, area above the
+    // ratio in the static state, ever, and at most at one moment [m2]
     std::vector<double> accumulated, beyond_rest, resting, ever, at_once,
       time_at_once;
   };
@@ -32,8 +32,8 @@ namespace Voussoir
 
   /**
    * Limits up to which a linear analysis suffices: ratio, area and accumulated
-   * time, the quantities of Ghanaat (2004). The defaults are of no code that
-   * was read.
+   * time, the quantities of Ghanaat (2004). The defaults come from no code of
+   * practice.
    */
   struct OverStressLimits
   {
@@ -55,7 +55,8 @@ namespace Voussoir
     double
     allowed_time(const double ratio) const;
 
-    /** Why a face calls for a non-linear analysis; none if it does not. */
+    /** Reasons why a face calls for a non-linear analysis; none if it does not.
+     */
     std::vector<std::string>
     reasons_of(const FaceOverStress &face) const;
 

@@ -5,7 +5,7 @@
 
 namespace Voussoir
 {
-  /** When an observer draws its pictures, and the list of them for ParaView. */
+  /** Times of the pictures of an observer, and their list for ParaView. */
   class PictureSeries
   {
   public:
@@ -19,7 +19,7 @@ namespace Voussoir
     void
     declare_parameters(dealii::ParameterHandler &prm);
 
-    /** Says which times are after the end of the run. */
+    /** Reports times after the end of the run. */
     void
     check(const ObservedModel &model) const;
 
@@ -31,11 +31,11 @@ namespace Voussoir
     bool
     due(const State &state) const;
 
-    /** Name for the picture of this state, without ending. */
+    /** Name for the picture of this state, without extension. */
     std::string
     next_name(const State &state) const;
 
-    /** Adds a picture to the list; none if the name of its file is empty. */
+    /** Adds a picture to the list, unless the name of its file is empty. */
     void
     add(const double time, const std::string &file);
 

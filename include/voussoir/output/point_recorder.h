@@ -13,10 +13,10 @@ namespace Voussoir
   using PointMotion = std::array<dealii::Tensor<1, 3>, 4>;
 
   /**
-   * Common part of observers of points: the entries that name the points,
-   * and one of them as a reference, and the record of their absolute motion.
+   * Common part of observers of points: the entries that name the points, and
+   * one of them as a reference, and the record of their absolute motion.
    * Velocity and acceleration of a step need the half steps before and after
-   * it, so they come one step late.
+   * it, so they are recorded one step later.
    */
   class PointRecorder
   {
@@ -33,7 +33,8 @@ namespace Voussoir
     declare_parameters(dealii::ParameterHandler &prm,
                        const std::string        &help_of_reference);
 
-    /** Refuses points outside the mesh and a reference that is none of them.
+    /** Refuses points outside the mesh and a reference that is not among the
+     *  points.
      *  @return number of points */
     std::size_t
     check(const ObservedModel &model) const;
@@ -57,7 +58,7 @@ namespace Voussoir
     void
     load(const nlohmann::json &saved);
 
-    /** In the order of the entry. */
+    /** The points in the order of the entry. */
     const std::vector<NamedPoint> &
     points() const;
 

@@ -27,8 +27,8 @@ namespace Voussoir
    * is nearest to a wanted one, along the horizontal direction of the face's
    * normal there, to the downstream face; with Gauss points for integrals over
    * it, cell by cell. The same on all ranks but for the points, of which each
-   * rank has those in its cells. Where the line runs between cells, the mean of
-   * them counts.
+   * rank has those in its cells. Where the line runs along the border of cells,
+   * their mean counts.
    */
   struct SectionLine
   {

@@ -9,7 +9,7 @@
 
 namespace Voussoir
 {
-  /** A block that rests on surfaces of contact, such as a wedge of rock. */
+  /** A block that rests on surfaces of contact, such as an abutment block. */
   struct SlidingBlock
   {
     /** A surface taken as a plane. */
@@ -47,14 +47,14 @@ namespace Voussoir
   };
 
   /**
-   * Safety of a rigid block against sliding by limit equilibrium:
-   *   (sum of f_i N_i + c_i A_i) / T .
-   * The resultant follows from statics, however uneven the distribution of the
-   * contact forces is. It is resolved into a force T opposite to the sliding,
-   * and normal forces N_i of the planes on which the block then slides: along
-   * one plane, or along the line where two of them meet (Londe, 1973). Which of
-   * these it is follows from block theory (Goodman and Shi, 1985): no
-   * normal force pulls, and the motion does not lead into another plane.
+   * Safety of a rigid block against sliding by limit equilibrium: (sum of f_i
+   * N_i + c_i A_i) / T . The resultant follows from statics, however uneven the
+   * distribution of the contact forces is. It is resolved into a force T
+   * opposite to the sliding, and normal forces N_i of the planes on which the
+   * block then slides: along one plane, or along the line where two of them
+   * meet (Londe, 1973). The mode of sliding follows from block theory (Goodman
+   * and Shi, 1985): no normal force pulls, and the motion does not lead into
+   * another plane.
    *
    * @param planes those with contact; parallel planes are considered one by one
    * @param force  on the block in equilibrium with the driving forces [N]
@@ -73,7 +73,7 @@ namespace Voussoir
     bool
     add(const double time, const double interval, const double safety);
 
-    /** Infinite ones are null. */
+    /** The numbers; infinite ones are null. */
     nlohmann::json
     summary() const;
 

@@ -11,8 +11,8 @@
 
 namespace Voussoir
 {
-  /** Of a cell: largest and smallest principal stress over the run [Pa], and
-   *  when [s]. */
+  /** Extremes of a cell: largest and smallest principal stress over the run
+   *  [Pa], and their times [s]. */
   using StressExtremes = std::array<double, 4>;
 
 
@@ -30,7 +30,8 @@ namespace Voussoir
     void
     update(const State &state);
 
-    /** Whether each cell is sampled; all ranks must call this together. */
+    /** Share of the cells that is sampled; all ranks must call this together.
+     */
     double
     share_of_cells() const;
 
@@ -40,8 +41,8 @@ namespace Voussoir
                                            StressExtremes &)> &visit);
 
   private:
-    /** Whether neither bound leaves these values in any lane; not if one is a
-     *  NaN. */
+    /** Whether @p below and @p above lie between @p low and @p high in all
+     *  lanes; not if a value is a NaN. */
     static bool
     are_within(const Lanes &below,
                const Lanes &above,

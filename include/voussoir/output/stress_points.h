@@ -36,15 +36,15 @@ namespace Voussoir
     evaluate(const State &state);
 
   private:
-    /** Of a node, for as many samples as there are lanes, each with a node of
-     *  its own. */
+    /** Weights of nodes: in each lane that of one node of the sample in this
+     *  lane. */
     struct Weight
     {
       std::array<unsigned int, Lanes::size()> entries; // of the node's x
       dealii::Tensor<1, 3, Lanes>             gradient;
     };
 
-    /** As many samples as there are lanes. */
+    /** Samples that are evaluated at once, one for each lane. */
     struct Group
     {
       std::size_t    end_of_weights = 0;

@@ -9,8 +9,8 @@ namespace Voussoir
 {
   /**
    * An observer with a table over time: the entry "Interval", lines at that
-   * interval, and samples between them for extremes. Samples wait, so that the
-   * ranks exchange a hundred of them at once.
+   * interval, and samples between them for extremes. Samples are collected, so
+   * that the ranks exchange a hundred of them at once.
    */
   class TableObserver : public Observer
   {

@@ -38,7 +38,8 @@ namespace Voussoir
     };
 
     /** The least stress of a cell that is exceeded in at most 5 % of the
-     *  volume. By bisection, so that no rank stores the cells of all. */
+     *  volume. Found by bisection, so that no rank stores the cells of all
+     *  ranks. */
     double
     percentile(const MPI_Comm communicator) const;
 

@@ -22,7 +22,7 @@ class GroundMotion:
         self.time = table.time
         self.interval = (table.time[-1] - table.time[0]) / (len(table.time) - 1)
         if np.ptp(np.diff(self.time)) > 1e-3 * self.interval:
-            refuse(table.file, "has lines missing or twice, as its times are not at equal intervals")
+            refuse(table.file, "lacks lines or repeats them, as its times are not at equal intervals")
         self.acceleration = {match[1]: values for match, values
                              in table.matching(r"acceleration ([xyz]) \[m/s2\]")}
 

@@ -1,4 +1,4 @@
-"""Two verdicts and the acceptance table, from the tables in summary.json."""
+"""Numerical checks, engineering results and the acceptance table, from summary.json."""
 
 import dataclasses
 import fnmatch

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Writes verification.md beside this file: the comparisons of the tests with closed
-forms, published values and conservation laws, and their errors.
+"""Writes verification.md beside this file: what the tests compare with closed
+forms, published values and conservation laws, and how far off it was.
 
 usage: doc/verification.py [--check]    (--check: fails if the page is not as
                                          this would write it)
 
 The figures are those of the reference outputs, tests/*/*.output, which a test
-must reproduce to four digits, unless it comes nearer to the reference. The kind of
-reference is given by a line "// Reference: KIND" above the registration of the check
-in tests/checks/*.cc, or by "# Reference: KIND" at the head of a parameter file.
+must reproduce to four digits, or come nearer to the reference. What the
+reference is, a line "// Reference: KIND" says above where tests/checks/*.cc
+registers the check, or "# Reference: KIND" at the head of a parameter file.
 """
 import pathlib
 import re
@@ -27,10 +27,10 @@ REGISTERED = re.compile(
 KINDS = {
     "closed form": "a closed form, a conservation law, or geometry by hand",
     "published": "a published figure",
-    "other program": "the result of another program, or of an independent computation "
-    "that is written for the test alone and shares nothing with Voussoir",
-    "Voussoir": "the program itself: two ways to the same result, a balance of its "
-    "own terms, or a bound that it sets itself",
+    "other program": "another program's result, or another way of computing the "
+    "same that is written for the test alone and shares nothing with Voussoir",
+    "Voussoir": "the program itself: two ways to the same result, a balance by its "
+    "own account, or a bound that it sets itself",
 }
 BOUNDED = re.compile(rf"^(?P<what>.*) below {NUMBER}  ok$")
 
@@ -65,25 +65,25 @@ def kind_of_reference(case, kinds_of_checks):
         kind = kinds_of_checks.get(name[1]) if name else None
     if kind not in KINDS:
         sys.exit(
-            f"{case.relative_to(ROOT)}: the kind of reference is missing. Give it by a line "
+            f"{case.relative_to(ROOT)}: with what does it compare? Say it by a line "
             f'"// Reference: KIND" in tests/checks, one of: {", ".join(KINDS)}.'
         )
     return kind
 
 
 def counts(rows):
-    """The number of rows of each kind."""
+    """Of a list of kinds."""
     return ", ".join(f"{kind} {rows.count(kind)}" for kind in KINDS)
 
 
 def last_digit(number):
-    """One unit of the last digit of a written number."""
+    """A unit of the last digit of a number as it is written."""
     mantissa, _, exponent = number.lower().partition("e")
     return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
 
 
 def worst_comparison(lines):
-    """Number of comparisons, and the one with the largest share of its tolerance."""
+    """Number of comparisons, and the one that uses most of what is allowed."""
     count, worst = 0, None
     for line in lines:
         match = COMPARED.match(line)
@@ -152,8 +152,8 @@ def page():
             "# What is checked against what",
             "",
             "Written by `doc/verification.py` from the reference outputs of the tests; "
-            "`./bootstrap test -R NAME` repeats a test. The sources of the tests, "
-            "`tests/checks`, name the origin of each reference, which is one of:",
+            "`./bootstrap test -R NAME` runs one of them again. The tests' sources, "
+            "`tests/checks`, say where each reference comes from. It is one of:",
             "",
             *(f"- {kind}: {meaning};" for kind, meaning in list(KINDS.items())[:-1]),
             *(f"- {kind}: {meaning}." for kind, meaning in list(KINDS.items())[-1:]),
@@ -163,9 +163,9 @@ def page():
             "",
             "## Numbers against references",
             "",
-            "For each test the comparison with the largest error over its tolerance. An "
-            "error of 0 is none in the digits printed; with ≤, these digits do "
-            "not distinguish the error from the tolerance, which the test checks in full "
+            "Of each test the comparison that uses most of what is allowed. A "
+            "difference of 0 means: none in the digits printed; with ≤, these digits do "
+            "not distinguish it from what is allowed, which the test holds in full "
             "precision. By reference: "
             f"{counts(kinds_compared)}.",
             "",
@@ -175,8 +175,8 @@ def page():
             "",
             "## Errors against bounds",
             "",
-            "Tests of differences only: from an exact solution, from an independent "
-            "computation, or in a balance. For each test the narrowest bound. By "
+            "Tests of differences only: to an exact solution, to another way "
+            "of computing the same, of a balance. Of each the narrowest bound. By "
             f"reference: {counts(kinds_bounded)}.",
             "",
             "| test | subject | reference is | bounds | what | below |",

@@ -15,9 +15,10 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-PLANES = [f"{bank} wedge {plane}" for bank in ("left", "right") for plane in ("bottom", "side", "back")]
+PLANES = [f"{bank} wedge {plane}" for bank in ("left", "right")
+          for plane in ("base", "lateral plane", "rear plane")]
 COLOURS = {"left": "#1b6ca8", "right": "#c0392b"}
-DASHES = {"bottom": "-", "side": "--", "back": ":"}
+DASHES = {"base": "-", "lateral plane": "--", "rear plane": ":"}
 study = pathlib.Path(sys.argv[1])
 design, stronger = (study / f"Overload-factor-{factor}" for factor in ("1", "1.5"))
 
@@ -30,7 +31,7 @@ def table(folder):
 
 
 def style(plane):
-    bank, _, name = plane.split()
+    bank, _, name = plane.split(" ", 2)
     return {"color": COLOURS[bank], "linestyle": DASHES[name], "label": f"{bank} {name}"}
 
 
@@ -68,7 +69,7 @@ residual.legend(fontsize=8)
 runs = sorted((float(run["values"]["Ground motion/Overload factor"]), run["quantities"])
               for run in json.loads((study / "study.json").read_text())["runs"])
 for plane in PLANES:
-    if plane.endswith("bottom"):
+    if plane.endswith("base"):
         factor.plot([value for value, _ in runs],
                     [numbers[f"interfaces/surfaces/{plane}/residual slip [mm]"] for _, numbers in runs],
                     marker="o", **style(plane))

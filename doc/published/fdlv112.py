@@ -3,10 +3,10 @@
 
     python3 fdlv112.py mesh FOLDER      reads fdlv112h.mail and fdlv112d.py of a folder,
                                         writes fdlv112.msh and fdlv112.csv
-    python3 fdlv112.py crest OUTPUT     beside code_aster's numbers
+    python3 fdlv112.py crest OUTPUT     compares the crest with code_aster's results
 
-The files of the folder are part of code_aster, under its licence; this project has none
-of them. Quadratic hexahedra are cut into eight, wedges into six hexahedra at their
+The files of the folder are part of code_aster, under its licence, and not included in
+this project. Quadratic hexahedra are cut into eight, wedges into six hexahedra at their
 nodes, with the middle of faces and cells by the element's own shape functions.
 code_aster has x upstream and y towards the right bank; here y is upstream.
 """
@@ -22,7 +22,7 @@ CORNERS = {"TRIA6": 3, "QUAD8": 4, "PENTA15": 6, "HEXA20": 8}
 CELL_SETS = {"STRVOU": "dam", "VOLSOL": "rock", "FLUIDE": "reservoir"}
 FACE_SETS = {"IFLUSTR": "upstream face", "SLIBRE0": "water surface", "IFLUSOLF": "reservoir end",
              "TH_SOL": "outer", "ISOLSTR": "base"}
-# the quadrilaterals of a hexahedron and of a wedge by their corners, and its triangles
+# the faces of a hexahedron by their corners
 HEXA_FACES = [(0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
 # edges of the quadratic cells: corners and the node between them
 EDGES = {
@@ -36,7 +36,7 @@ EDGES = {
 
 
 def read_mail(name):
-    """Coordinates by node, type and nodes by cell, members by name of a group."""
+    """Coordinates by node, type and nodes by cell, members by name of the group."""
     nodes, cells, groups = {}, {}, {}
     kind = group = None
     words = []
@@ -51,7 +51,7 @@ def read_mail(name):
             kind, words = first, []
             named = re.search(r"NOM=(\S+)", line)
             group = named.group(1) if named else None
-        elif "=" in line:  # of the heading
+        elif "=" in line:  # part of the heading
             continue
         elif kind == "COOR_3D":
             nodes[first] = numpy.array([float(x) for x in line.split()[1:4]])
@@ -66,7 +66,7 @@ def read_mail(name):
 
 
 class Refined:
-    """Nodes of the cut cells, each once."""
+    """Nodes of the new cells, each once."""
 
     def __init__(self, nodes):
         self.known = nodes
@@ -82,7 +82,7 @@ class Refined:
         return self.number(name, self.known[name])
 
     def middle(self, corners, middles):
-        """Of a face or a cell: by the quadratic shape functions."""
+        """The middle of a face or a cell, by the quadratic shape functions."""
         key = frozenset(corners)
         weights = {3: (-1 / 9, 4 / 9), 4: (-1 / 4, 1 / 2), 8: (-1 / 4, 1 / 4)}[len(corners)]
         return self.number(key, sum(weights[0] * self.known[n] for n in corners) +
@@ -97,7 +97,7 @@ class Refined:
         return self.middle([nodes[i] for i in corners], edges), edges
 
     def cut_face(self, cell):
-        """A quadrilateral at each corner."""
+        """The quadrilaterals of a face, one at each corner."""
         kind, nodes = cell
         n = CORNERS[kind]
         middle, edges = self.face(cell, range(n))
@@ -105,7 +105,7 @@ class Refined:
                 for i in range(n)]
 
     def cut_hexahedron(self, cell):
-        """One at each corner, from a grid of 3 x 3 x 3 nodes."""
+        """The hexahedra of a hexahedron, one at each corner, from a grid of 3 x 3 x 3 nodes."""
         _, nodes = cell
         place = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2),
                  (0, 2, 2)]
@@ -122,7 +122,7 @@ class Refined:
                 for i in (0, 1) for j in (0, 1) for k in (0, 1)]
 
     def cut_wedge(self, cell):
-        """Three in each half of its height."""
+        """The hexahedra of a wedge, three in each half of its height."""
         _, nodes = cell
         sides = [(0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)]
         levels = []
@@ -162,7 +162,7 @@ def write_msh(name, points, cells, faces):
 
 
 def positive(points, corners):
-    """With the first corner's edges right-handed."""
+    """The corners in an order in which the edges at the first corner are right-handed."""
     p = [points[c] for c in corners]
     if numpy.dot(numpy.cross(p[1] - p[0], p[3] - p[0]), p[4] - p[0]) > 0:
         return corners
@@ -202,8 +202,8 @@ REFERENCE = [("acceleration upstream at 1.01 s", 5.0422, 4.8846),
 
 
 def spectrum(time, acceleration, frequency, damping=0.05):
-    """Largest absolute acceleration of an oscillator, exact for straight lines between the
-    points."""
+    """Largest absolute acceleration of an oscillator, exact for linear acceleration between
+    the points."""
     import scipy.linalg
     omega, dt = 2 * numpy.pi * frequency, time[1] - time[0]
     a = numpy.array([[0, 1, 0, 0], [-omega**2, -2 * damping * omega, -1, 0], [0, 0, 0, 1],
@@ -218,9 +218,9 @@ def spectrum(time, acceleration, frequency, damping=0.05):
 
 
 def crest_history(folder, decay=1.):
-    """The crest when the rock at the end of the crest moves as recorded: the transfer
-    function between the two, of histories that are faded out, so that the end of the run
-    matters little, and without what is above 50 Hz."""
+    """Acceleration of the crest when the rock at the end of the crest moves as recorded: by
+    the transfer function between the two, from histories that are faded out, so that the
+    end of the run has little influence, and without frequencies above 50 Hz."""
     table = list(csv.reader(open(folder / "histories.csv")))
     heading, rows = table[0], numpy.array(table[1:], float)
 

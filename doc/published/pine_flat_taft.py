@@ -4,8 +4,8 @@
     python3 pine_flat_taft.py record FOLDER          writes taft_s69e.txt
     python3 pine_flat_taft.py picture FOLDER OUTPUT  draws pine_flat_taft.png
 
-FOLDER is a copy of the program named in gravity_dam_mesh.py, of which this project has
-none; OUTPUT that of pine_flat_taft_s69e.prm.
+FOLDER is a copy of the program named in gravity_dam_mesh.py, which is not included in
+this project; OUTPUT is the output folder of pine_flat_taft_s69e.prm.
 """
 import argparse
 import csv
@@ -14,12 +14,12 @@ import re
 
 import numpy
 
-# [s]; the record reaches the surface late, as it starts as a wave at the bottom
+# [s]; the record starts as a wave at the bottom and reaches the surface so much later
 SHIFT = 0.28
 
 
 def write_record(folder):
-    """Component along the river, whose sign there is upstream [g]."""
+    """Writes the component along the river [g], with the sign of Voussoir (y upstream)."""
     text = (folder / "input" / "INPUT-PF4-DAMRes.TXT").read_text()
     text = text.split("[IFUNC.EQ.5: EQ IN X-DIR]")[1].split("[T    F5")[1].split("\n", 1)[1].split("!")[0]
     numbers = [float(n) for n in re.findall(r"-?\d+\.\d+", text)]
@@ -31,8 +31,8 @@ def write_record(folder):
 
 
 def histories(folder, output):
-    """Times, and displacements of the crest against the heel from the static state,
-    downstream [s, mm]; there and here."""
+    """Times and displacements of the crest relative to the heel since the static state,
+    downstream [s, mm]; of the other program and of Voussoir."""
     table = numpy.loadtxt(folder / "output" / "FEM.HIS", skiprows=1)
     there = table[:, 1] - table[:, 3]
     rows = list(csv.reader(open(output / "histories.csv")))

@@ -10,8 +10,8 @@ Metres; y upstream from the heel, z up from the base.
 """
 import argparse
 
-# Elevation, distance of the upstream and the downstream face from the heel; rows of
-# cells between these elevations; how many of these parts are under water.
+# Elevation and distances of the upstream and the downstream face from the heel; rows of
+# cells between these elevations; number of these intervals under water.
 DAMS = {
     "pine flat": ([(0, 0, 95.71), (91.44, 4.57, 24.38), (102.17, 5.11, 17.70),
                    (106.68, 5.11, 15.64), (112.41, 5.11, 14.86), (116.19, 5.11, 14.86),
@@ -28,7 +28,7 @@ def between(a, b, part):
 
 
 def section(corners, numbers, refine):
-    """Elevation and faces at each row of nodes."""
+    """Elevation and distances of the faces at each row of nodes."""
     rows = []
     for low, high, cells in zip(corners, corners[1:], numbers):
         rows += [[between(a, b, k / (cells * refine)) for a, b in zip(low, high)]
@@ -37,7 +37,7 @@ def section(corners, numbers, refine):
 
 
 def graded(length, first, growth):
-    """Distances up to a length, in steps that grow from about the first."""
+    """Distances up to a length, in steps that grow from about the first one."""
     steps = [first]
     while sum(steps) < length:
         steps.append(steps[-1] * growth)
@@ -46,7 +46,7 @@ def graded(length, first, growth):
 
 
 class Mesh:
-    """Quadrilaterals of the section, to be drawn out across the slice."""
+    """Quadrilaterals of the section, to be extruded across the slice."""
 
     def __init__(self):
         self.nodes, self.cells, self.edges = {}, [], []
@@ -55,8 +55,8 @@ class Mesh:
         return self.nodes.setdefault((round(y, 6), round(z, 6)), len(self.nodes))
 
     def grid(self, name, points, sides):
-        """Cells between rows of points (upwards, each from upstream to downstream) and names of
-        the sides (bottom, top, upstream, downstream)."""
+        """Cells between rows of points (upwards, each from upstream to downstream), with the
+        names of the sides (bottom, top, upstream, downstream)."""
         number = [[self.node(*p) for p in row] for row in points]
         for low, high in zip(number, number[1:]):
             self.cells += [(name, (low[i], high[i], high[i + 1], low[i + 1]))

@@ -1,8 +1,8 @@
 """Shows a run in ParaView, in up to four views of its dam: the motion over time with damage or
 tension, the largest tension of the whole run, the joints, the arch stress.
 
-As a macro it takes the run whose results are open (its fields.pvd, or any of its files): Macros,
-Import new macro, this file; from then on it is a button. Or with ParaView being closed:
+As a macro (Macros, Import new macro, this file) it is a button and takes the run whose results are
+open (its fields.pvd, or any of its files). Or without ParaView open:
 
   voussoir-paraview FOLDER                           opens it
   pvpython voussoir_paraview.py FOLDER PICTURE.png   draws a picture
@@ -14,7 +14,8 @@ import sys
 
 from paraview import simple as pv
 
-# of a view the first one that the results have; what is None of a range comes from the dam
+# quantities of a view, of which the first one in the results is taken; None in a range stands for
+# the extreme in the dam
 Quantity = collections.namedtuple("Quantity", "field title low high", defaults=(None, None))
 STATE = [Quantity("tension_damage", "damage in tension [-]", 0., 1.),
          Quantity("damage", "damage [-]", 0., 1.),
@@ -32,7 +33,7 @@ FROM_DOWNSTREAM, FROM_THE_RIGHT = (0.35, -1., 0.55), (-1., -0.5, 0.3)  # +y is u
 
 
 def result_folder():
-    """That which is asked for, or that of what is chosen in ParaView."""
+    """The folder that is given, or that of the source selected in ParaView."""
     folder = os.environ.get("VOUSSOIR_RESULTS") or (sys.argv[1] if len(sys.argv) > 1 else "")
     if not folder:
         files = getattr(pv.GetActiveSource(), "FileName", "")
@@ -40,14 +41,14 @@ def result_folder():
         if os.path.basename(folder) in ("fields", "face_stresses"):
             folder = os.path.dirname(folder)
     if not os.path.isfile(os.path.join(folder, "parameters.prm")):
-        raise RuntimeError(f'"{folder}" is not the output folder of a run, as it holds no parameters.prm; '
-                           "open the fields.pvd of a run and choose it in the Pipeline Browser, or give "
-                           "its folder to voussoir-paraview.")
+        raise RuntimeError(f'"{folder}" is not the output folder of a run, as it has no parameters.prm; '
+                           "open the fields.pvd of a run and select it in the Pipeline Browser, or give "
+                           "the folder of the run to voussoir-paraview.")
     return folder
 
 
 def open_results(folder, *names):
-    """The first of these files that is there as a source of ParaView, or None."""
+    """A source of ParaView for the first of these files that exists, or None."""
     for name in names:
         file = os.path.join(folder, name)
         if os.path.isfile(file):
@@ -59,14 +60,14 @@ def open_results(folder, *names):
 
 
 def names_of(source, field):
-    """What the numbers of a field stand for."""
+    """Names that the numbers of a field stand for."""
     data = source.GetDataInformation().DataInformation.GetFieldDataInformation()
     names = data.GetArrayInformation(field + "_names")
     return [names.GetStringValue(i).strip('"') for i in range(names.GetNumberOfStringValues())]
 
 
 def dam_materials(names):
-    """Numbers of those called so, without the rock, or else of the first."""
+    """Numbers of the materials whose names say so, and not rock, or else of the first material."""
     def is_called(name, *words):
         return any(word in name.lower() for word in words)
 
@@ -75,7 +76,7 @@ def dam_materials(names):
 
 
 def dam_and_rock(source):
-    """Cells of the dam, and the others or None."""
+    """Cells of the dam, and the other cells or None."""
     names = names_of(source, "material")
     dam = dam_materials(names)
 
@@ -93,12 +94,12 @@ def dam_and_rock(source):
 
 
 def times_of(series):
-    """[s]; any one if there is a single picture."""
+    """Times of a series [s]; an arbitrary one for a single picture."""
     return list(getattr(series, "TimestepValues", None) or [0.])
 
 
 def largest_motion(dam, field, series):
-    """Of all pictures [m]."""
+    """The largest motion in all pictures [m]."""
     largest = 0.
     for time in times_of(series):
         dam.UpdatePipeline(time)
@@ -107,7 +108,7 @@ def largest_motion(dam, field, series):
 
 
 def warped(fields):
-    """With the motion magnified so that it can be seen, and the factor; as it is if nothing moves."""
+    """The source warped by the magnified motion, and the factor; the source itself if nothing moves."""
     field = next((name for name in MOTIONS if fields.PointData.GetArray(name)), None)
     dam, _ = dam_and_rock(fields)
     largest = largest_motion(dam, field, fields) if field else 0.
@@ -124,7 +125,7 @@ def warped(fields):
 
 
 def range_of(source, quantity, series):
-    """Of a quantity over all pictures."""
+    """The range of a quantity over all pictures."""
     low, high = [], []
     for time in times_of(series):
         source.UpdatePipeline(time)
@@ -133,7 +134,7 @@ def range_of(source, quantity, series):
         high.append(found[1])
     low = min(low) if quantity.low is None else quantity.low
     high = max(high) if quantity.high is None else quantity.high
-    if quantity.low is None and low < 0. < high:  # the sign shows
+    if quantity.low is None and low < 0. < high:  # symmetric, so that colours show the sign
         high = max(-low, high)
         low = -high
     return low, max(high, low + 1e-6)
@@ -143,7 +144,7 @@ def show(source, view, colour):
     display = pv.Show(source, view)
     display.Representation = "Surface With Edges"
     display.EdgeColor = DARK
-    display.Ambient, display.Diffuse = 0.5, 0.55  # or shades are taken for colours
+    display.Ambient, display.Diffuse = 0.5, 0.55  # weak shades, which are not mistaken for colours
     display.ColorArrayName = [None, ""]
     display.AmbientColor = display.DiffuseColor = colour
     return display
@@ -155,7 +156,7 @@ def colour_by(source, view, quantities, series):
     quantity = next((item for item in quantities if source.PointData.GetArray(item.field)), None)
     if quantity is None:
         return
-    # a table for each view, as the same field has another range there
+    # a colour table for each view, as the range of a field differs between views
     pv.ColorBy(display, ("POINTS", quantity.field), separate=True)
     table = pv.GetColorTransferFunction(quantity.field, display, separate=True)
     low, high = range_of(source, quantity, series)
@@ -187,7 +188,7 @@ def new_view(title, around, direction):
     view.CameraParallelProjection = 1
     size = sum((b - a)**2 for a, b in zip(low, high))**0.5
     middle = [0.5 * (a + b) for a, b in zip(low, high)]
-    middle[2] -= 0.1 * size  # space for the colours below
+    middle[2] -= 0.1 * size  # space for the colour bar below
     view.CameraFocalPoint = middle
     view.CameraPosition = [m + size * d for m, d in zip(middle, direction)]
     view.CameraViewUp = [0., 0., 1.]
@@ -196,7 +197,7 @@ def new_view(title, around, direction):
 
 
 def note(view, source):
-    """A line in the corner of a view."""
+    """Shows a line of text in the corner of a view."""
     display = pv.Show(source, view)
     display.Color = DARK
     display.FontSize = 12
@@ -218,7 +219,7 @@ def show_motion(fields, view_of):
 
 
 def arrange(views, title):
-    """Two in a row."""
+    """A layout of views, two in a row."""
     layout = pv.CreateLayout(title)
     cells = [0]  # of a binary tree: below n are 2 n + 1 and 2 n + 2
     if len(views) > 1:
@@ -236,7 +237,7 @@ def arrange(views, title):
 
 
 def show_run(folder):
-    """The layout with all that the folder has."""
+    """The layout with views of all results in the folder."""
     views, around = [], None
 
     def view_of(title, source, direction=FROM_DOWNSTREAM):
@@ -259,7 +260,7 @@ def show_run(folder):
     if faces:
         colour_by(faces, view_of("faces", faces), FACES, faces)
     if not views:
-        raise RuntimeError(f'"{folder}" holds no pictures; add "fields", "envelopes" or "interfaces" to '
+        raise RuntimeError(f'"{folder}" has no pictures; add "fields", "envelopes" or "interfaces" to '
                            '"Observers" in section "Output".')
 
     scene = pv.GetAnimationScene()

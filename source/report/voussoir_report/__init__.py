@@ -1,1 +1,1 @@
-"""From result folders of Voussoir to a report: one page that needs nothing else."""
+"""Reports of result folders of Voussoir: one self-contained page."""

@@ -6,10 +6,10 @@ import multiprocessing
 import pathlib
 import sys
 
-EPILOG = """A run is the output folder that it left, or LABEL=FOLDER to name it in legends; the
+EPILOG = """RUN is the output folder of a run, or LABEL=FOLDER to name the run in legends; the
 folder of a study stands for its runs, some of them in detail, and adds a table and curves.
-The page needs nothing else and can be sent by mail; a FILE that ends in .pdf is
-printed (needs the package weasyprint)."""
+The page is self-contained and can be sent by mail; with a FILE that ends in .pdf the report
+is a PDF (needs the package weasyprint)."""
 
 
 def arguments():
@@ -20,9 +20,9 @@ def arguments():
                                                                       "or of a study")
     parser.add_argument("-o", "--output", metavar="FILE", help="the report (report.html in the folder of "
                                                                "the first run)")
-    parser.add_argument("--pictures", metavar="FOLDER", help="writes the pictures there too, as SVG and PNG")
+    parser.add_argument("--pictures", metavar="FOLDER", help="also writes the pictures to this folder, as SVG and PNG")
     parser.add_argument("--case-folder", metavar="FOLDER", action="append", default=[],
-                        help="where the parameter file stood, to find the records that it names")
+                        help="folder of the parameter file, to find the records that it names")
     return parser.parse_args()
 
 
@@ -38,8 +38,8 @@ def with_runs_of_studies(folders, studies):
 
 
 def section_of(make, *arguments):
-    """What a function makes of the runs. A report names what it cannot read; any
-    other consequence of a damaged file becomes a sentence, too."""
+    """The section that a function makes of the runs. Damaged files are refused by name;
+    any other exception that they cause becomes a sentence, too."""
     from .files import ReportError
     try:
         return make(*arguments)
@@ -49,14 +49,14 @@ def section_of(make, *arguments):
         what = make.__name__.removesuffix("_section").replace("_", " ")
         folders = ", ".join(f'"{run.folder}"' for run in arguments[0])
         raise ReportError(f'The section on {what} cannot be made from the results in {folders} '
-                          f"({type(error).__name__}: {error}); if their files are whole, "
-                          "please report it.") from None
+                          f"({type(error).__name__}: {error}); if their files are complete, "
+                          "please report this error.") from None
 
 
 def main():
     options = arguments()
     try:
-        # takes a second, and --help shall not
+        # these imports take a second, which --help need not
         from . import (case, damage, faces, interfaces, motions, over_stress, page, records, scenes,
                        stages, structure, study)
         from .files import ReportError
@@ -95,7 +95,7 @@ def main():
     except ReportError as error:
         sys.exit(f"voussoir-report: {error}")
     except concurrent.futures.process.BrokenProcessPool:
-        sys.exit("voussoir-report: a process that draws was ended from outside, perhaps for want of "
+        sys.exit("voussoir-report: a drawing process was killed, perhaps for lack of "
                  "memory; try again with fewer runs.")
     print(f"The report is in {file}")
 

@@ -1,4 +1,4 @@
-"""The case in words, the headline figures, and what the run took."""
+"""The case in words, the main results, and the effort of the run."""
 
 import re
 
@@ -9,12 +9,12 @@ from .motion import GRAVITY, peak
 from .page import Block, Digest, Section, Table, Verdicts, comparison, number
 
 DIRECTIONS = {"x": "across the valley", "y": "along the river", "z": "vertical"}
-SIGNS = ("The axes: +x points to the left bank, +y upstream, +z up. Tension is positive, "
-         "pressure negative; an opening is positive where a joint opens. All units stand "
-         "beside their numbers; g is 9.81 m/s².")
+SIGNS = ("Axes: +x points to the left bank, +y upstream, +z up. Tension is positive, "
+         "compression negative; an opening is positive where a joint opens. Units stand "
+         "beside the numbers; g is 9.81 m/s².")
 
 
-# what the log says of a generated dam by its drawings, which the mesh has with chords
+# dimensions of a generated dam by its drawings, from the log; the mesh replaces arcs by chords
 DRAWN = re.compile(r"^Dam: (\S+) m high, crest (\S+) m long; at the crown (\S+) to (\S+) m thick; "
                    r"volume (\S+) m3; slenderness (\S+)", re.MULTILINE)
 
@@ -59,7 +59,7 @@ def materials_table(run):
     materials = dict(run.objects("Materials"))
     for values in materials.values():
         if values.get("Tension law") == "table":
-            values.pop("Fracture energy", None)  # that of the table counts
+            values.pop("Fracture energy", None)  # the table has its own
         for strength in ("Tensile strength", "Compressive strength"):
             if values.get(strength) == "0":
                 values.pop(strength)  # none is given
@@ -84,7 +84,7 @@ def materials_table(run):
 
 
 def load_in_words(run, name):
-    """A load with its class and level."""
+    """The name of a load with its class and level."""
     entries = dict(run.objects("Loads")).get(name, {})
     facts = [entries.get("Class", "")] if entries.get("Class", name) != name else []
     if entries.get("Level") not in (None, "", "0"):
@@ -93,7 +93,7 @@ def load_in_words(run, name):
 
 
 def loads_table(run):
-    """Load cases in their order: the static stages with their sums, and the earthquake."""
+    """Load cases in order: the static stages with their sums, and the earthquake."""
     stages = run.list("Static state/Stages", ";")
     found = run.summary.get("static state", {}).get("stages", [])
     rows = []
@@ -121,7 +121,7 @@ def loads_table(run):
 def water_in_words(run):
     model = run.entry("Reservoir/Model", "none")
     if model == "none":
-        return "No water moves with the dam."
+        return "No interaction with the water."
     if model == "added mass":
         return ("The water moves with the dam as Westergaard's added mass, to "
                 f"{run.entry('Reservoir/added mass/Level')} m.")
@@ -169,8 +169,8 @@ def damping_in_words(run):
     moduli = run.summary.get("damping", {})
     words = f"Damping: {model}, {100. * run.number('Damping/Ratio'):g} % of critical"
     if "moduli hold at [Hz]" in moduli and "relaxed modulus over the given one" in moduli:
-        words += (f"; moduli hold at {number(moduli['moduli hold at [Hz]'])} Hz; the relaxed ones are "
-                  f"{number(moduli['relaxed modulus over the given one'])} times these")
+        words += (f"; the moduli hold at {number(moduli['moduli hold at [Hz]'])} Hz; relaxed moduli are "
+                  f"{number(moduli['relaxed modulus over the given one'])} times as large")
     return words + "."
 
 
@@ -182,14 +182,14 @@ def boundary_in_words(run):
 
 
 def differences(runs):
-    """Entries that are not the same in all runs."""
+    """A table of the entries that differ between the runs."""
     paths = dict.fromkeys(path for run in runs for path in run.parameters)
     rows = [[path, *(run.entry(path, "–") or "empty" for run in runs)] for path in paths
             if len({run.entry(path, "–") for run in runs}) > 1
             and path not in ("Title", "Output/Folder")]
     if not rows:
         return "The runs have the same parameters."
-    return Table(["entry", *(run.label for run in runs)], rows, "What differs between the runs.")
+    return Table(["entry", *(run.label for run in runs)], rows, "Entries that differ between the runs.")
 
 
 def case_section(runs):
@@ -197,13 +197,13 @@ def case_section(runs):
     parts = [dam_in_words(first), SIGNS, materials_table(first), interfaces_in_words(first),
              loads_table(first), water_in_words(first), boundary_in_words(first), damping_in_words(first)]
     if len(runs) > 1:
-        parts.insert(0, f"In words, the first of the runs, {first.label}:")
+        parts.insert(0, f"The first of the runs, {first.label}, in words:")
         parts.append(differences(runs))
     return Section("The case", [part for part in parts if part])
 
 
 def moved(run):
-    """Name and figures of the point that moves most against the base."""
+    """Name and values of the point with the largest relative displacement."""
     points = {name: values for name, values in run.summary.get("histories", {}).items()
               if values["largest displacement [m]"] > 0.}
     relative = {name: values for name, values in points.items() if "relative to" in values}
@@ -213,7 +213,8 @@ def moved(run):
 
 
 def largest_of(run, part, key, smallest=False):
-    """Text of an extreme over the surfaces or blocks of the summary, with its name."""
+    """Text of an extreme over the surfaces or blocks of the summary, with the name of the
+    surface or block."""
     found = [(values[key], name) for name, values
              in run.summary.get("interfaces", {}).get(part, {}).items()
              if values.get(key) is not None]
@@ -279,14 +280,14 @@ def headline_section(runs):
     table = comparison(runs, [
         ("first natural frequency [Hz]", first_frequency),
         ("peak of the input motion [g]", ground_peaks),
-        ("largest displacement relative to the base, with the static one [cm]",
+        ("largest displacement relative to the base, static one included [cm]",
          of_moved("largest displacement [m]", 100.)),
         ("largest acceleration relative to the base, filtered [g]",
          of_moved("largest filtered acceleration [m/s2]", 1. / GRAVITY)),
         ("largest arch tension on the faces [MPa]", of_summary("face stresses/largest arch stress [MPa]")),
         ("largest cantilever tension [MPa]", of_summary("face stresses/largest cantilever stress [MPa]")),
         ("largest principal tension [MPa]", of_summary("face stresses/largest principal stress [MPa]")),
-        ("largest pressure (smallest principal stress) [MPa]",
+        ("largest compression (smallest principal stress) [MPa]",
          of_summary("face stresses/smallest principal stress [MPa]")),
         ("largest opening of a joint or plane [mm]",
          lambda run: largest_of(run, "surfaces", "largest opening [mm]")),
@@ -304,9 +305,9 @@ def headline_section(runs):
         ("share of the concrete that left the elastic range [%]",
          of_materials("share of the volume that left the elastic range", 100.)),
         ("largest opening of cracks in a cell [mm]", of_materials("largest crack opening [mm]")),
-        ("energy-balance error, of what came in [%]", energy_balance_error),
+        ("energy-balance error, share of the input [%]", energy_balance_error),
     ])
-    return Section("Headline figures", [table]) if table else None
+    return Section("Main results", [table]) if table else None
 
 
 def conclusions_section(runs):
@@ -314,15 +315,15 @@ def conclusions_section(runs):
     return Section("Conclusions", [
         *(Verdicts(run.label if len(runs) > 1 else "", verdict.verdicts_of(run),
                    run.notes) for run in runs),
-        "The acceptance table has the criteria of the case; numerical checks say whether the equations were solved "
-        "as they stand; engineering results say what came out for the dam, by the program's own criteria. What is to "
-        "be judged has no limit there. None of them says that the model is right."])
+        "The acceptance table has the criteria of the case; numerical checks whether the equations were solved "
+        "correctly; engineering results the response of the dam by the program's own criteria. Results without a "
+        "limit are to be judged. None of the tables shows that the model is right."])
 
 
 def input_entries_section(runs):
-    """What makes a run again: the entries that are not the defaults, and the whole file."""
-    parts = ["Entries that differ from the defaults of this version and are of the parts that the case uses; with "
-             "them the run can be made again. All other entries have their defaults."]
+    """The input to repeat a run: the entries that are not default values, and the whole file."""
+    parts = ["Entries of the parts that the case uses, where they differ from the default values of this version; with "
+             "these entries the run can be repeated. All other entries have their default values."]
     for run in runs:
         parts.append(Block(f"{run.prefix}{len(run.own_entries)} entries", "\n".join(run.own_entries)))
         parts.append(Block(f"{run.prefix}all of parameters.prm", run.read("parameters.prm").strip(), folded=True))
@@ -330,7 +331,7 @@ def input_entries_section(runs):
 
 
 def files_section(runs):
-    """What the report was made of."""
+    """The files from which the report was made."""
     return Section("Files of this report", [Table(["file", "SHA-256"], [
         [f"{run.folder}/{name}", Digest(digest)] for run in runs for name, digest in run.digests])])
 
@@ -351,4 +352,4 @@ def statistics_section(runs):
         ("speed [million unknowns · steps / s]", of_summary("MDOF-steps/s")),
         ("memory of the largest rank [MB]", of_summary("peak memory of a rank [MB]")),
     ])
-    return Section("Versions and what the run took", [table])
+    return Section("Version and effort of the run", [table])

@@ -26,12 +26,12 @@ matplotlib.rcParams.update({"font.size": 9.5, "axes.grid": True, "grid.alpha": 0
                             "svg.hashsalt": "voussoir", "path.simplify_threshold": 0.2})
 
 WIDTH = 5.0  # [in], so that the letters can be read on a phone
-DPI = 220  # two beside each other are printed smaller, and then have 300
+DPI = 220  # two pictures beside each other are printed smaller, and then have 300
 FULL_DPI = 300
 
 
 class Picture:
-    """A picture in a page, of the kind "png" or "svg", and what it shows."""
+    """A picture in a page, of the kind "png" or "svg", with its caption."""
 
     def __init__(self, data, caption, name="", kind="png"):
         self.data, self.caption, self.name, self.kind = data, caption, name, kind
@@ -43,12 +43,12 @@ class Picture:
 
 
 def picture(figure, caption, name="", vector=True, dpi=None, shaded=False):
-    """Draws a figure, as curves and letters or else as dots, with few colours, which
-    makes the page smaller; those of a shaded one are chosen with more care."""
+    """Draws a figure as vector graphics or else as pixels, with few colours, which
+    makes the page smaller; the colours of a shaded figure are chosen with more care."""
     memory = io.BytesIO()
     if vector:
         figure.savefig(memory, format="svg", metadata={"Date": None, "Creator": None})
-        # the shorthand is beyond what makes a PDF
+        # weasyprint does not support the shorthand
         text = re.sub(r"\bfont: ([\d.]+px) ([^;\"]+)", r"font-size: \1; font-family: \2", memory.getvalue().decode())
         return Picture(text.encode(), caption, name, "svg")
     figure.set_dpi(dpi or DPI)
@@ -61,8 +61,8 @@ def picture(figure, caption, name="", vector=True, dpi=None, shaded=False):
 
 
 def new_figure(height=2.9):
-    """A figure with space for a chart; margins in inches, as finding them takes matplotlib
-    half of its time."""
+    """A figure with axes for a chart; margins are given in inches, as their computation takes
+    half of matplotlib's time."""
     figure = Figure(figsize=(WIDTH, height))
     return figure, place(figure, 0.78, 0.5, WIDTH - 0.98, height - 0.8)
 
@@ -74,13 +74,13 @@ def place(figure, left, bottom, width, height):
 
 
 def with_margin(values, share=0.03):
-    """Limits of an axis on which values lie."""
+    """Limits of an axis around values."""
     low, high = values.min(), values.max()
     return low - share * (high - low), high + share * (high - low)
 
 
 def lines(axes, curves, title="", x="", y="", zero=False, limits=None, log=False):
-    """Curves (label, x, y), with a line at zero, or with the axis between limits."""
+    """Draws curves (label, x, y), with a line at zero, or with the axis between limits."""
     cycle_colours(axes, len(curves))
     for label, xs, ys in curves:
         axes.plot(xs, ys, label=label)
@@ -88,14 +88,14 @@ def lines(axes, curves, title="", x="", y="", zero=False, limits=None, log=False
 
 
 def lines_of_runs(axes, curves, title="", x="", y="", zero=False):
-    """Curves (run, x, y), each run in its colour in all charts."""
+    """Draws curves (run, x, y); each run has its colour in all charts."""
     for run, xs, ys in curves:
         axes.plot(xs, ys, color=f"C{run.place % 10}", label=run.title_in_chart)
     finish(axes, title, x, y, zero)
 
 
 def finish(axes, title, x, y, zero, limits=None, log=False):
-    """What stands around curves."""
+    """Adds titles, limits and legend to curves."""
     axes.set(xlabel=x, ylabel=textwrap.fill(y, 34))
     axes.set_title(title, loc="left")
     axes.margins(x=0)
@@ -109,7 +109,7 @@ def finish(axes, title, x, y, zero, limits=None, log=False):
 
 
 def legend_above(axes):
-    """A legend of the curves that have names, over them."""
+    """Adds a legend of the curves that have names, above them."""
     names = axes.get_legend_handles_labels()[1]
     if not names:
         return
@@ -124,7 +124,7 @@ def legend_above(axes):
 
 
 def cycle_colours(axes, n):
-    """Colours for more curves than matplotlib has colours; neighbours differ by dashes, too."""
+    """Sets colours for more curves than matplotlib has colours; neighbours also differ by dashes."""
     if n > 10:
         axes.set_prop_cycle(color=matplotlib.colormaps["turbo"](np.linspace(0.05, 0.95, n)),
                             linestyle=[("-", "--")[i % 2] for i in range(n)])
@@ -136,10 +136,10 @@ NOISE = 1e-6  # below it a stress [MPa], an opening [mm] or a time [s] is zero
 class Scale:
     """Colours of a quantity, the same in all pictures that are compared.
 
-    Tension is red and pressure blue, both as deep at the same amount, and where there
-    are both the range goes as far on either side of zero. It leaves out the outermost
-    @p cut of the values, as at the ends of joints and abutments, where they depend on
-    the mesh; these have the colours of its ends.
+    Tension is red and compression blue, equally deep at the same amount; where there
+    are both, the range is symmetric about zero. The range omits the share @p cut of the
+    outermost values, as at the ends of joints and abutments, where they depend on
+    the mesh; these values have the colours of the ends.
     """
 
     def __init__(self, values, label, cut=0.005, colours=None, low=None, high=None):
@@ -149,7 +149,7 @@ class Scale:
             values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
             has_both = values.min() < -NOISE and values.max() > NOISE
             ends = np.quantile(values, (cut, 1. - cut))
-            if np.ptp(ends) <= NOISE:  # so few values differ that all of them count
+            if np.ptp(ends) <= NOISE:  # few values differ from the rest, so none is left out
                 ends, cut = (values.min(), values.max()), 0.
             low, high = ends[0] if low is None else low, ends[1] if high is None else high
         low, high = (0. if abs(end) < NOISE else end for end in (low, high))
@@ -162,7 +162,7 @@ class Scale:
             high = low + 1e-3 * abs(high)
         self.label = label
         self.levels = ticker.MaxNLocator(8, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
-        # whether there is more than the range has
+        # whether there are values beyond the range
         self.below = cut > 0. and values.min() < self.levels[0]
         self.above = cut > 0. and values.max() > self.levels[-1]
         largest = np.abs(self.levels).max()
@@ -196,13 +196,13 @@ class Scale:
 
 
 def distinct(n):
-    """RGB (n, 3) of colours that can be told apart."""
+    """RGB (n, 3) of distinct colours."""
     return np.array([matplotlib.colormaps["tab10" if n <= 10 else "tab20"](i % 20)[:3] for i in range(n)])
 
 
 def framed(image, across, caption, name, scale=None, legend=None, dpi=None):
-    """A picture of a scene that is @p across [m] wide, with a length to compare with, a
-    colour bar and the names of colours."""
+    """A picture of a scene that is @p across [m] wide, with a scale bar, a colour bar and
+    a legend of colours."""
     height = WIDTH * image.shape[0] / image.shape[1]
     rows = -(-len(legend or ()) // 3)
     below = 0.7 if scale else 0.2 * rows
@@ -220,13 +220,13 @@ def framed(image, across, caption, name, scale=None, legend=None, dpi=None):
 
 
 def triangles(n_quadrilaterals):
-    """Corners of two triangles for each of some quadrilaterals with own corners."""
+    """Corners of two triangles for each quadrilateral, each of which has its own corners."""
     first = 4 * np.arange(n_quadrilaterals)[:, None]
     return np.concatenate([first + (0, 1, 2), first + (0, 2, 3)])
 
 
 def mark_largest(axes, places, values, unit, largest):
-    """Writes the extreme value beside its place."""
+    """Marks the place of the extreme value, with its number."""
     at = np.argmax(values) if largest else np.argmin(values)
     x, y = places[at]
     axes.plot(x, y, "o", color="black", markersize=3.5, markerfacecolor="none", clip_on=False)
@@ -242,8 +242,8 @@ def mark_largest(axes, places, values, unit, largest):
 @dataclasses.dataclass
 class Panel:
     """A face of a dam, unrolled: places (n, 4, 2) along the crest and upwards, values
-    (n, 4) or (n,) at corners or in quadrilaterals, and what the abscissa shows: places
-    along the crest [m] with their x, and whether they run to the left."""
+    (n, 4) at corners or (n,) in quadrilaterals, ticks of the abscissa as places
+    along the crest [m] with their x, and whether the abscissa runs to the left."""
 
     title: str
     places: np.ndarray
@@ -253,7 +253,7 @@ class Panel:
 
 
 def face_map(panels, scale, caption, name, unit="", largest=None):
-    """Faces of a dam.
+    """A picture of faces of a dam.
 
     @p largest: whether to mark the largest or the smallest value; None for neither.
     """
@@ -291,15 +291,15 @@ def draw_panel(axes, panel, scale, unit="", largest=None):
 
 
 def sections_map(panels, scale, caption, name):
-    """Sections through a dam side by side, each (title, polygons (y, z), values), with
-    upstream on the left."""
+    """A picture of sections through a dam side by side, each (title, polygons (y, z), values),
+    with upstream on the left."""
     places = [[polygon * (-1., 1.) for polygon in polygons] for _, polygons, _ in panels]
     ranges = [(np.min([p[:, 0].min() for p in own]), np.max([p[:, 0].max() for p in own]))
               for own in places]
     bottom = min(p[:, 1].min() for own in places for p in own)
     top = max(p[:, 1].max() for own in places for p in own)
     gap = 0.06 * (top - bottom)
-    # in rows that are not much longer than high
+    # rows of limited ratio of length to height
     rows, width = [[]], 0.
     for panel, (low, high) in enumerate(ranges):
         if rows[-1] and width + high - low > 3.2 * (top - bottom):
@@ -333,7 +333,7 @@ def sections_map(panels, scale, caption, name):
 
 
 def scale_bar(axes, right, at, about):
-    """A length [m] that says how long it is, as the abscissa has no numbers."""
+    """Draws a scale bar with its length [m], as the abscissa has no numbers."""
     length = float(f"{about:.0e}")
     axes.plot([right - length, right], [at, at], color="black", linewidth=1.5, clip_on=False)
     axes.annotate(f"{length:g} m", (right - 0.5 * length, at), xytext=(0, 2), textcoords="offset points",
@@ -341,7 +341,7 @@ def scale_bar(axes, right, at, about):
 
 
 def fine(levels):
-    """Each interval in parts, about sixteen in all."""
+    """Levels with each interval divided, about sixteen intervals in all."""
     n = len(levels) - 1
     parts = -(-16 // n)
     return np.interp(np.arange(n * parts + 1) / parts, np.arange(n + 1), levels)

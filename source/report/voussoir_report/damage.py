@@ -14,7 +14,7 @@ SCALES = {"tension_damage": "damage in tension [-]", "compression_damage": "dama
 
 
 def damaged(run):
-    """Fields of damage in the picture at the end that are not zero in the dam."""
+    """Fields of damage in the picture at the end that exceed 0.01 somewhere in the dam."""
     dam = dam_of(run)
     return [field for field in SCALES
             if dam and field in dam.grid.values and np.any(of_cells(dam, field)[dam.cells] > 0.01)]
@@ -41,8 +41,8 @@ def on_faces(run, field, scale):
 
 
 def in_sections(run, field, scale):
-    """In the middle of the dam, and on both sides of the joints whichever is larger; of a
-    slice of a dam at all times that there are pictures of."""
+    """A picture of the section in the middle of the dam and of the joints, with the larger
+    value of their two sides; for a slice of a dam its last pictures in time."""
     dams = [("middle", dam_of(run))]
     if dam_of(run).is_slice:
         dams = [(f"{time:.2f} s", dam_in(run, file)) for time, file in run.pictures("fields")[-4:]] or dams
@@ -65,7 +65,7 @@ def damage_section(runs):
     cracked = [run for run in runs if damaged(run)]
     if not cracked:
         return None
-    parts = ["A cell is coloured by its mean; the headline figures have the largest of any point."]
+    parts = ["The colour of a cell is its mean; the main results have the largest value of any point."]
     unhurt = [run.label for run in runs if run not in cracked]
     if unhurt:
         parts.append(f"No damage in {', '.join(unhurt)}.")

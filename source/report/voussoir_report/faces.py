@@ -43,8 +43,8 @@ def face_panels(run, field, file=FILE):
 
 
 def stress_maps(runs, field, title, largest):
-    """A picture of a field for each run, in the same colours, with its largest or
-    smallest values."""
+    """A picture of a field for each run, in the same colours, with the largest or
+    smallest value marked."""
     every = [face_panels(run, field) for run in runs]
     scale = charts.Scale([panel.values for panels in every for panel in panels], f"{title} [MPa]")
     return [charts.face_map(panels, scale, run.prefix + title[0].upper() + title[1:],
@@ -58,10 +58,10 @@ def face_stress_section(runs):
     if not runs:
         return None
     columns = max(2, min(len(runs), 3))
-    parts = ["Arch stress is along the horizontal of the face, cantilever stress along its steepest "
-             "line. Tension is positive and red, pressure negative and blue, as deep at the same amount; "
-             "the colours leave out the outermost half per cent, the figures do not. Faces are unrolled "
-             "along the crest and have the x of the model below them, as in the table.",
+    parts = ["Arch stress acts along the horizontal of the face, cantilever stress along its steepest "
+             "line. Tension is positive and red, compression negative and blue, equally deep at the same amount; "
+             "the colour range omits the outermost half per cent of the values, the numbers do not. Faces are "
+             "unrolled along the crest and have the x of the model below them, as in the table.",
              extremes_table(runs)]
     at_rest = different([run for run in runs if run.list("Static state/Stages", ";")
                          and "arch_stress_at_start_MPa" in grid_of(run, FILE).values],
@@ -71,19 +71,19 @@ def face_stress_section(runs):
             at_rest, f"{field}_at_start_MPa", f"static {title}", not field.startswith("smallest"))]
         title = "Static state" + (", the same in all runs" if len(at_rest) == 1 < len(runs) else "")
         parts.append(Pictures(pictures, columns, title))
-    runs = [run for run in runs if run.summary.get("steps", 1)]  # else all is in the static state
+    runs = [run for run in runs if run.summary.get("steps", 1)]  # without steps there is the static state only
     for field, title in STRESSES.items() if runs else ():
         pictures = [picture for which in ("largest", "smallest") for picture in stress_maps(
             runs, f"{which}_{field}_MPa", f"{which} {title} during the run", which == "largest")]
         parts.append(Pictures(pictures, columns, f"Envelopes of the {title}"))
     timed = [run for run in runs if "time_of_largest_principal_stress_s" in grid_of(run, FILE).values]
     if timed:
-        parts.append(Pictures(time_maps(timed), columns, "When tension was largest"))
+        parts.append(Pictures(time_maps(timed), columns, "Time of the largest tension"))
     return Section("Stresses on the faces", parts)
 
 
 def different(runs, field):
-    """The first run of those with the same values."""
+    """The runs without those that repeat the values of an earlier one."""
     seen = []
     for run in runs:
         values = grid_of(run, FILE).values[field]
@@ -104,7 +104,7 @@ def time_maps(runs):
 
 
 def extremes_table(runs):
-    """Largest and smallest values with place and time."""
+    """A table of largest and smallest values with place and time."""
     rows = [[f"{run.prefix}{which} {title} [MPa]", *(extreme_on(run, side, which, field) for side in SIDES)]
             for run in runs for which in ("largest", "smallest") for field, title in STRESSES.items()]
     return Table(["", "upstream face", "downstream face"], rows)

@@ -1,4 +1,4 @@
-"""Reads the files of a result folder, and refuses those that are damaged."""
+"""Reads the files of a result folder, and refuses damaged ones."""
 
 import base64
 import csv
@@ -14,7 +14,7 @@ import numpy as np
 
 
 class ReportError(Exception):
-    """Something of the user's that makes a report impossible, in one sentence."""
+    """A mistake in arguments or files that makes a report impossible, in one sentence."""
 
 
 def refuse(file, what, remedy="run the case again, or remove the file for a report without it"):
@@ -37,10 +37,10 @@ def is_number(text):
 
 
 def csv_rows(file):
-    """The heading of a file of comma-separated values, and its lines, as texts."""
+    """The heading and the lines of a file of comma-separated values, as texts."""
     data = read_bytes(file)
     if b"\0" in data:
-        refuse(file, f"holds NUL bytes from byte {data.index(0)} on, as where a file was removed or "
+        refuse(file, f"has NUL bytes from byte {data.index(0)} on, as if it had been removed or "
                      "replaced while the run wrote to it")
     if not data.strip():
         refuse(file, "is empty")
@@ -63,24 +63,24 @@ def csv_rows(file):
 
 
 class Table:
-    """A file of comma-separated numbers, the first column of which rises."""
+    """A file of comma-separated numbers whose first column increases."""
 
     def __init__(self, file, first):
         self.file = file
         self.titles, rows = csv_rows(file)
         if not rows:
-            refuse(file, "holds nothing but its heading")
+            refuse(file, "has no lines below its heading")
         if self.titles[0] != first:
             refuse(file, f'begins with the column "{self.titles[0][:40]}" where "{first}" should be')
         try:
-            # no number is an empty cell
+            # an empty cell stands for no number
             self.values = np.array([[float(cell or "inf") for cell in row] for row in rows])
         except ValueError:
             line, word = next((line, cell) for line, row in enumerate(rows, 2) for cell in row
                               if cell and not is_number(cell))
             refuse(file, f'has "{word[:40]}" in line {line}, which is no number')
         if not np.isfinite(self.time).all() or (np.diff(self.time) <= 0.).any():
-            refuse(file, f'has numbers in its column "{first}" that do not rise')
+            refuse(file, f'has numbers in its column "{first}" that do not increase')
 
     def __contains__(self, title):
         return title in self.titles
@@ -96,15 +96,15 @@ class Table:
         return self.values[:, 0]
 
     def matching(self, pattern):
-        """Match and column of each title that is like a regular expression as a whole."""
+        """Match and column of each title that a regular expression matches as a whole."""
         found = [(re.fullmatch(pattern, title), i) for i, title in enumerate(self.titles)]
         return [(match, self.values[:, i]) for match, i in found if match]
 
 
 @dataclasses.dataclass
 class Group:
-    """What an object of a JSON file holds: the kinds of its entries, by name, and
-    the kind of all others, None for those that a report does not read."""
+    """Schema of an object of a JSON file: the kinds of its entries, by name, and
+    the kind of all others; None for entries that a report does not read."""
 
     required: dict = dataclasses.field(default_factory=dict)
     optional: dict = dataclasses.field(default_factory=dict)
@@ -116,7 +116,7 @@ TEXT, NUMBER, NUMBER_OR_NONE = "a text", "a number", "a number or null"
 
 def as_kind(value, kind, refuse_at, place=""):
     """A value of JSON, in which null for a number becomes NaN; calls
-    refuse_at(place, what it should be) for another kind."""
+    refuse_at(place, expected kind) for a value of another kind."""
     if isinstance(kind, Group):
         if not isinstance(value, dict):
             refuse_at(place, "an object")
@@ -136,14 +136,14 @@ def as_kind(value, kind, refuse_at, place=""):
     elif kind is not None:
         if value is None:
             return math.nan if kind is NUMBER else None
-        # what is larger is no quantity, and no floating-point number
+        # a larger value is no physical quantity, and may exceed floating-point numbers
         if not isinstance(value, (int, float)) or isinstance(value, bool) or abs(value) > 1e300:
             refuse_at(place, kind)
     return value
 
 
 def read_json(file, kind, remedy):
-    """What a JSON file holds, if it is of a kind."""
+    """The value in a JSON file, checked against its kind."""
     try:
         value = json.loads(read_bytes(file).decode())
     except UnicodeDecodeError:
@@ -162,7 +162,7 @@ SIZES = {"Int8": 1, "UInt8": 1, "Int32": 4, "UInt32": 4, "Int64": 8, "UInt64": 8
 
 
 class PictureCheck:
-    """Goes through a VTU file before VTK does, which trusts its sizes."""
+    """Checks a VTU file before VTK reads it, as VTK does not check sizes."""
 
     def __init__(self, file):
         self.file = file
@@ -181,12 +181,12 @@ class PictureCheck:
             self.refuse("it has no cells")
 
     def refuse(self, why):
-        refuse(self.file, f"is no picture, or is cut or damaged ({why})")
+        refuse(self.file, f"is no VTU file, or is cut or damaged ({why})")
 
     def start(self, name, attributes):
         self.within.append(name)
         if len(self.within) == 1 and (name != "VTKFile" or attributes.get("type") != "UnstructuredGrid"):
-            self.refuse("it is no VTU file")
+            self.refuse("it has no unstructured grid")
         if name == "Piece":
             sizes = [attributes.get(f"NumberOf{what}", "") for what in ("Points", "Cells")]
             if not all(size.isdecimal() for size in sizes):
@@ -207,7 +207,7 @@ class PictureCheck:
             self.array, self.text = None, []
 
     def check_array(self, text):
-        """Compressed blocks in base 64, with their number and sizes [byte] before them."""
+        """Checks compressed blocks in base 64, preceded by their number and sizes [byte]."""
         name, kind = self.array.get("Name") or self.within[-1], self.array.get("type")
         if kind not in SIZES:
             self.refuse(f'the type of "{name}" is unknown')
@@ -217,7 +217,7 @@ class PictureCheck:
             self.refuse(f'"{name}" is too short')
         sizes = np.frombuffer(self.decoded(text[:length], name), "<u4", 3 + n_blocks)[3:]
         if len(text) != length + 4 * -(-int(sizes.sum(dtype=np.int64)) // 3):
-            self.refuse(f'"{name}" has another length than it says')
+            self.refuse(f'the length of "{name}" differs from its header')
         full = (n_blocks - 1) * size + last if last else n_blocks * size
         parent = self.within[-1]
         rows = self.points if parent in ("Points", "PointData") else self.cells

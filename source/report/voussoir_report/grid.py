@@ -1,4 +1,4 @@
-"""Meshes and fields of pictures, and what can be measured on them."""
+"""Meshes and fields of pictures, and dimensions measured on them."""
 
 import functools
 
@@ -12,17 +12,17 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from .files import PictureCheck, refuse
 
-# faces of a hexahedron, corners seen in turn from outside
+# faces of a hexahedron, corners in order as seen from outside
 HEXAHEDRON_FACES = np.array([(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2),
                              (0, 3, 2, 1), (4, 5, 6, 7)])
 HEXAHEDRON_EDGES = np.array([(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4),
                              (1, 5), (2, 6), (3, 7)])
 TOLERANCE = 1e-3  # within which places are the same [m]
-SCATTER = np.random.default_rng(1).integers(2**62, size=3)  # spreads numbers over 64 bits
+SCATTER = np.random.default_rng(1).integers(2**62, size=3)  # factors that spread keys over 64 bits
 
 
 def keys_of_sets(numbers):
-    """A number for each row of small numbers, whatever their order in the row."""
+    """A number for each row of small numbers, independent of their order in the row."""
     mixed = (numbers + 1) * SCATTER[0]
     mixed ^= mixed >> 29
     return (mixed * SCATTER[1]).sum(axis=-1)
@@ -31,7 +31,7 @@ def keys_of_sets(numbers):
 def centre_keys(corners):
     """A number for the place of the middle of each face (n, 4, 3), to the centimetre,
     the same in all pictures of a run."""
-    # round coordinates do not lie between two centimetres
+    # the offset keeps round coordinates away from the limits of the intervals
     return np.floor(100. * corners.mean(axis=1) + 0.137).astype(np.int64) @ SCATTER
 
 
@@ -83,7 +83,7 @@ class Grid:
                                     for i in range(data.GetNumberOfArrays())})
 
     def names(self, kind):
-        """What the numbers of a field "material", "face_set" and so on stand for."""
+        """Names that the numbers of a field "material", "face_set" and so on stand for."""
         texts = self.vtk.GetFieldData().GetAbstractArray(kind + "_names")
         if texts is None:
             refuse(self.file, f'has no list "{kind}_names"')
@@ -106,17 +106,17 @@ class Grid:
         return self.cells[cells][:, HEXAHEDRON_FACES].reshape(-1, 4)
 
     def face_keys(self, faces):
-        """A number of each face (n, 4) that others at the same place share."""
+        """A number for each face (n, 4) that all faces at the same place share."""
         return keys_of_sets(self.places[faces])
 
     def outer_faces(self, cells, among=None):
-        """Corners (n, 4) of the faces of some hexahedra that no other one has, of
-        those (or, by default, of themselves); both sides of a joint are one place."""
+        """Corners (n, 4) of the faces of some hexahedra that are shared with no other
+        cell @p among these (by default the same); both sides of a joint are one place."""
         mine = self.faces(cells)
         others = mine if among is None else self.faces(among)
         keys = np.concatenate([self.face_keys(mine), self.face_keys(others)])
         _, inverse, counts = np.unique(keys, return_inverse=True, return_counts=True)
-        # each is among the others too
+        # each face of these is among the others, too, hence twice
         return mine[counts[inverse.reshape(-1)[:len(mine)]] == 2]
 
     @functools.cached_property
@@ -135,15 +135,15 @@ class Grid:
                               axis=2)
 
     def volumes(self, cells):
-        """Of hexahedra [m3], from the fluxes of x/3 through their faces."""
+        """Volumes of hexahedra [m3], from the fluxes of x/3 through their faces."""
         corners = self.points[self.cells[cells]][:, HEXAHEDRON_FACES]
         middle = corners.mean(axis=2)
         return np.einsum("cfd,cfd->c", middle, area_vectors(corners)) / 3.
 
 
     def cut(self, at, axis=0):
-        """Polygons where the plane normal to an axis cuts cells, as places on the other
-        two, and numbers of these cells."""
+        """Polygons where the plane normal to an axis cuts cells, in coordinates of the other
+        two axes, and numbers of these cells."""
         numbered = vtkUnstructuredGrid()
         numbered.CopyStructure(self.vtk)
         numbers = numpy_to_vtk(np.arange(len(self.cells)), deep=True)
@@ -189,7 +189,7 @@ class Dam:
 
     @functools.cached_property
     def exposed(self):
-        """Corners of the faces that neither rock nor water nor dam lies behind."""
+        """Corners of the faces that border neither on rock nor on water nor on the dam."""
         return self.grid.outer_faces(self.cells, np.arange(len(self.grid.cells)))
 
     @functools.cached_property
@@ -218,8 +218,8 @@ class Dam:
 
     @functools.cached_property
     def crest_length(self):
-        """Along the middle of a crest of even width [m]: such a strip, straight or
-        bent, of length L and width w has the area L w and the outline 2 L + 2 w."""
+        """Length along the middle of a crest of constant width [m]: a strip, straight or
+        curved, of length L and width w has the area L w and the perimeter 2 L + 2 w."""
         corners = self.grid.points[self.crest]
         area = np.linalg.norm(area_vectors(corners), axis=1).sum()
         places = self.grid.places[self.crest]
@@ -248,7 +248,7 @@ class Dam:
     def crown(self):
         """Polygons (y, z) of the section in the middle, and numbers of their cells."""
         xs = self.points[:, 0]
-        # beside the middle, where cells may end
+        # beside the middle, which may be a boundary of cells
         return self.section(0.5 * (xs.min() + xs.max()) + 1e-3 * np.ptp(xs))
 
     def section(self, at, axis=0):
@@ -258,8 +258,8 @@ class Dam:
         return [polygon for polygon, own in zip(polygons, mine) if own], cells[mine]
 
     def cells_through(self, share):
-        """Cells through the thickness of the section in the middle, at a share of the
-        height."""
+        """Number of cells through the thickness of the section in the middle, at a share of
+        the height."""
         at = self.bottom + share * self.height + 1e-4 * self.height
         return sum(p[:, 1].min() < at < p[:, 1].max() for p in self.crown[0])
 
@@ -272,7 +272,7 @@ class Dam:
 
     @functools.cached_property
     def crest_line(self):
-        """x and length along the crest from its middle [m], of its upstream edge."""
+        """x and length from the middle [m] of the upstream edge of the crest."""
         points = self.grid.points[self.side("upstream")].reshape(-1, 3)
         points = points[points[:, 2] > self.top - 1e-3 * self.height]
         xs, first = np.unique(np.round(points[:, 0], 3), return_index=True)
@@ -306,8 +306,8 @@ def dam_of(run):
 
 
 def dam_materials(run, names):
-    """Names of the materials of the dam, not of the rock: those called so, by themselves
-    or by their cell sets, or else the first."""
+    """Names of the materials of the dam: those whose names or cell sets say so, and
+    not rock, or else the first material."""
     entries = dict(run.objects("Materials"))
 
     def is_called(name, *words):

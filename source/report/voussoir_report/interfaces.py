@@ -16,7 +16,7 @@ FILE = "interface_envelopes.vtu"
 
 @functools.lru_cache(maxsize=None)
 def surfaces_of(run):
-    """Numbers (n, 4) of the corners in the picture of the interfaces, by name."""
+    """Numbers (n, 4) of the corners of each surface in the picture of the interfaces, by name."""
     grid = grid_of(run, FILE)
     if grid is None:
         return {}
@@ -26,7 +26,7 @@ def surfaces_of(run):
 
 @functools.lru_cache(maxsize=None)
 def joints_of(run):
-    """Names of the surfaces with the dam on both sides, from the right bank to the left."""
+    """Names of the surfaces between two parts of the dam, from the right bank to the left."""
     dam = dam_of(run)
     if dam is None or not surfaces_of(run):
         return ()
@@ -40,12 +40,12 @@ def joints_of(run):
 
 
 def joint_corners(run, name):
-    """(n, 4, 3)"""
+    """Corners (n, 4, 3) of a joint."""
     return grid_of(run, FILE).points[surfaces_of(run)[name]]
 
 
 def opening_sections(runs):
-    """The joints from the side, coloured by their largest opening."""
+    """Pictures of the joints from the side, coloured by their largest opening."""
     values = [grid_of(run, FILE).values["largest_opening_mm"] for run in runs]
     scale = charts.Scale(values, "largest opening [mm]", 0., "inferno_r", low=0.)
     pictures = []
@@ -58,8 +58,8 @@ def opening_sections(runs):
 
 
 def edges_of(run, name):
-    """Elevation [m] and largest opening [mm] of a joint along the faces of the dam,
-    from the bottom up, by face."""
+    """Elevation [m] and largest opening [mm] of a joint along each face of the dam,
+    from the bottom up."""
     dam, grid = dam_of(run), grid_of(run, FILE)
     numbers = np.unique(surfaces_of(run)[name])
     keys = point_keys(grid.points[numbers])
@@ -74,7 +74,7 @@ def edges_of(run, name):
 
 
 def opening_profiles(run, most):
-    """Largest opening over the elevation on both faces, a chart for each joint, with
+    """A chart for each joint of its largest opening over the elevation on both faces, with
     openings up to @p most [mm]."""
     names = joints_of(run)
     columns = min(len(names), 5)
@@ -104,7 +104,7 @@ def opening_profiles(run, most):
 
 
 def history(run, names, quantity, title, most):
-    """An opening or a slip of several surfaces over time, up to @p most [mm]."""
+    """A chart of an opening or a slip of several surfaces over time, up to @p most [mm]."""
     table = run.table("interfaces.csv")
     figure, axes = charts.new_figure(3.)
     charts.lines(axes, [(name, table.time, table[f"{name} {quantity} [mm]"]) for name in names],
@@ -119,7 +119,7 @@ def most_of(runs, names_of, quantity):
 
 
 def surfaces_table(runs, names_of):
-    """Extremes of surfaces; a row for each."""
+    """A table of extremes with a row for each surface."""
     rows = []
     for run in runs:
         for name in names_of(run):
@@ -149,8 +149,8 @@ def joints_section(runs):
     most = most_of(runs, joints_of, "largest opening")
     if most < charts.NOISE:
         return Section("Joints", ["No joint opened.", surfaces_table(runs, joints_of)])
-    text = ("Openings are the largest over the run at each place; an opening of zero is a joint that "
-            "stayed closed. Where keys hold the joint there is no sliding safety.")
+    text = ("Openings are the largest over the run at each place; at an opening of zero the joint "
+            "remained closed. Where keys prevent slip there is no sliding safety.")
     return Section("Joints", [
         text, surfaces_table(runs, joints_of),
         Pictures(opening_sections(runs) + [opening_profiles(run, most) for run in runs]
@@ -164,7 +164,7 @@ def planes_of(run):
 
 
 def safety_picture(run, columns, caption, name, axis="resistance over contact forces [-]"):
-    """Sliding safety over time of some (name, values); none where nothing slides."""
+    """A chart of sliding safeties (name, values) over time; with gaps where no sliding is possible."""
     table = run.table("interfaces.csv")
     figure, axes = charts.new_figure(3.)
     curves = [(what, table.time, np.where(np.isfinite(values), np.minimum(values, 100.), np.nan))
@@ -198,7 +198,7 @@ def blocks_table(runs):
 
 
 def forces_table(runs):
-    """What acts on each block when its safety is smallest, by which it can be checked."""
+    """The forces on each block at its smallest factor of safety, for a check by hand."""
     rows = []
     for run in runs:
         for name, values in run.summary["interfaces"].get("blocks", {}).items():
@@ -212,7 +212,7 @@ def forces_table(runs):
 
 
 def planes_picture(runs):
-    """The planes in space with the dam, each in its colour, of runs with different ones."""
+    """Pictures of the dam and the planes, each in its colour; runs with the same planes once."""
     pictures, seen = [], []
     for run in runs:
         names = tuple(planes_of(run))
@@ -256,11 +256,12 @@ def planes_section(runs):
                 pictures.append(history(run, planes_of(run), quantity, f"{quantity.capitalize()} of each plane",
                                         most))
     text = ("Factor of safety of a block: resistance of its planes over the driving forces (weight, water, uplift, "
-            "thrust of the dam and its inertia as if it went with its base), by limit equilibrium; below one it "
-            "slides, and slip and slip rate show how far. The mobilised ratio is the shear of the contact forces over "
-            "the resistance of the planes: about one at most, as friction caps them. Sliding safety of a plane: resistance "
-            "by friction and cohesion over its shear force, point by point, which does not fall below one either. A "
-            "gap in a curve means that the block has no driving force, or that other planes prevent its slip.")
+            "thrust of the dam and the block's inertia as if it moved with its base), by limit equilibrium; below one "
+            "the block slides, and slip and slip rate show how far. The mobilised ratio is the shear of the contact "
+            "forces over the resistance of the planes: about one at most, as friction limits the shear. Sliding safety "
+            "of a plane: resistance by friction and cohesion over the shear force, by the resultants of its contact "
+            "forces, which does not fall below one either. At a gap in a curve the block has no driving force, or other "
+            "planes prevent its slip.")
     parts = [text, planes_picture(runs), blocks_table(runs), forces_table(runs), surfaces_table(runs, planes_of),
              Pictures(pictures, 2)]
     return Section("Slip planes and blocks", [part for part in parts if part])

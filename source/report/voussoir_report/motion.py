@@ -1,8 +1,8 @@
-"""What an earthquake record amounts to."""
+"""Measures of an earthquake record."""
 
 import numpy as np
 
-GRAVITY = 9.81  # as the program has it [m/s2]
+GRAVITY = 9.81  # the value of the program [m/s2]
 ROUND_PERIODS = np.array([0.1, 0.2, 0.5, 1., 2.])  # [s]
 PERIODS = np.unique(np.concatenate([np.geomspace(0.03, 4., 120), ROUND_PERIODS]))
 
@@ -13,12 +13,12 @@ def integral(values, time_step):
 
 
 def arias_intensity(acceleration, time_step):
-    """pi/2g int a^2 dt [m/s] up to each sample, of [m/s2] (Arias 1970)."""
+    """pi/2g int a^2 dt [m/s] up to each sample, of accelerations [m/s2] (Arias 1970)."""
     return np.pi / (2. * GRAVITY) * integral(acceleration**2, time_step)
 
 
 def significant_duration(acceleration, time_step, first=0.05, last=0.95):
-    """Times between which this share of the Arias intensity comes [s]."""
+    """Times at which the Arias intensity reaches these shares of its final value [s]."""
     intensity = arias_intensity(acceleration, time_step)
     times = time_step * np.arange(len(intensity))
     share = intensity / intensity[-1]
@@ -28,13 +28,13 @@ def significant_duration(acceleration, time_step, first=0.05, last=0.95):
 def response_spectrum(accelerations, time_step, periods=PERIODS, damping=0.05):
     """Pseudo-acceleration [m/s2] of oscillators at these periods [s].
 
-    Takes records of shape (..., samples) and returns (..., periods). Of an
+    Takes records of shape (..., samples) and returns (..., periods). For an
     acceleration that is linear between samples each step is exact (Nigam and
-    Jennings 1969): a particular solution plus a free oscillation. A whole longest
-    period of free motion follows.
+    Jennings 1969): a particular solution plus a free oscillation. The record is followed
+    by free motion for one longest period.
     """
     accelerations, periods = np.asarray(accelerations, float), np.asarray(periods, float)
-    # so that no maximum is missed between samples by more than 0.8 %
+    # steps so short that a maximum between them exceeds the larger of both by 0.8 % at most
     parts = int(np.ceil(25. * time_step / periods.min()))
     h = time_step / parts
     n = accelerations.shape[-1]
@@ -62,6 +62,6 @@ def response_spectrum(accelerations, time_step, periods=PERIODS, damping=0.05):
 
 
 def peak(time, values):
-    """Value furthest from zero, and its time."""
+    """The value of largest magnitude, and its time."""
     at = np.argmax(np.abs(values))
     return values[at], time[at]

@@ -22,7 +22,7 @@ class GroundMotion:
         self.time = table.time
         self.interval = (table.time[-1] - table.time[0]) / (len(table.time) - 1)
         if np.ptp(np.diff(self.time)) > 1e-3 * self.interval:
-            refuse(table.file, "has lines missing or twice, as its times are not at equal intervals")
+            refuse(table.file, "lacks lines or repeats them, as its times are not at equal intervals")
         self.acceleration = {match[1]: values for match, values
                              in table.matching(r"acceleration ([xyz]) \[m/s2\]")}
 
@@ -34,7 +34,7 @@ class GroundMotion:
 
 
     def frequency_of_power(self, share):
-        """Below which this share of the power of all components lies [Hz]."""
+        """The frequency below which this share of the power of all components lies [Hz]."""
         sums = np.cumsum(sum(np.abs(np.fft.rfft(a))**2 for a in self.acceleration.values()))
         return (np.fft.rfftfreq(len(self.time), self.interval)[np.searchsorted(sums, share * sums[-1])]
                 if sums[-1] > 0. else None)
@@ -42,7 +42,7 @@ class GroundMotion:
 
 @functools.lru_cache(maxsize=None)
 def ground_motion(run):
-    """Of a run with an earthquake, or None."""
+    """The ground motion of a run, or None."""
     table = run.table("ground_motion.csv")
     return GroundMotion(table) if table else None
 
@@ -81,7 +81,7 @@ def spectrum_table(runs):
 
 
 def draw_targets(axes, runs, direction):
-    """The spectra that artificial motions follow, dashed."""
+    """Draws the target spectra of artificial motions, dashed."""
     for run in runs:
         target = run.summary.get("target spectrum", {})
         if f"{direction} [m/s2]" in target:
@@ -116,8 +116,8 @@ def input_section(runs):
         axes.set_ylim(bottom=0.)
         pictures.append(charts.picture(figure, f"Response spectrum {direction}", f"spectrum_{direction}"))
     given = {run.entry("Ground motion/Given at") for run in runs}
-    text = (f"The motion as it was given to the program, at the {' or '.join(sorted(given))}, scaled, "
-            "up to the end of the run. Arias intensity is π/2g ∫a²dt; the significant duration is "
+    text = (f"The scaled motion, given at the {' or '.join(sorted(given))}, up to the end of the run. "
+            "Arias intensity is π/2g ∫a²dt; the significant duration is "
             "the time between 5 and 95 % of it.")
     parts = [records.sources_table(runs), text, motion_measures(runs),
              records.correlation_table(runs, ground_motion), spectrum_table(runs), Pictures(pictures)]
@@ -125,7 +125,7 @@ def input_section(runs):
 
 
 def column(run, point, quantity, direction):
-    """Values of a column of histories.csv and what they are relative to, or None."""
+    """Values of a column of histories.csv and the text "relative to ..." of its title, or None."""
     table = run.table("histories.csv")
     found = table.matching(rf"{re.escape(point)} {quantity} {direction}( relative to .*)? \[.*\]")
     return (found[0][1], found[0][0][1] or "") if found else None
@@ -146,12 +146,12 @@ def displacement_of(run, point, direction):
 
 
 def acceleration_of(run, point, direction):
-    """What the mesh carries of an acceleration: values and what they are relative to."""
+    """An acceleration filtered at the frequency that the mesh carries, as column()."""
     return column(run, point, "filtered acceleration", direction)
 
 
 def amplification_table(runs):
-    """Peaks of absolute accelerations over those of the input."""
+    """A table of peaks of absolute accelerations and their ratios to those of the input."""
     moving = [run for run in runs if ground_motion(run)]
     directions = [d for d in DIRECTIONS if any(d in ground_motion(run).acceleration for run in moving)]
 
@@ -166,12 +166,11 @@ def amplification_table(runs):
             for run in moving for point in points_of(run)]
     rows = [row for row in rows if set(row[1:]) != {"–"}]
     return Table(["point", *(f"{d}, {DIRECTIONS[d]}" for d in directions)], rows,
-                 "Peak of the absolute acceleration, and how many times the peak of the input motion "
-                 "that is.") if rows else None
+                 "Peak of the absolute acceleration, and its ratio to the peak of the input motion.") if rows else None
 
 
 def absolute_peak(run, point, direction):
-    """Of an acceleration [m/s2], or None if it is known relatively only."""
+    """Peak of the absolute acceleration of a point [m/s2], or None if only the relative one is known."""
     found = acceleration_of(run, point, direction)
     if not found:
         return None
@@ -185,19 +184,19 @@ def absolute_peak(run, point, direction):
 
 
 def single_steps_of(run, point, direction):
-    """An acceleration with all that the steps have, of a run that wrote no other."""
+    """An acceleration of single steps, for a run without the filtered one."""
     return (None if acceleration_of(run, point, direction)
             else column(run, point, "acceleration", direction))
 
 
-# quantity, factor to its unit, its unit, how it is read
+# quantity, factor to its unit, its unit, function that reads it
 MOTIONS = (("displacement", 100., "cm", displacement_of),
            ("acceleration", 1. / GRAVITY, "g", acceleration_of),
            ("single-step acceleration", 1. / GRAVITY, "g", single_steps_of))
 
 
 def motion_picture(runs, point, direction, quantity, factor, unit, read):
-    """A history in all runs, or None if there is none but round-off."""
+    """A picture of a history in all runs, or None if all values are round-off."""
     found = [(run, read(run, point, direction)) for run in runs if point in points_of(run)]
     found = [(run, *values) for run, values in found if values]
     if max((np.abs(values).max() for _, values, _ in found), default=0.) < 1e-9:
@@ -221,14 +220,14 @@ def motion_section(runs):
                for values in run.summary.get("histories", {}).values()}
     at_rest = any(run.list("Static state/Stages", ";") for run in runs)
     text = (("Displacements include those of the static state. " if at_rest else "")
-            + "Accelerations are without what lies above the frequencies that the mesh carries "
-            f"({' or '.join(number(f) for f in sorted(carried))} Hz); those of single steps have all of "
-            "it, and show the pounding of cracks and joints.")
+            + "Accelerations are filtered at the highest frequency that the mesh carries "
+            f"({' or '.join(number(f) for f in sorted(carried))} Hz); those of single steps are not, "
+            "and show the pounding of cracks and joints.")
     return Section("Motion of the crest and other points",
                    [part for part in (text, amplification_table(runs), Pictures(pictures)) if part])
 
 
-# column of energy.csv, sign, what it is
+# column of energy.csv, sign, label
 ENERGIES = (("kinetic [J]", 1., "kinetic"), ("strain [J]", 1., "strain"),
             ("damping [J]", 1., "lost in damping"), ("material [J]", 1., "lost in cracks and plastic flow"),
             ("closing cracks [J]", 1., "lost by closing cracks"),
@@ -242,7 +241,7 @@ def energy_picture(run):
     power, unit = next((power, unit) for power, unit in ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"), (1., "J"))
                        if largest >= power or power == 1.)
     figure, axes = charts.new_figure(3.1)
-    curves = [("came in and stayed", table.time, entered / power)]
+    curves = [("input less radiation", table.time, entered / power)]
     curves += [(what, table.time, sign * table[name] / power) for name, sign, what in ENERGIES
                if np.abs(table[name]).max() > 1e-4 * largest]
     charts.lines(axes, curves, run.title_in_chart, "time [s]", f"energy [{unit}]", zero=True)
@@ -253,8 +252,8 @@ def energy_section(runs):
     runs = [run for run in runs if run.table("energy.csv")]
     if not runs:
         return None
-    text = ("What came in and stayed is the work of the earthquake less what has gone out through "
-            "the absorbing boundary; at each time it is the sum of the other curves and of a small "
+    text = ("Input less radiation is the work of the earthquake less the energy radiated through "
+            "the absorbing boundary; at each time it equals the sum of the other curves and of a small "
             "part stored in the damping.")
     return Section("Energy balance", [text, Pictures([energy_picture(run) for run in runs],
                                                      min(len(runs), 3))])

@@ -34,7 +34,7 @@ def over_stress_section(runs):
             "any point spends above each ratio stay within their limits; the dashed line is the time "
             "allowed.")
     parts = [text, verdicts, figures_table(runs)]
-    runs = [run for run in runs if run.summary.get("steps", 1)]  # else no time passes
+    runs = [run for run in runs if run.summary.get("steps", 1)]  # without steps no time passes
     if runs:
         parts.append(Pictures([curves(run) for run in runs]))
     drawn = [run for run in runs if run.has(FILE) and dam_of(run)
@@ -60,7 +60,7 @@ def figures_table(runs):
 
 
 def curves(run):
-    """Accumulated time against ratio beside the limit."""
+    """A picture of the accumulated time over the ratio, with its limit."""
     table = table_of(run)
     figure, axes = charts.new_figure()
     axes.plot(table["ratio"], table["allowed time [s]"], color="0.3", linestyle="--", label="allowed")

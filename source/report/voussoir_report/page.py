@@ -1,4 +1,4 @@
-"""The parts of a page, and how they become HTML or PDF."""
+"""The parts of a page, and their conversion to HTML or PDF."""
 
 import base64
 import dataclasses
@@ -19,11 +19,11 @@ RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class Digest(str):
-    """A hash, which is longer than a table is wide."""
+    """A hash, which must be broken to fit into a table."""
 
 
 class Judged(str):
-    """A result with the colour of how it is judged."""
+    """A result with the colour of its judgement."""
 
     def __new__(cls, text, colour=""):
         judged = super().__new__(cls, text)
@@ -33,7 +33,7 @@ class Judged(str):
 
 @dataclasses.dataclass
 class Table:
-    """Rows of texts under a heading; the first column says what stands in the others."""
+    """Rows of texts under a heading; the first column names the row."""
 
     head: list
     rows: list
@@ -42,7 +42,7 @@ class Table:
 
 @dataclasses.dataclass
 class Pictures:
-    """Pictures in rows of so many."""
+    """Pictures in rows of a number of columns."""
 
     pictures: list
     columns: int = 2
@@ -51,14 +51,14 @@ class Pictures:
 
 @dataclasses.dataclass
 class Scene:
-    """A scene that turns in the browser, as JSON, and the picture that stands for it
+    """A scene that turns in the browser, as JSON, and the picture that replaces the scene
     on paper and where it cannot be drawn."""
 
     data: str
     picture: object
-    factor: float = 0.  # to which its motion is drawn at most
+    factor: float = 0.  # largest magnification of the motion
     time: str = ""
-    bar: object = None  # picture of its colours
+    bar: object = None  # picture of the colour bar
 
     @property
     def caption(self):
@@ -80,7 +80,7 @@ class Verdicts:
 
 @dataclasses.dataclass
 class Block:
-    """Preformatted text, as of an input file; @p folded behind its title on a screen."""
+    """Preformatted text, such as an input file; @p folded behind its title on a screen."""
 
     title: str
     text: str
@@ -105,8 +105,8 @@ class Section:
 
 
 def number(value, digits=3):
-    """With so many significant digits, thousands apart, as people write it; whole
-    numbers with all of theirs."""
+    """Text of a number with this many significant digits and thousands set apart; integers
+    with all digits."""
     if isinstance(value, (int, np.integer)):
         return f"{value:,}".replace(",", "\u202f")
     if value is None or value != value or value in (float("inf"), float("-inf")):
@@ -124,8 +124,8 @@ def number(value, digits=3):
 
 
 def comparison(runs, rows, caption=""):
-    """A table with a column for each run of rows (what, function of the run), where a
-    function that has no value returns None; rows without any value are left out."""
+    """A table with a column for each run and rows (heading, function of the run), where a
+    function returns None if there is no value; rows without any value are left out."""
     table = Table(["", *(run.label for run in runs if len(runs) > 1)], [], caption)
     for what, function in rows:
         answers = [function(run) for run in runs]
@@ -147,7 +147,7 @@ def to_html(runs, sections):
 
 
 def folders_of(runs):
-    """Where the results are, a folder of several runs once."""
+    """The folders of the results; a common parent of several runs once."""
     parents = {str(pathlib.Path(run.folder).parent) for run in runs}
     if len(runs) > 1 and len(parents) == 1:
         return f"{parents.pop()}: {', '.join(pathlib.Path(run.folder).name for run in runs)}"
@@ -155,7 +155,7 @@ def folders_of(runs):
 
 
 def scene_program(sections):
-    """What turns the scenes of a page, packed; None without any or without vtk.js."""
+    """The program that turns the scenes of a page, packed; None without scenes or vtk.js."""
     file = vtk_js()
     if file is None or not any(isinstance(part, Scene) for section in sections for part in section.parts):
         return None
@@ -167,7 +167,7 @@ def scene_program(sections):
 
 
 def vtk_js():
-    """The browser's VTK, or None where it is not installed."""
+    """The file of VTK for browsers, or None where it is not installed."""
     own = os.environ.get("VOUSSOIR_VTK_JS")
     here = pathlib.Path(__file__).resolve()
     # in the sources, as installed, or by a package of its own
@@ -180,12 +180,12 @@ def vtk_js():
 
 
 def check(file):
-    """Refuses a page, whose name ends in .html or .pdf, that cannot be written."""
+    """Refuses a page that cannot be written; its name ends in .html or .pdf."""
     if not os.access(file if file.exists() else file.parent, os.W_OK) or file.is_dir():
         raise ReportError(f'"{file}" cannot be written; choose another file with --output.')
     if file.suffix == ".pdf" and importlib.util.find_spec("weasyprint") is None:
         raise ReportError("A PDF needs the package weasyprint; install it, or write HTML "
-                          "and print that from a browser.")
+                          "and print the page from a browser.")
 
 
 def write(runs, sections, file):
@@ -203,7 +203,7 @@ def write(runs, sections, file):
 
 
 def write_pictures(sections, folder):
-    """Each picture as a file."""
+    """Writes each picture as a file."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for section in sections:

@@ -1,4 +1,4 @@
-"""Where the input motion comes from: files, hashes, durations, likeness of components."""
+"""Sources of the input motion: files, hashes, durations, correlation of components."""
 
 import hashlib
 import pathlib
@@ -10,7 +10,7 @@ from .files import is_number
 from .motion import significant_duration
 from .page import Digest, Table, number
 
-CASE_FOLDERS = []  # where files that a parameter file names may be, besides the usual places
+CASE_FOLDERS = []  # further folders to search for files that a parameter file names
 
 
 def sha256(file):
@@ -18,11 +18,11 @@ def sha256(file):
 
 
 def found(run, name):
-    """A file that the parameter file names relative to its own folder, which the
-    results do not have; None where it is not found."""
+    """A file that the parameter file names relative to its own folder, which is not
+    stored with the results; None where the file is not found."""
     here = pathlib.Path.cwd()
     own = pathlib.Path(__file__).resolve().parents
-    # last those of the shipped cases, in the sources or as installed
+    # the folders of the shipped cases come last, in the sources or as installed
     for folder in (*CASE_FOLDERS, here, here / "prm", *run.folder.resolve().parents,
                    own[3] / "prm", own[1] / "prm"):
         if (file := pathlib.Path(folder) / name).is_file():
@@ -31,8 +31,8 @@ def found(run, name):
 
 
 def duration_of(file):
-    """Length [s] of a record: an AT2 file, or a table with the time first; None if it
-    is neither."""
+    """Length [s] of a record: an AT2 file, or a table whose first column is time; None
+    for other files."""
     lines = file.read_text(errors="replace").splitlines()
     head = re.search(r"NPTS\s*=\s*(\d+)\s*,?\s*DT\s*=\s*([\d.]+)", "\n".join(lines[:6]), re.IGNORECASE)
     if head:
@@ -45,7 +45,7 @@ def duration_of(file):
 
 
 def sources_table(runs):
-    """A row for each file of accelerations; None without any."""
+    """A table with a row for each file of accelerations; None without files."""
     rows = []
     for run in runs:
         if run.entry("Ground motion/Type") != "record":
@@ -77,15 +77,15 @@ def remark_of(file, longest=160):
 
 
 def correlation(one, other):
-    """Of two components about their means; None where one does not move."""
+    """Correlation coefficient of two components; None where one is zero."""
     if not np.any(one) or not np.any(other):
         return None
     return float(np.corrcoef(one, other)[0, 1])
 
 
 def correlation_table(runs, motion_of):
-    """Correlation coefficients of the components over the significant duration of the
-    first; None if no run has two."""
+    """A table of correlation coefficients of components over the union of their significant
+    durations; None if no run has two components."""
     rows, alike = [], False
     pairs = (("x", "y"), ("x", "z"), ("y", "z"))
     for run in runs:
@@ -104,5 +104,5 @@ def correlation_table(runs, motion_of):
         return None
     return Table(["", *(f"{a} and {b}" for a, b in pairs)], rows,
                  "Correlation of the components over the strong part. " + (
-                     "Components with ±1 are one record, scaled: they act together all the time, unlike those of "
+                     "Components with ±1 are one scaled record: they are always in phase, unlike those of "
                      "an earthquake." if alike else ""))

@@ -1,4 +1,4 @@
-"""A result folder, as the program has left it."""
+"""The result folder of a run."""
 
 import functools
 import hashlib
@@ -9,7 +9,7 @@ import numpy as np
 
 from .files import NUMBER, NUMBER_OR_NONE, TEXT, Group, ReportError, Table, is_number, read_bytes, read_json, refuse
 
-# what sections take from summary.json; values that are not finite are null there
+# values of summary.json that sections use; values that are not finite are null there
 SUMMARY = Group(
     {"verdict": TEXT},
     {"version": TEXT, "warnings": [TEXT], "files not written": Group(), "end time [s]": NUMBER,
@@ -57,7 +57,7 @@ SUMMARY = Group(
                                           "accumulated time [s]"), NUMBER))},
          {"at [m]": [NUMBER]}))})
 
-# a table of verdicts: lines by their names
+# a table of the verdict: lines by their names
 LINES = Group(others=Group(
     {}, {**dict.fromkeys(("value", "demand"), NUMBER_OR_NONE), **dict.fromkeys(("at most", "at least"), NUMBER),
          **dict.fromkeys(("of", "load case", "source", "quantity"), TEXT),
@@ -69,13 +69,13 @@ FILES = {"histories": ("histories.csv",), "energy balance": ("energy.csv",), "en
          "interfaces": ("interfaces.csv", "interface_envelopes.vtu"),
          "face stresses": ("face_stress_envelopes.vtu",), "over-stress": ("over_stress.csv", "over_stress.vtu")}
 
-# tables over time, and the entries that say how often they have a line
+# tables over time, and the entries with their intervals
 INTERVALS = {"histories.csv": "Output/histories/Interval", "interfaces.csv": "Output/interfaces/Interval",
              "energy.csv": "Output/Energy interval", "ground_motion.csv": ""}
 
 
 def is_quantity(value):
-    """Whether a value of the summary is a number, none, or a list of numbers."""
+    """Whether a value of the summary is a number, null, or a list of numbers."""
     if isinstance(value, list):
         return bool(value) and all(is_quantity(part) and not isinstance(part, list) for part in value)
     return value is None or isinstance(value, (int, float)) and not isinstance(value, bool)
@@ -83,7 +83,7 @@ def is_quantity(value):
 
 def read_parameters(text):
     """Entries of a parameter file by path, as in "Mesh/arch dam/Cell size", and the
-    paths of those that are not the default."""
+    paths of entries that differ from their default values."""
     entries, changed, path = {}, [], []
     for line in text.splitlines():
         line, _, remark = (part.strip() for part in line.partition("#"))
@@ -110,7 +110,7 @@ class Run:
             raise ReportError(f'"{folder}" is not the output folder of a run or a study, as it holds neither '
                               "parameters.prm nor study.json; name the folder that holds summary.json.")
         self.label = label or self.folder.resolve().name
-        # said where there are several runs
+        # names of the run, used where there are several runs
         self.prefix = self.title_in_chart = ""
         self.place = 0
         self.parameters, self.changed = read_parameters(self.read("parameters.prm"))
@@ -151,17 +151,17 @@ class Run:
         missing = [file for file in expected
                    if not self.has(file) and not any(name.endswith(file) for name in unwritten)]
         return [*self.summary.get("warnings", []), *(f"not written: {file}" for file in unwritten),
-                *(f"{file} is missing in the folder, so that this report lacks what it shows"
+                *(f"{file} is missing in the folder, so that this report lacks its results"
                   for file in missing)]
 
     @property
     def notes(self):
-        """What the log notes, less than a warning."""
+        """The notes of the log, which are no warnings."""
         return re.findall(r"^\s*note: (.*)$", self.log, re.MULTILINE)
 
     @property
     def own_entries(self):
-        """Entries in use whose values are not the defaults, as arguments of --set."""
+        """Entries in use that differ from their default values, as arguments of --set."""
         return [f"{path} = {self.parameters[path]}" for path in self.changed
                 if path != "Output/Folder" and self.is_used(path)]
 
@@ -187,7 +187,7 @@ class Run:
 
     @functools.cached_property
     def digests(self):
-        """Names and SHA-256 of the files that say what was run and what came out."""
+        """Names and SHA-256 of the files of input and summary."""
         return [(name, hashlib.sha256(read_bytes(self.folder / name)).hexdigest())
                 for name in ("parameters.prm", "summary.json")]
 
@@ -198,7 +198,7 @@ class Run:
         return read_bytes(self.folder / name).decode(errors="replace")
 
     def table(self, name, first="time [s]"):
-        """A table of this name, with this first column and at least two lines, or None."""
+        """The table of this name, with this first column and at least two lines, or None."""
         if name not in self._tables:
             table = Table(self.folder / name, first) if self.has(name) else None
             if table and first == "time [s]":
@@ -213,7 +213,7 @@ class Run:
                                                      self.summary.get("files not written", {})):
             return
         last, between = table.time[-1], np.diff(table.time).max()
-        # a run that was stopped has been given a longer motion
+        # tables of a stopped run may have been planned for a longer motion
         planned = self.number("Time/End time")
         if last > 1.01 * max(end, planned) + between:
             refuse(table.file, f"continues to {last:g} s, but the run ended at {end:g} s")
@@ -241,7 +241,7 @@ class Run:
                          if path.startswith(start)}
 
     def pictures(self, name):
-        """Time [s] and file, in the folder, of each picture of a series, as "fields"."""
+        """Time [s] and file name of each picture of a series, such as "fields"."""
         if not self.has(f"{name}.txt"):
             return []
         lines = [line.split(maxsplit=1) for line in self.read(f"{name}.txt").splitlines()]
@@ -251,7 +251,7 @@ class Run:
 
 
 def read_runs(arguments):
-    """Runs of arguments FOLDER or LABEL=FOLDER, with labels that differ."""
+    """Runs of arguments FOLDER or LABEL=FOLDER, with different labels."""
     runs = []
     for argument in arguments:
         label, equals, folder = argument.rpartition("=")

@@ -1,5 +1,5 @@
 // Scenes that turn: each <div class="scene"> has its data in a script element, and
-// keeps its picture where the browser draws nothing.
+// shows its picture where the browser cannot draw the scene.
 (() => {
   const decoded = (text, Kind) => new Kind(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
 
@@ -56,7 +56,7 @@
       rock.look.setColor(...scene.stone);
       renderer.addActor(rock.actor);
     }
-    // as the picture: from far away, the dam as large as fits
+    // as in the picture: parallel projection, the dam as large as fits
     const camera = renderer.getActiveCamera();
     camera.setFocalPoint(0, 0, 0);
     camera.setPosition(...scene.eye);

@@ -22,14 +22,14 @@ FROM_DOWNSTREAM = (0.35, -1., 0.55)
 
 
 def open_display():
-    """VTK of Debian draws with OpenGL on an X display: gives it an invisible one."""
+    """Starts an invisible X display, which Debian's VTK needs to draw with OpenGL."""
     server = shutil.which("Xvfb")
     if not server:
         if os.environ.get("DISPLAY"):
             return
         raise ReportError("There is no display to draw on; install the package xvfb.")
     ours, theirs = os.pipe()
-    # without -noreset nobody could connect for a moment after a process has left
+    # without -noreset no process could connect for a moment after another one has left
     process = subprocess.Popen(
         [server, "-displayfd", str(theirs), "-screen", "0", "64x64x24", "-nolisten", "tcp", "-noreset"],
         pass_fds=[theirs], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -37,13 +37,13 @@ def open_display():
     with os.fdopen(ours) as pipe:
         number = pipe.readline().strip()
     if not number:
-        raise ReportError("The invisible display (Xvfb) does not start; set DISPLAY to another.")
+        raise ReportError("The invisible display (Xvfb) does not start; set DISPLAY to another display.")
     atexit.register(process.terminate)
     os.environ["DISPLAY"] = ":" + number
 
 
 def quadrilaterals(corners, colours, edges=True):
-    """Something to draw: corners (n, 4, 3), colours (3,), (n, 3) or (n, 4, 3)."""
+    """An actor of VTK: corners (n, 4, 3), colours (3,), (n, 3) or (n, 4, 3)."""
     data = vtkPolyData()
     points = vtkPoints()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(corners.reshape(-1, 3)), deep=True))
@@ -76,10 +76,10 @@ def quadrilaterals(corners, colours, edges=True):
 
 
 def draw(actors, around, direction, size=(1500, 960), zoom=1.):
-    """RGB (height, width, 3) of a scene, the points @p around (n, 3) in the middle, and
-    how wide it is [m].
+    """RGB (height, width, 3) of a scene with the points @p around (n, 3) in the middle, and
+    the width of the scene [m].
 
-    @p direction from there to the eye, which is far away (no perspective).
+    @p direction from the middle to the eye, which is far away (no perspective).
     """
     renderer = vtkRenderer()
     renderer.SetBackground(1., 1., 1.)
@@ -124,8 +124,8 @@ def packed(values, kind):
 
 def as_json(corners, colours, rock, motion, factor):
     """A scene for the browser: quadrilaterals of the dam (n, 4, 3) with colours (n, 4, 3)
-    and a motion (n, 4, 3) [m] that is drawn up to @p factor times, and those of the rock;
-    in 16 bits, which is to centimetres."""
+    and a motion (n, 4, 3) [m] that is drawn up to @p factor times, and quadrilaterals of the
+    rock; in 16 bits, that is to centimetres."""
     middle = 0.5 * (corners.min(axis=(0, 1)) + corners.max(axis=(0, 1)))
     unit = np.abs(np.concatenate([corners, rock]) - middle).max() / 32767.
     motion_unit = max(np.abs(motion).max(), 1e-9) / 32767.
@@ -137,7 +137,7 @@ def as_json(corners, colours, rock, motion, factor):
 
 
 def without_outer_planes(corners):
-    """Whether a quadrilateral (n, 4, 3) does not lie in the planes that bound the model."""
+    """Whether each quadrilateral (n, 4, 3) lies outside the planes that bound the model."""
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     keep = np.ones(len(corners), bool)
     for axis in range(3):

@@ -1,4 +1,4 @@
-"""Results of each static stage in the summary, by their names."""
+"""All results of each static stage in the summary."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from .structure import magnified
 
 FILE, FIELD = "static_stages.vtu", "displacement after "
 
-# what the solver did, and what the table of the load cases has
+# data of the solver, and quantities in the table of the load cases
 LEFT_OUT = ("name", "names", "iterations", "load increments", "found by multigrid", "steps of dynamic relaxation",
             "loads", "sum of loads so far [N]", "sum of reactions [N]")
 
@@ -37,7 +37,7 @@ def amounts(value):
 
 
 def place_of(key, keys):
-    """The quantity whose place a key is, or None."""
+    """The quantity whose place is under this key, or None."""
     if not key.startswith("place of the "):
         return None
     what = key.removeprefix("place of the ").removesuffix("[m]")
@@ -45,12 +45,12 @@ def place_of(key, keys):
 
 
 def table_of(heads, rows):
-    """A table of (words, quantities), the same quantities below each other, each with
+    """A table of rows (words, quantities) with a column for each quantity, each value with
     its place; positions first, displacements in mm."""
     keys = dict.fromkeys(key for _, quantities in rows for key in quantities)
     placed = {place_of(key, keys): key for key in keys if place_of(key, keys)}
     places = [key for key in keys if key in placed.values() or key.startswith(("position", "at "))]
-    # what is so small against the others is round-off
+    # values that are so small against the others are round-off
     noise = {key: max(1e-9 if key.endswith("[m]") else 1e-6, 1e-6 * max(
         (amount for _, quantities in rows for amount in amounts(quantities.get(key))), default=0.)) for key in keys}
     shown = sorted((key for key in keys if key not in placed.values()), key=lambda key: not key.startswith("position"))
@@ -80,7 +80,7 @@ def table_of(heads, rows):
 
 
 def different(runs):
-    """The first run of those with the same stages."""
+    """The runs without those that repeat the stages of an earlier one."""
     seen = []
     for run in runs:
         if stages_of(run) and not any(stages_of(run) == stages_of(other) for other in seen):
@@ -89,7 +89,7 @@ def different(runs):
 
 
 def stage_pictures(run):
-    """The dam after each stage, all with the same magnification and colours."""
+    """Pictures of the dam after each stage, all with the same magnification and colours."""
     dam = dam_in(run, FILE)
     faces = dam.exposed
     fields = {name.removeprefix(FIELD): values[faces] for name, values in dam.grid.values.items()
@@ -112,7 +112,7 @@ def stage_pictures(run):
 
 
 def stages_section(runs):
-    """Tables of what the stages have by themselves, and of each group of named objects."""
+    """Tables of the quantities of stages, and of each group of named objects."""
     groups = {}
     shown = different(runs)
     for run in shown:
@@ -133,6 +133,6 @@ def stages_section(runs):
     pictures = [picture for run in shown if run.has(FILE) for picture in stage_pictures(run)]
     return Section("Static stages", [
         *(["They are the same in all runs."] if len(shown) == 1 < len(runs) else []),
-        "After each stage, under all loads up to there. Displacements are those from the unloaded model. What has "
-        "nothing but zeros after a stage, as a joint that is grouted later, has no line for it.", *tables,
+        "Results after each stage, under all loads so far. Displacements are relative to the unloaded model. Objects "
+        "whose values are all zero after a stage, such as joints that are grouted later, have no line for it.", *tables,
         *([Pictures(pictures, 2)] if pictures else [])])

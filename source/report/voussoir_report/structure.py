@@ -1,4 +1,4 @@
-"""The dam in space: its mesh, its natural modes, and how it moved with its joints."""
+"""The dam in space: its mesh, its natural modes, and its deformation with open joints."""
 
 import functools
 import re
@@ -45,7 +45,7 @@ def mesh_picture(run):
 
 
 def section_picture(run):
-    """Outlines of the cells in the section of the crown and in level ones."""
+    """Outlines of the cells in the crown section and in horizontal sections."""
     dam = dam_of(run)
     levels = [dam.bottom + share * dam.height for share in (0.75, 0.5, 0.25)]
     level = [dam.section(at, axis=2)[0] for at in levels]
@@ -65,7 +65,7 @@ def section_picture(run):
         axes = charts.place(figure, 2.8, 2.55 - 1.02 * n, 2.1, 0.75)
         for polygon in polygons:
             axes.fill(*polygon.T, facecolor="none", edgecolor="0.3", linewidth=0.5)
-        # the same lengths in all of them
+        # the same scale in all sections
         axes.set(xlim=across, ylim=along, ylabel="y [m]")
         axes.set_aspect("equal", anchor="W")
         axes.tick_params(labelbottom=n == 2)
@@ -106,7 +106,7 @@ def mesh_section(runs):
                   of(of_dam, lambda dam, cells: number(100. * (dam.grid.quality[cells] < 0.3).mean())))]
     text = ("The scaled Jacobian is 1 for a brick, 0 where a corner is flat; below 0.2 stresses beside "
             "such a corner are doubtful.")
-    # runs on the same mesh need one picture
+    # one picture for runs on the same mesh
     pictures = {len(dam_of(run).grid.cells): (mesh_picture(run), section_picture(run)) for run in reversed(runs)}
     pictures = [picture for pair in reversed(pictures.values()) for picture in pair if picture]
     parts = [text, comparison(runs, rows), waves_table(runs), Pictures(pictures, 2)]
@@ -119,7 +119,7 @@ def extents(run):
 
 
 def beyond(run):
-    """How far the model goes beyond the dam, in heights of the dam."""
+    """Extent of the model beyond the dam, in heights of the dam."""
     dam = dam_of(run)
     if not len(dam.others):
         return None
@@ -130,7 +130,7 @@ def beyond(run):
 
 
 def waves_table(runs):
-    """Nodes per shear wave in the largest cells of each material, at frequencies that matter."""
+    """A table of nodes per shear wave in the largest cells of each material, at relevant frequencies."""
     rows = []
     for run in runs:
         found = {match[1]: match for match in CARRIED.finditer(run.log)}
@@ -146,7 +146,7 @@ def waves_table(runs):
     return Table(["material", "P wave [m/s]", "S wave [m/s]", "8 nodes per wave up to [Hz]",
                   "nodes per wave in the first mode", "below which half of the input's power lies",
                   "below which nine tenths lie"], rows,
-                 "Nodes per shear wave in the largest cells, at frequencies that matter; fewer than about five do not "
+                 "Nodes per shear wave in the largest cells, at relevant frequencies; fewer than about five do not "
                  "carry a wave.") if rows else None
 
 
@@ -169,19 +169,19 @@ def modes_section(runs):
             pictures = mode_pictures(run)
             parts.append(Pictures(pictures, 2 if len(pictures) in (2, 4) else 3))
     parts.insert(0, "Damping achieved is that of the damping model at the frequency of the mode, interpolated "
-                    "between those that the log names; what leaves through the boundary comes on top of it. Pictures are "
+                    "between frequencies in the log; radiation through the boundary is added to it. Pictures are views "
                     "from downstream and above; their colours go from no displacement (dark) to the largest of the mode.")
     return Section("Natural modes", parts)
 
 
 def of_mass(share):
-    """An effective mass [%]; there is no sense in a ten-thousandth of it."""
+    """Text of an effective mass [%]; shares below a ten-thousandth are zero."""
     return number(100. * share) if share > 1e-4 else "0"
 
 
 @functools.lru_cache(maxsize=None)
 def damping_curve(run):
-    """Frequencies [Hz] and ratios [%] that the log says are achieved, the last time."""
+    """Frequencies [Hz] and damping ratios [%] achieved, by the last such lines of the log."""
     lines = re.findall(r"^Damping: .*achieved\n\s*(.*)$", run.log, re.MULTILINE)
     return [(float(f), float(ratio)) for f, ratio in re.findall(r"([\d.]+) Hz ([\d.]+) %", lines[-1])] if lines else []
 
@@ -215,7 +215,7 @@ def mode_pictures(run, most=6):
 
 def opened_section(runs):
     """The dam with its motion magnified: when its joints were widest open or, without
-    joints, when it moved most."""
+    joints, at its largest displacement."""
     parts = [part for part in (deformed(run) for run in runs) if part]
     pictures = [part for part in parts if not isinstance(part, str)]
     if not parts:
@@ -233,8 +233,9 @@ def openings_over_time(run):
 
 @functools.lru_cache(maxsize=None)
 def shown_time(run):
-    """Time and file of the picture that shows most, and if there are joints how far they
-    are open there, and when and how far at most; None without pictures of displacements."""
+    """Time and file of the picture with the widest opening or largest motion; if there are
+    joints, their opening in it, and time and size of the widest opening; None without
+    pictures of displacements."""
     files = run.pictures("fields")
     files = [(time, file) for time, file in (files[1:] if files and files[0][0] <= 0. else files)
              if "displacement" in grid_of(run, file).values]
@@ -258,9 +259,9 @@ def start_of(run):
 
 
 def motion_of(run, file):
-    """Displacement [m] at all corners, from the start of the earthquake where there is a
-    picture of it, without the mean one of the foundation of the dam: that of the ground
-    is as large as the rest, or larger."""
+    """Displacement [m] at all corners since the start of the earthquake, if there is a
+    picture of it, without the mean displacement of the foundation of the dam, which may
+    exceed the deformation."""
     values, start = grid_of(run, file).values["displacement"].astype(float), start_of(run)
     if start:
         values -= grid_of(run, start).values["displacement"]
@@ -269,22 +270,22 @@ def motion_of(run, file):
 
 
 def magnified(dam, largest):
-    """A round factor that makes of the largest motion [m] an eighth of the height."""
+    """A round factor that magnifies the largest motion [m] to an eighth of the height."""
     return float(f"{0.12 * dam.height / largest:.0e}")
 
 
 def deformed(run):
-    """A picture, or a sentence that says why there is none."""
+    """A picture of the deformed dam, or a sentence with the reason why there is none."""
     shown = shown_time(run)
     if shown is None:
         return None
     time, file, opening, widest_time, widest = shown
     if opening is not None and opening < 0.2 * widest:
-        return (f"{run.prefix}No picture is near the time of the widest opening, {number(widest_time)} s: ask for "
-                'it with "Times" in section "Output/fields".')
+        return (f"{run.prefix}No picture is near the time of the widest opening, {number(widest_time)} s: request "
+                'one by "Times" in section "Output/fields".')
     dam = dam_in(run, file)
     motion = motion_of(run, file)
-    # with the sides of the joints, which lie inside
+    # including the sides of the joints, which lie inside
     faces = dam.grid.faces(dam.cells)
     amount = np.linalg.norm(motion[faces], axis=2)
     if amount.max() < 1e-9:
@@ -314,7 +315,7 @@ def scene_section(runs):
     if run is None:
         return None
     dam, shown = dam_of(run), shown_time(run)
-    # with the sides of the joints, unless there are too many
+    # including the sides of the joints, unless there are too many faces
     faces = dam.grid.faces(dam.cells) if shown and 6 * len(dam.cells) < MOST_FACES else dam.exposed
     if len(faces) > MOST_FACES:
         return None

@@ -1,4 +1,4 @@
-"""A study: a table of its runs and curves over what was varied."""
+"""A study: a table of its runs and curves over the varied entry."""
 
 import pathlib
 
@@ -21,7 +21,7 @@ STUDY = Group(
 
 
 class Study:
-    """The folder of a study, as the program has left it."""
+    """The result folder of a study."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -37,7 +37,7 @@ class Study:
         return self.folder / pathlib.Path(run["folder"]).name
 
     def lacks(self, run):
-        """Files without which a run cannot be shown and that its folder does not have."""
+        """Files that are needed to show a run and missing in its folder."""
         return [name for name in ("summary.json", "parameters.prm")
                 if not (self.folder_of(run) / name).is_file()]
 
@@ -46,7 +46,7 @@ class Study:
 
     @property
     def entries(self):
-        """What is varied, the first run's order."""
+        """The varied entries, in the order of the first run."""
         return list(self.runs[0]["values"]) if self.runs else []
 
     @property
@@ -58,7 +58,7 @@ class Study:
 
     @property
     def in_detail(self):
-        """Runs with results, at most so many, evenly chosen."""
+        """Runs with results, at most MOST, evenly chosen."""
         there = [run for run in self.runs if not self.lacks(run)]
         if len(there) <= MOST:
             return there
@@ -71,13 +71,13 @@ def is_study(folder):
 
 
 def short(path):
-    """Last name of a path; a stroke in brackets is part of a unit."""
+    """Last name of a path; a slash in brackets is part of a unit."""
     name, bracket, unit = path.partition(" [")
     return name.rsplit("/", 1)[-1] + bracket + unit
 
 
 def titled(path):
-    """The last name with what it is of, as "left wedge: smallest safety"."""
+    """The last name with that of its object, as "left wedge: smallest safety"."""
     *_, above, place = ("", "", *path.rsplit(short(path), 1)[0].strip("/").split("/"))
     of = f"{above} *" if place == "*" else place
     return f"{of}: {short(path)}" if of else short(path)
@@ -93,13 +93,13 @@ def numeric(text):
 
 
 def abscissa(study):
-    """The entry of most numbers, over which curves are drawn; None without any."""
+    """The entry with the most numeric values, over which curves are drawn; None without one."""
     counts = {}
     for entry in study.entries:
         values = [numeric(run["values"].get(entry, "")) for run in study.runs]
         if None not in values and len(set(values)) > 1:
             counts[entry] = len(set(values))
-    # a random seed is a number, but no quantity
+    # a random seed is a number, but not a quantity
     amounts = {entry: n for entry, n in counts.items() if short(entry) != "Seed"}
     return max(amounts, key=amounts.get) if amounts else None
 
@@ -129,7 +129,7 @@ def spread(study, over, quantity):
              if line["quantity"] == quantity and over in line]
     found = [values for values in found if all(values)]
     if not all(is_number(value) for values in found for value in values):
-        refuse(file, f'has numbers of "{quantity}" that are none')
+        refuse(file, f'has texts instead of numbers for "{quantity}"')
     return sorted([float(value) for value in values] for values in found)
 
 
@@ -153,7 +153,7 @@ def curve_picture(study, over, quantity):
 
 
 def judged_runs(study, table):
-    """How each run of a study is judged by a table of verdicts; None where no run has it."""
+    """The judgement of each run of a study in a table of the verdict; None where no run has the table."""
     lines = [(run, {line.what: line for line in verdict.lines_of(Run(study.folder_of(run)), table)})
              for run in study.runs if not study.lacks(run)]
     heads = dict.fromkeys(what for _, found in lines for what in found)
@@ -175,7 +175,7 @@ def study_section(_, studies):
                    for q in study.quantities), *(criterion_in_words(run.get(key, "–")) for key in met),
                  run["verdict"].split(". ")[0]] for run in study.runs]
         tables = [judged_runs(study, verdict.ACCEPTANCE), Table(
-            head, rows, f"The runs of {study.folder.name}; each number as study.csv has it."),
+            head, rows, f"The runs of {study.folder.name}; numbers as in study.csv."),
                   judged_runs(study, verdict.RESULTS)]
         parts += [table for table in tables if table]
         for limit in study.limits:
@@ -192,5 +192,5 @@ def study_section(_, studies):
                 parts.append(f"Not in detail: {study.label_of(run)}, as there is no "
                              f"{' and no '.join(study.lacks(run))} in its folder.")
         if len(study.in_detail) < len(study.runs):
-            parts.append(f"{len(study.in_detail)} of its {len(study.runs)} runs follow in detail.")
+            parts.append(f"{len(study.in_detail)} of the {len(study.runs)} runs follow in detail.")
     return Section("Study", parts) if parts else None

@@ -1,4 +1,4 @@
-"""What a study evaluates from its runs: convergence, fragility, sensitivity, calibration."""
+"""Evaluations of a study: convergence, fragility, sensitivity, calibration."""
 
 import math
 
@@ -27,7 +27,7 @@ CALIBRATION = Group({"error": NUMBER, "lines": [
 
 
 def others(line):
-    """Values of the entries of a study that a line is for."""
+    """Values of the entries of a study to which a line belongs."""
     return ", ".join(f"{name.rsplit('/', 1)[-1]} {value}" for name, value in line.items() if "/" in name)
 
 
@@ -41,11 +41,11 @@ def convergence_table(lines):
                      "–" if band is None else f"± {number(band)}", line["verdict"]])
     return Table(["quantity", "of", "coarse", "middle", "fine", "observed order", "extrapolated",
                   "band about the fine one", "verdict"], rows,
-                 "Three sizes of cells or steps: Richardson's extrapolation, and 1.25 times what it adds as a band")
+                 "Three sizes of cells or steps: Richardson's extrapolation, and 1.25 times its correction as a band")
 
 
 def curves_of(levels):
-    """Lines of each curve, by what it is of."""
+    """Lines of each curve, by its label."""
     found = {}
     for level in levels:
         found.setdefault(others(level), []).append(level)
@@ -53,7 +53,7 @@ def curves_of(levels):
 
 
 def within(level, name):
-    """A number and its bounds."""
+    """Text of a number and its bounds."""
     if level[name] is None:
         return "–"
     return f"{number(level[name])} ({number(level[name + ' from'])} to {number(level[name + ' to'])})"
@@ -69,8 +69,8 @@ def fragility_parts(fragility):
         if levels[0]["median"] is not None:
             drawn[label] = levels
     parts = [Table(["curve", "runs that meet the criterion", "median", "dispersion", "verdict"], rows,
-                   f"Probability that “{fragility['criterion']}” over {fragility['intensity']}; in brackets bounds of a "
-                   f"confidence of {100 * fragility['confidence']:.0f} %, those of many runs")]
+                   f"Probability that “{fragility['criterion']}” over {fragility['intensity']}; in brackets bounds "
+                   f"with a confidence of {100 * fragility['confidence']:.0f} %, asymptotic for many runs")]
     if drawn:
         figure, axes = charts.new_figure()
         charts.cycle_colours(axes, len(drawn))
@@ -94,7 +94,7 @@ def sensitivity_table(sensitivity):
              number(line["largest change [%]"]), number(line["change over that of the number"])]
             for line in lines[:MOST]]
     return Table(["number", "value", "quantity", "as given", "largest change [%]", "change over that of the number"],
-                 rows, f"Each number moved by {number(100 * sensitivity['change'])} % down and up"
+                 rows, f"Each number varied by {number(100 * sensitivity['change'])} % down and up"
                  + (f"; {MOST} of {len(lines)} lines, the rest in study_sensitivity.csv" if len(lines) > MOST else ""))
 
 
@@ -105,12 +105,12 @@ def calibration_table(calibration):
              number(line["change over that of the number"]), line["verdict"]] for line in calibration["lines"]]
     return Table(["number", "of", "in the file", "found", "standard error [%]", "quantity", "measured", "with the file",
                   "with what was found", "off by [%]", "change over that of the number", "verdict"], rows,
-                 "Numbers fitted to what was measured; standard errors for measured numbers of "
+                 "Numbers fitted to measurements; standard errors for errors of measurement of "
                  f"{number(100 * calibration['error'])} %")
 
 
 def evaluations(data):
-    """Parts of a report, by what study.json has."""
+    """Parts of a report, for the evaluations in study.json."""
     parts = []
     if data.get("convergence"):
         parts.append(convergence_table(data["convergence"]))

@@ -1,4 +1,4 @@
-"""Two verdicts and the acceptance table, as the program's own tables have them."""
+"""Numerical checks, engineering results and the acceptance table, from summary.json."""
 
 import dataclasses
 import fnmatch
@@ -8,19 +8,19 @@ import re
 from . import grid as grids
 from .page import number
 
-# how a line is judged, from good to bad, and what stands in the page
+# judgements of a line, from good to bad, as the page has them
 MET, NOT_ASSESSED, TO_JUDGE, NOT_MET = "met", "not assessed", "to be judged", "not met"
 RANK = {MET: 0, NOT_ASSESSED: 1, TO_JUDGE: 2, NOT_MET: 3}
 COLOURS = {MET: "good", NOT_ASSESSED: "open", TO_JUDGE: "doubt", NOT_MET: "bad"}
 
-VISIBLE = 0.1  # openings below it are those of an elastic mesh [mm]
+VISIBLE = 0.1  # smaller openings are those of an elastic mesh [mm]
 
 CHECKS, RESULTS, ACCEPTANCE = "numerical checks", "engineering results", "acceptance table"
 
 
 @dataclasses.dataclass
 class Line:
-    """A criterion: what was found, where and when, its limit, and how that is judged."""
+    """A criterion: the result with place and time, its limit, and the judgement."""
 
     what: str
     found: str
@@ -66,13 +66,13 @@ def unit_of(quantity):
 
 
 def lines_of(run, name):
-    """The lines of a table of summary.json; those of the case in its order."""
+    """The lines of a table of summary.json; criteria of the case in the order of the case."""
     table = run.summary.get(name, {})
     order = [wanted for wanted in run.list("Acceptance/Names") if wanted in table] if name == ACCEPTANCE else table
     for entry in order:
         line = table[entry]
         value = line.get("demand", line.get("value"))
-        unit = unit_of(line.get("quantity", ""))  # lines of other tables have it in their names
+        unit = unit_of(line.get("quantity", ""))  # lines of other tables have the unit in their names
         limit = next((f"{sense} {number(line[sense])}{unit}" for sense in ("at most", "at least") if sense in line),
                      "no limit in the case")
         if name == ACCEPTANCE:
@@ -98,20 +98,20 @@ def numerical_checks(run):
     elif judged == NOT_MET:
         title = "A check is not met"
     elif run.warnings:
-        title, judged = "To be looked at before the results are used", TO_JUDGE
+        title, judged = "To be examined before the results are used", TO_JUDGE
     else:
         title = "All checks are met"
     return Verdict("Numerical checks", title, lines, run.warnings, judged)
 
 
 def engineering_results(run):
-    """What the run says of the dam, by what its summary has."""
+    """Results for the dam, from the summary."""
     lines = [line for line in (*lines_of(run, RESULTS), tension_line(run), pressure_line(run), *opening_lines(run))
              if line]
     judged = worst(lines)
-    title = {MET: "What was looked at is met", NOT_MET: "Not all of it is met",
+    title = {MET: "All assessed criteria are met", NOT_MET: "Not all criteria are met",
              TO_JUDGE: "To be judged: results without a limit",
-             NOT_ASSESSED: "Not assessed: no strength and no limit is known to compare with"}[judged]
+             NOT_ASSESSED: "Not assessed: no strength and no limit is given"}[judged]
     return Verdict("Engineering results", title, lines, [], judged)
 
 
@@ -122,7 +122,7 @@ def acceptance_table(run):
         return None
     judged = worst(lines)
     title = {MET: "All criteria are met", NOT_MET: "Not all criteria are met"}.get(
-        judged, "Some criteria are not assessed, as the run has no such number")
+        judged, "Some criteria are not assessed, as their numbers are missing")
     return Verdict("Acceptance table", title, lines, [], judged)
 
 
@@ -134,7 +134,7 @@ def has_strength(run):
 
 
 def tension_line(run):
-    """Tension that nothing is compared with."""
+    """The largest tension, where no strength is given for comparison."""
     stresses = run.summary.get("face stresses", {})
     key = "largest principal stress [MPa]"
     if "over-stress" in run.summary or key not in stresses or has_strength(run):
@@ -144,7 +144,7 @@ def tension_line(run):
 
 
 def pressure_line(run):
-    """Largest pressure on the faces over the least compressive strength of the dam."""
+    """Largest compression on the faces over the least compressive strength of the dam."""
     smallest = run.summary.get("face stresses", {}).get("smallest principal stress [MPa]")
     dam = grids.dam_of(run)
     if smallest is None or dam is None:
@@ -155,12 +155,12 @@ def pressure_line(run):
     if not strength:
         return None
     ratio = max(-smallest, 0.) / strength
-    return Line("pressure on the faces over compressive strength", number(ratio), "1",
+    return Line("compression on the faces over compressive strength", number(ratio), "1",
                 MET if ratio <= 1. else NOT_MET, f"{number(-smallest)} of {number(strength)} MPa")
 
 
 def clean(value):
-    """Round-off of openings and slips [mm] is zero."""
+    """A value without round-off of openings and slips [mm]."""
     return value if abs(value) > 1e-6 else 0.
 
 
@@ -175,7 +175,7 @@ def key_depth(run, surface):
 
 
 def opening_lines(run):
-    """The largest opening of what has no keys, and of joints against the depth of theirs."""
+    """The largest opening of surfaces without keys, and of joints over the depth of their keys."""
     openings = {name: math.inf if surface["largest opening [mm]"] is None else surface["largest opening [mm]"]
                 for name, surface in surfaces_of(run).items() if "largest opening [mm]" in surface}
     keyed = {name: key_depth(run, name) for name in openings if key_depth(run, name)}

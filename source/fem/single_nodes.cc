@@ -187,8 +187,9 @@ namespace Voussoir
         vectorized_transpose_and_store(
           false, 4, components.data(), places.data(), buffers[v].data());
       }
-    // In the order of the nodes: what has just been stored is not read. And
-    // without the fourth entry, which is of a node that may have just been.
+    // In the order of the nodes, so that no entry is read that has just been
+    // stored; and without the fourth entry, whose node may have just been
+    // stored.
     double *sums = vector.begin();
     for (unsigned int v = 0; v < 8; ++v)
       for (unsigned int lane = 0; lane < 2 * width; ++lane)

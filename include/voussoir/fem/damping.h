@@ -43,7 +43,7 @@ namespace Voussoir
     void
     declare(dealii::ParameterHandler &prm);
 
-    /** @p n_modes: how many modes the case computes */
+    /** @p n_modes: number of modes that the case computes */
     void
     check(const unsigned int n_modes) const;
 

@@ -37,7 +37,7 @@ namespace Voussoir
     }
 
   private:
-    Vector part; // that is driven, where it is not all
+    Vector part; // that is driven, unless all of it is
 
   public:
     /** Mass of each material [kg]. */

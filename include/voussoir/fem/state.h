@@ -8,8 +8,8 @@ namespace Voussoir
 {
   /**
    * Energy that nodal vectors have supplied and dissipated since the start, of
-   * this rank [J]. Energy that the cells take is in the internal variables of
-   * their points and in the energy balance.
+   * this rank [J]. Energy of the cells is in the internal variables of their
+   * points and in the energy balance.
    */
   struct EnergyAccounts
   {

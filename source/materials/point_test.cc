@@ -61,12 +61,12 @@ namespace Voussoir
       {
         if (iteration == 100)
           throw UserError("The material test finds no strain that gives the "
-                          "wanted stresses; the material may have no more "
+                          "prescribed stresses; the material may have lost its "
                           "strength. Control the strain of the failing "
                           "component instead.");
         FullMatrix<double> tangent(unknown.size(), unknown.size());
-        // small against the residual and away from the wanted stress, as a law
-        // may have a kink there
+        // small against the residual and away from the prescribed stress, where
+        // a law may have a kink
         const double size =
           std::max(1e-14, std::min(1e-9, 0.1 * residual.l2_norm() / modulus));
         for (unsigned int k = 0; k < unknown.size(); ++k)

@@ -198,7 +198,7 @@ namespace Voussoir
     };
 
 
-    // The cluster of the records of one point, which are sorted. An empty one
+    // The cluster of the records of one point, which are sorted. It is empty
     // where all these nodes are at the end of an interface.
     KeyedCluster
     make_cluster(const std::vector<const Record *> &records,
@@ -227,7 +227,7 @@ namespace Voussoir
           if (partner == records.end())
             problems.add(*record, interfaces);
           else if (record->node == (*partner)->node)
-            continue; // the end of the interface, where it may hang
+            continue; // at the end of an interface a node may hang
           else if (record->hanging)
             problems.add(*record, interfaces);
           else if (record->side == 0)

@@ -117,8 +117,8 @@ namespace Voussoir
           }
       }
 
-      /** Makes a homotopy begin at the solution of the last one, such that its
-       *  solution has no effect of the compliance of the points. */
+      /** Starts a homotopy at the solution of the last one such that the effect
+       *  of the compliance of the points vanishes from its solution. */
       void
       correct_softness()
       {
@@ -180,7 +180,7 @@ namespace Voussoir
         return true;
       }
 
-      /** Goes a step along the path, or to the end of its piece if that comes
+      /** Takes a step along the path, or to the end of its piece if that comes
        *  first; returns whether the step was short enough to stay on the path.
        */
       bool
@@ -241,7 +241,7 @@ namespace Voussoir
         return true;
       }
 
-      /** Follows the path from t = 0 to t = 1; returns whether it gets there.
+      /** Follows the path from t = 0 to t = 1; returns whether it arrives.
        */
       bool
       follow()

@@ -23,8 +23,8 @@ namespace Voussoir
       prm,
       "Absorbing type",
       type,
-      "Dashpots alone, or springs beside them, which keep the model in place "
-      "and suit waves that spread from the dam.");
+      "Dashpots alone, or dashpots and springs; springs keep the model in "
+      "place and suit waves that spread from the dam.");
     add_option(
       prm,
       "Coefficients",
@@ -36,8 +36,8 @@ namespace Voussoir
     prm.add_parameter(
       "Source point",
       source,
-      "Where scattered waves come from, x, y, z [m]: the "
-      "stiffness of springs follows from the distance to this point.");
+      "Source of scattered waves, x, y, z [m]: the stiffness of springs "
+      "follows from the distance to this point.");
     prm.add_parameter(
       "Radius",
       radius,
@@ -179,7 +179,7 @@ namespace Voussoir
     }
 
 
-    /** Distance r of a node from where scattered waves come from [m]. */
+    /** Distance r of a node from the source of scattered waves [m]. */
     double
     source_distance(const AbsorbingParameters  &parameters,
                     const BoundaryCoefficients &coefficients,

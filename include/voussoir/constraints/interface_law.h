@@ -41,7 +41,7 @@ namespace Voussoir
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 
-    /** Refuses entries that do not fit each other; @p place names their
+    /** Refuses entries that contradict each other; @p place names their
      *  section. */
     virtual void
     check(const std::string &) const

@@ -18,8 +18,8 @@ namespace Voussoir
   class InterfacePoints : public ContactPoints
   {
   public:
-    /** @param interfaces of the mesh, which is split along them; must live
-     *  as long as this */
+    /** @param interfaces along which the mesh is split; must live as long as
+     *  this */
     InterfacePoints(const Discretization       &discretization,
                     const InterfacesParameters &interfaces,
                     const InterfaceSurfaces    &surfaces);
@@ -40,8 +40,8 @@ namespace Voussoir
     bool
     grout(const std::vector<std::string> &loads, const Vector &displacement);
 
-    /** Joins all interfaces, which have been grouted where the points have been
-     *  read from a file: bars and uplift act.
+    /** Joins all interfaces, as after a read of points whose interfaces had
+     *  been grouted: bars and uplift act.
      *  @param water see `has_water` */
     void
     join_all(const std::vector<bool> &water);

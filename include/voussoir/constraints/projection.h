@@ -30,7 +30,7 @@ namespace Voussoir
       double violation = 0.;
     };
 
-    /** The entries of a registered class, and how it takes them. */
+    /** Declares the entries of a registered class; `prepare` takes them. */
     virtual void
     declare_parameters(dealii::ParameterHandler &)
     {}
@@ -59,12 +59,13 @@ namespace Voussoir
     start(const State &)
     {}
 
-    /** Owned nodes whose motion it may change, in ascending order. */
+    /** Owned nodes whose motion the constraint may change, in ascending order.
+     */
     virtual const std::vector<unsigned int> &
     nodes() const = 0;
 
-    /** The components x, y, z in which its nodes follow it whatever else acts
-     * on them. */
+    /** The components x, y, z of the nodes that the constraint alone
+     * determines. */
     virtual std::array<bool, 3>
     prescribed_components() const
     {

@@ -15,9 +15,9 @@
 namespace Voussoir
 {
   /**
-   * A load of a case: a named section of the parameter file. It belongs to the
-   * static stage that names it and stays as it is afterwards, or else acts from
-   * the beginning of the earthquake.
+   * A load of a case: a named section of the parameter file. It is applied in
+   * the static stage that names it and constant afterwards; a load that no
+   * stage names acts from the beginning of the earthquake.
    */
   class Load
   {
@@ -27,8 +27,8 @@ namespace Voussoir
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 
-    /** Finds the nodes it acts on; @p place is the path of its section in the
-     *  file. */
+    /** Finds the nodes that the load acts on; @p place is the path of its
+     *  section in the file. */
     virtual void
     prepare(const Solid         &solid,
             const ParameterFile &file,
@@ -69,7 +69,7 @@ namespace Voussoir
     {}
 
     /** Resultant by volumes and areas of the mesh alone, to compare with that
-     *  of its steady forces [N]; none if it has none. */
+     *  of the steady forces [N]; none if the load has no such resultant. */
     virtual std::optional<dealii::Tensor<1, 3>>
     resultant_of_geometry() const
     {

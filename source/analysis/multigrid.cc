@@ -10,8 +10,9 @@ namespace Voussoir
 
   namespace
   {
-    // products with the operator before and after each correction, and the
-    // part of the spectrum they damp; 3 to 6 take the same time together
+    // products with the operator before and after each correction, and the part
+    // of the spectrum that they damp; degrees from 3 to 6 take the same time in
+    // total
     constexpr unsigned int smoother_degree = 4;
     constexpr double       smoothing_range = 30.;
   } // namespace

@@ -443,7 +443,7 @@ namespace Voussoir
     std::uint64_t key  = coarse_cell(cell);
     for (auto child = path.rbegin(); child != path.rend(); ++child)
       key = 8 * key + *child;
-    // the level keeps apart a cell and its own first child
+    // the level distinguishes a cell from its own first child
     return (key << 4) + path.size();
   }
 } // namespace Voussoir

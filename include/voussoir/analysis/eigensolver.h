@@ -10,8 +10,8 @@ namespace Voussoir
 {
   /**
    * K x = lambda M x with a positive definite stiffness K and a mass M that may
-   * be singular. All three map (result, vector), of which each rank has `size`
-   * entries, and keep constrained entries at zero.
+   * be singular. The three operators map (result, vector), of which each rank
+   * has `size` entries, and keep constrained entries at zero.
    */
   struct Eigenproblem
   {

@@ -17,8 +17,8 @@ namespace Voussoir
    *   | K 0 | |u|           /| M 0 |       |S|                \ |u|
    *   | 0 Q | |p| = omega^2 ( | 0 0 | + rho |Q| H^-1 (S^T  Q)  ) |p| ,
    * with the water's compression as a stiffness. Both sides are positive. The
-   * unknown in place of p is sqrt(Q/k) p, a displacement, with a stiffness k
-   * that is the same everywhere.
+   * unknown in place of p is sqrt(Q/k) p, a displacement, with a uniform
+   * stiffness k.
    *
    * Far end and bottom reflect; the surface has no pressure.
    */
@@ -58,7 +58,7 @@ namespace Voussoir
                           double            *water_momentum,
                           const unsigned int direction) const;
 
-    /** Zero where the pressure is. */
+    /** Sets entries at the surface to zero. */
     void
     clear_surface(double *water_motion) const;
 

@@ -25,7 +25,7 @@ namespace Voussoir
   }
 
 
-  /** Properties of an accelerogram that its file does not have. */
+  /** Properties of an accelerogram that its file does not contain. */
   struct RecordFormat
   {
     AccelerationUnit unit = AccelerationUnit::g;

@@ -91,9 +91,9 @@ namespace Voussoir
    * With @p ramp_cycles = 0 the acceleration is A sin(w t) from rest, so that
    * the velocity is A/w (1 - cos(w t)) and the ground moves away at the mean
    * velocity A/w. With @p ramp_cycles >= 1 the displacement -A/w^2 sin(w t) is
-   * faded in and, before the end, out over so many cycles; the ground comes
-   * back to where it was. While it fades, the acceleration exceeds A by up to
-   * 15 % for one cycle, 2 % for two, 0.5 % for three.
+   * faded in and, before the end, out over this number of cycles; the ground
+   * returns to where it started. During fading the acceleration exceeds A by up
+   * to 15 % for one cycle, 2 % for two, 0.5 % for three.
    */
   class Sine : public Signal
   {

@@ -109,7 +109,7 @@ namespace Voussoir
       }
 
     private:
-      /** After pressure from all sides, the other two stresses stay. */
+      /** After pressure from all sides, the other two stresses are constant. */
       PointTest
       failed(const Material &material,
              const double    pressure,

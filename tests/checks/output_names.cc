@@ -60,7 +60,7 @@ namespace Voussoir
     }
 
 
-    /** One table of names stands behind all numbers in results. */
+    /** All numbers in results refer to one table of names. */
     class NamesInResults : public Check
     {
     public:

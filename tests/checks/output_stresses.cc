@@ -77,7 +77,8 @@ namespace Voussoir
       nlohmann::json
       in_section(const Field &field) const
       {
-        // the block is 10 m thick; this line crosses its cells anywhere
+        // the block is 10 m thick; this line crosses its cells between their
+        // nodes
         return observed("section forces",
                         {{"Sections", "line: 3.7 5.3; edge: 4 10 8"},
                          {"Upstream", "back"},

@@ -7,7 +7,7 @@
 
 namespace Voussoir
 {
-  /** The case of a test, which is a file of its own beside it. */
+  /** The case of a test, which is a separate file beside it. */
   inline ParameterFile
   study_file(const ParameterFile &file,
              const std::string   &name,

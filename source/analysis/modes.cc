@@ -73,7 +73,7 @@ namespace Voussoir
     }
 
 
-    /** Effective over moving mass; 0 where nothing can move. */
+    /** Effective over moving mass; 0 in directions without moving mass. */
     Tensor<1, 3>
     share(const Tensor<1, 3> &mass, const Tensor<1, 3> &moving_mass)
     {

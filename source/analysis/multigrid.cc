@@ -49,7 +49,7 @@ namespace Voussoir
     ML_set_random_seed(1);
     coarser.initialize(matrix, list);
 
-    // the hierarchy is only read, but ML knows no const
+    // the hierarchy is only read, but ML's interface has no const
     levels = const_cast<ML_Struct *>(
       dynamic_cast<const ML_Epetra::MultiLevelPreconditioner &>(
         coarser.trilinos_operator())

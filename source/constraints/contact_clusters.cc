@@ -291,8 +291,8 @@ namespace Voussoir
         grid.check_face_set(side, "The interface \"" + name + "\"");
 
     // All records of one point meet on the rank of its cube. A point that may
-    // fall into several cubes goes to all of them, and only that of the lowest
-    // record's position makes the cluster.
+    // fall into several cubes is sent to all of them, and only the cube of the
+    // lowest record's position makes the cluster.
     const double size      = smallest_cell(grid, interfaces);
     const double tolerance = coincidence * size;
     const Cubes  cubes(size / discretization.degree);

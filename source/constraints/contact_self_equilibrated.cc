@@ -75,7 +75,7 @@ namespace Voussoir
         return result;
       }
 
-      /** Part of a change that the limits admit, at most one. */
+      /** Largest share of a change that the limits admit, at most one. */
       double
       admissible(const Tensor<1, 3> &change) const
       {

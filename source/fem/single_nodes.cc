@@ -49,7 +49,7 @@ namespace Voussoir
     for (unsigned int i = 0; i < 2; ++i)
       {
         entries[i] = matrix_free.node_entries[batch + (i < n ? i : 0)];
-        // what the next two batches will read
+        // prefetches entries of the next two batches
         if (entries[i] != nullptr)
           for (unsigned int k = 0; k < 8 * width; k += 16)
             __builtin_prefetch(entries[i] + 16 * width + k);

@@ -19,8 +19,8 @@ namespace Voussoir
       "How many times each cell is cut into eight. The new nodes of an arch "
       "dam without wedges lie on its true faces, joints and canyon; other "
       "meshes are refined at the middles of their edges. Every rank stores the "
-      "whole mesh before refinement, and only its part afterwards, so give "
-      "large meshes as coarse ones.",
+      "whole mesh before refinement, and only its part afterwards; so give "
+      "large meshes in coarse cells.",
       Patterns::Integer(0, 6));
     prm.add_parameter(
       "Local refinement",

@@ -300,7 +300,7 @@ namespace Voussoir
     for (unsigned int d = 0; d < 3; ++d)
       if (surface[d])
         {
-          // the incident wave comes before its response at the surface
+          // the incident wave precedes its response at the surface
           const unsigned int delay = static_cast<unsigned int>(
             std::ceil(2. * column.travel_time() / time_step));
           TimeSeries target{time_step, std::vector<double>(delay, 0.)};

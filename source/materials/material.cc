@@ -28,9 +28,8 @@ namespace Voussoir
     prm.add_parameter(
       "Damping factor",
       damping,
-      "Damping of this material relative to the section "
-      "\"Damping\"; 0 for none. Mass-proportional damping is the same in all "
-      "materials.",
+      "Factor on the damping of section \"Damping\" for this material; 0 for "
+      "none. Mass-proportional damping is the same in all materials.",
       Patterns::Double(0., 4.));
     prm.add_parameter("Static factor",
                       static_factor,

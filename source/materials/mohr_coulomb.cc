@@ -14,10 +14,10 @@ namespace Voussoir
     /**
      * In principal stresses s1 >= s2 >= s3, the planes
      *   (si - sj) + (si + sj) sin phi <= 2 c cos phi   (i < j)
-     * and the tension cut-off si <= ft, at or before the apex. Flow goes along
-     * (ei - ej) + (ei + ej) sin psi, and ei on the cut-off. Planes, edges and
-     * corners are the sets of up to three of these six; on each the return is
-     * linear; the admissible one has no negative multiplier and violates no
+     * and the tension cut-off si <= ft, at or before the apex. Plastic flow is
+     * along (ei - ej) + (ei + ej) sin psi, and ei on the cut-off. Planes, edges
+     * and corners are the sets of up to three of these six; on each the return
+     * is linear; the admissible one has no negative multiplier and violates no
      * plane.
      */
     struct MohrCoulomb : PerfectPlasticity

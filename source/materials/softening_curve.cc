@@ -201,7 +201,7 @@ namespace Voussoir
     const double last_stress = progress.intact * young_modulus * last;
 
     // The energy of the curve and that of the step are linear along each piece,
-    // as is their difference: continue until it vanishes.
+    // as is their difference: continue until this difference vanishes.
     Point  now  = old;
     double used = 0.;
     for (;; ++node)

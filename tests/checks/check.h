@@ -9,8 +9,8 @@ namespace Voussoir
 {
   /**
    * The lines a test prints: one quantity each, with its reference and a
-   * verdict. Values are rounded to four digits, so that the reference output
-   * holds on other processors.
+   * verdict. Values are rounded to four digits, so that the reference output is
+   * valid on other processors.
    */
   class Verdicts
   {

@@ -8,11 +8,11 @@
 namespace Voussoir
 {
   /**
-   * Horizontal layers under a plane wave that comes up vertically, in closed
-   * form (Haskell's matrices; Kramer 1996, section 7.2), over the complex
-   * frequency s. Damping follows from the entries of the case: under Maxwell
-   * damping the modulus of a constant ratio xi (Kjartansson 1979),
-   * (s/w0)^(2 gamma) / cos(pi gamma), gamma = atan(2 xi) / pi.
+   * Horizontal layers under a vertically rising plane wave, in closed form
+   * (Haskell's matrices; Kramer 1996, section 7.2), over the complex frequency
+   * s. Damping follows from the entries of the case: under Maxwell damping the
+   * modulus of a constant ratio xi (Kjartansson 1979), (s/w0)^(2 gamma) /
+   * cos(pi gamma), gamma = atan(2 xi) / pi.
    */
   class LayeredGround
   {

@@ -150,8 +150,8 @@ namespace Voussoir
         return -test.stress[2][2];
       }
 
-      /** All planes, edges and corners: no stress beyond the surface, none
-       *  below it after a return. */
+      /** All planes, edges and corners: after a return, the stress is neither
+       *  beyond nor inside the surface. */
       void
       evaluate_random_returns(const Material &material,
                               Verdicts       &verdicts) const

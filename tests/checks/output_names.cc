@@ -248,8 +248,8 @@ namespace Voussoir
         return summary;
       }
 
-      /** Name and text of each file, without the lines in which deal.II says
-       *  when it wrote it. */
+      /** Name and text of each file, without the lines in which deal.II writes
+       *  the time. */
       static std::map<std::string, std::string>
       files_in(const std::string &folder)
       {

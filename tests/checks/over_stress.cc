@@ -65,7 +65,7 @@ namespace Voussoir
           .at("front");
       }
 
-      // s sin(w t), n periods T: n T (1/2 - asin(r f/s)/pi) above r f
+      // s sin(w t) over n periods T is above r f for n T (1/2 - asin(r f/s)/pi)
       void
       sine(const std::string &which) const
       {

@@ -36,8 +36,8 @@ namespace Voussoir
     }
 
 
-    /** A wave exp i(w t - k x + q z) that goes down, in rock over a level
-     *  boundary at z = 0 with normal and tangential impedances. */
+    /** A downward wave exp i(w t - k x + q z), in rock over a level boundary at
+     *  z = 0 with normal and tangential impedances. */
     struct PlaneWave
     {
       const std::string      kind;

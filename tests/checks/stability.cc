@@ -43,7 +43,7 @@ namespace Voussoir
              const MPI_Comm       communicator) const
       {
         const auto parameters = make_case(file);
-        // a file may not ask for more than one
+        // in a file the factor is at most one
         parameters->time.safety_factor = factor;
         const auto simulation = make_simulation(*parameters, communicator);
         State     &state      = simulation->run.state;

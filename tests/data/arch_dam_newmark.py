@@ -320,7 +320,7 @@ def integral(values, step):
 
 
 def response(model, motion, points, step, every, massless, all_levels):
-    """Absolute displacements of points [m], by time, every so many steps."""
+    """Absolute displacements of points [m], by time, at intervals of some steps."""
     a, b = rayleigh()
     concrete, rock = model.stiffness
     times = np.arange(0, motion[-1, 0] + step / 2, step)

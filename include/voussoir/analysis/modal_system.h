@@ -87,7 +87,7 @@ namespace Voussoir
     displacement(const Motion &motion) const;
 
   private:
-    /** Zero where nothing can move. */
+    /** Finds the mass of the structure; zero where it cannot move. */
     void
     find_structural_mass();
 

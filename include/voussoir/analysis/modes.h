@@ -33,7 +33,7 @@ namespace Voussoir
      *  sum of the effective masses of all modes [kg]. */
     dealii::Tensor<1, 3> moving_mass;
 
-    /** By the name of a measured shape, the mode that is nearest to it. */
+    /** The mode nearest to each measured shape, by the name of the shape. */
     nlohmann::json measured_shapes;
 
     /** [Hz] */

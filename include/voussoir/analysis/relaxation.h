@@ -23,7 +23,7 @@ namespace Voussoir
      * @param mass        of the run; nodes that the static stage fixes get none
      * @param terms       of the run
      * @param constraints of hanging nodes and nodes that the static stage fixes
-     * @param springs     whether the absorbing boundary stands on its springs
+     * @param springs whether springs support the absorbing boundary
      */
     Relaxation(const Discretization                    &discretization,
                const InternalForce                     &internal_force,

@@ -86,8 +86,8 @@ namespace Voussoir
       return std::sqrt(v[1] * v[1] + v[2] * v[2]);
     }
 
-    /** Finds the contact force of a point from the gap without it; there is
-     *  none before its interface is grouted. */
+    /** Finds the contact force of a point from the gap without this force;
+     *  before its interface is grouted the force is zero. */
     void
     solve_point(ContactPoint               &point,
                 const unsigned int          number,

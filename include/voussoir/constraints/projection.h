@@ -26,7 +26,7 @@ namespace Voussoir
       /** Work done on the body in this step [J]. */
       Sum work;
 
-      /** How far the constraint is violated after the correction [m]. */
+      /** Violation of the constraint after the correction [m]. */
       double violation = 0.;
     };
 

@@ -9,8 +9,8 @@ namespace Voussoir
    * The interfaces in static equilibrium, by the augmented Lagrangian of Alart
    * and Curnier (1991): the force of a point is the projection of F - r g to
    * the admissible forces of its law , with the gap g, a spring r and the
-   * multiplier F. Once F equals that force, the law holds exactly, whatever r
-   * is. Slip counts from the last stick, as in a step of the run.
+   * multiplier F. Once F equals that force, the law holds exactly, for any r.
+   * Slip counts from the last stick, as in a step of the run.
    */
   class StaticContact
   {

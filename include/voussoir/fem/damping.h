@@ -68,9 +68,9 @@ namespace Voussoir
   {
   public:
     /**
-     * @param natural_frequencies at those of the two modes that the parameters
-     *   name Rayleigh damping has its ratio, and the first is the reference of
-     *   Maxwell damping, if the parameters ask for it [Hz]
+     * @param natural_frequencies [Hz]: Rayleigh damping has its ratio at those
+     *   of the two modes that the parameters name; the first one is the
+     *   reference of Maxwell damping, if the parameters ask for it
      */
     explicit Damping(const DampingParameters   &parameters,
                      const std::vector<double> &natural_frequencies = {});
@@ -117,8 +117,8 @@ namespace Voussoir
     n_branches() const;
 
     /**
-     * gamma(dt) of the stable step: the cells act as if stiffer by
-     * 1 + s gamma.
+     * gamma(dt) of the stable step: damping makes the cells stiffer by the
+     * factor 1 + s gamma.
      */
     double
     stiffening(const double dt) const;
@@ -132,8 +132,9 @@ namespace Voussoir
     modulus_ratio(const double frequency, const double factor = 1.) const;
 
     /** Factor on the stiffness that makes the given moduli hold at the
-     *  reference frequency: as storage modulus or, if this is that of a mode,
-     *  so that the free vibration in the mode has it. */
+     *  reference frequency: as storage modulus or, if this frequency is that of
+     *  a mode, so that the free vibration in the mode has the given frequency.
+     */
     double
     stiffness_scale(const double factor) const;
 

@@ -26,10 +26,10 @@ namespace Voussoir
              const dealii::Point<3>     &point);
 
   /**
-   * Interpolation weights at points of the mesh. Every rank holds those of its
-   * own nodes; the sum over the ranks is the value at the point. If results are
-   * reproducible, each node has a part of its own: the parts of a point are the
-   * same on any partition, and are summed last and in order.
+   * Interpolation weights at points of the mesh. Every rank has the weights of
+   * its own nodes; the sum over the ranks is the value at the point. If results
+   * are reproducible, each node has a part of its own: the parts of a point are
+   * the same on any partition, and are summed last and in order.
    */
   class PointWeights
   {

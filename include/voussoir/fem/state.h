@@ -30,7 +30,8 @@ namespace Voussoir
     Sum loss_by_mass;        // mass-proportional damping
   };
 
-  /** All that changes with time; a checkpoint holds these and nothing else. */
+  /** All quantities that change with time, which are the contents of a
+   *  checkpoint. */
   struct State
   {
     /** Displacement u_n at `time` [m]. */

@@ -79,7 +79,7 @@ namespace Voussoir
   {
     GroundMotionType type = GroundMotionType::none;
 
-    /** Not used by the program; see its entry. */
+    /** Place of the given motion. */
     MotionPlace given_at = MotionPlace::outcrop;
 
     /** The entries "Peak acceleration x", y and z. */

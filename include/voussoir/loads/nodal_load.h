@@ -8,7 +8,7 @@ namespace Voussoir
 {
   /**
    * Forces on nodes during the motion: a load, the free field at the absorbing
-   * boundary, water. The time step goes through a list of them.
+   * boundary, water. The time step iterates over a list of them.
    */
   class NodalLoad
   {

@@ -15,7 +15,7 @@ namespace Voussoir
    * coefficients and its coupling to the solid. Its equation, with the pressure
    * impulse I = integral of p dt, 1/(rho c^2) M dp/dt + C p = -1/rho K I - sum
    * A.v ,  dI/dt = p, with the wall's velocity v and the nodal area vectors A
-   * out of the water; C holds the radiating end, 1/(rho c) per area, and the
+   * out of the water; C contains the radiating end, 1/(rho c) per area, and the
    * absorbing bottom; the end acts on the pressure less its free field
    * (EndMotion). The forces on the solid are A p. WaterMotion integrates the
    * equation in time.

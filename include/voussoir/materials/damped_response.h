@@ -54,11 +54,11 @@ namespace Voussoir
    *   energy sigma : e_e / 2 of the elastic strain e_e, the law dissipates
    *   exactly
    *     (sigma_a : e_e,b - sigma_b : e_e,a)/2 + (sigma_a + sigma_b) : de_p/2 .
-   *   The loss that the law itself reports goes into the balance instead, so
-   *   that the balance reveals a law that reports too little or too much. Where
-   *   no internal variable has changed the law is elastic and loses nothing:
-   *   the remainder is then the error of the trapezoidal rule where cracks open
-   *   and close, and is added to the loss of closing.
+   *   The balance uses the loss that the law itself reports instead, so that it
+   *   reveals a law that reports too little or too much. Where no internal
+   *   variable has changed the law is elastic and loses nothing: the remainder
+   *   is then the error of the trapezoidal rule where cracks open and close,
+   *   and is added to the loss of closing.
    * - (s_a + s_b) n . B du . n / 2 on the viscosity of closing, all of it lost.
    * - (sigma_a + sigma_b) : (B du - de)/2 on damping. Of this work, summed up
    *   since the static state, damping stores

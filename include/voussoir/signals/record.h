@@ -38,8 +38,8 @@ namespace Voussoir
   };
 
   /**
-   * Read an accelerogram and return it in m/s2. Two kinds of file are told
-   * apart by their content:
+   * Read an accelerogram and return it in m/s2. Two kinds of file are
+   * distinguished by their content:
    * - AT2 (PEER): header lines that give NPTS and DT in any of the usual
    *   spellings, then NPTS numbers, any number per line;
    * - columns: times and one or more accelerations, separated by blanks,

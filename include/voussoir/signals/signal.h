@@ -9,7 +9,7 @@ namespace Voussoir
   /**
    * One component of a ground motion as a function of time: displacement [m],
    * velocity [m/s] and acceleration [m/s2], each the exact derivative of the
-   * one before. Any time may be asked for; the ground is at rest at the start.
+   * one before. Any time is admitted; the ground is at rest at the start.
    */
   class Signal
   {

@@ -361,7 +361,8 @@ namespace Voussoir
             return;
           }
         log.line("  materials crack or yield");
-        // interfaces start anew, as the load path does
+        // interfaces return to the beginning of the stage, as the load path
+        // does
         if (model.contact != nullptr)
           model.contact->set_points(before);
       }

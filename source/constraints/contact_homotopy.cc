@@ -74,8 +74,8 @@ namespace Voussoir
       }
 
     private:
-      /** The state at t = 0: all points are farther open than bonds can pull
-       *  them. Random forces and gaps vanish along the homotopy, so that no two
+      /** The state at t = 0: all points are open by more than bonds can close.
+       *  Random forces and gaps vanish along the homotopy, so that no two
        *  points reach the end of a piece at once. */
       void
       start()

@@ -58,8 +58,8 @@ namespace Voussoir
     }
 
 
-    /** Minus the derivative of the force by the gap @p b, with the force that
-     *  the law has been found to have at this gap and spring. */
+    /** Minus the derivative of the force by the gap @p b for this spring, given
+     *  the force of the law at this gap. */
     Tensor<2, 3>
     tangent_of(const ContactForce  &found,
                const Tensor<1, 3>  &b,

@@ -291,7 +291,7 @@ namespace Voussoir
         internal::MatrixFreeFunctions::MappingInfo<3, double, Lanes> &>(
         matrix_free.get_mapping_info())
         .cell_data[0];
-    // FEEvaluation::reinit takes the address of the first
+    // FEEvaluation::reinit takes the address of the first entry
     std::fill(geometry.data_index_offsets.begin(),
               geometry.data_index_offsets.end(),
               0);

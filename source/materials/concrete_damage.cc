@@ -268,7 +268,7 @@ namespace Voussoir
                                                 element_length));
       }
 
-      /** Uniaxial compression as severe as the principal stresses s-, largest
+      /** Equivalent uniaxial compression of the principal stresses s-, largest
        *  first. */
       template <typename Number>
       Number

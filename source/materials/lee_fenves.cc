@@ -174,8 +174,8 @@ namespace Voussoir
         return all > 0. ? positive / all : 0.;
       }
 
-      /** Uniaxial compression as severe as a stress, given strengths in tension
-       *  and crushing. */
+      /** Equivalent uniaxial compression of a stress, given strengths in
+       *  tension and crushing. */
       template <typename Number>
       Number
       equivalent_compression(const Number &first,

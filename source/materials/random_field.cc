@@ -42,7 +42,7 @@ namespace Voussoir
       "Modulus variation",
       modulus_variation,
       "Coefficient of variation of the moduli over space: standard deviation "
-      "over mean, which is the value that the material has. 0: uniform [-].",
+      "over mean; the mean is the value of the material. 0: uniform [-].",
       Patterns::Double(0., 1.));
     prm.add_parameter(
       "Strength variation",

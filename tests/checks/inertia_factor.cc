@@ -91,7 +91,7 @@ namespace Voussoir
         const auto  modes = make_simulation(*still, communicator);
         const Mode &mode  = modes->modes.list[0];
 
-        // modes alone take no steps
+        // a run of modes alone takes no steps
         const auto parameters =
           make_case(file.with({entry(factor), "Modes/Number=0"}));
         const auto simulation = make_simulation(*parameters, communicator);

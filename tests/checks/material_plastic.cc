@@ -44,8 +44,8 @@ namespace Voussoir
                      one = 2. * cohesion * std::cos(phi) / (1. - std::sin(phi));
         const double apex = cohesion / std::tan(phi);
 
-        // the same in compression for the planes and the cone that is fitted
-        // there
+        // in compression the planes and the cone that is fitted there have the
+        // same strength
         if (surface != "plane strain cone")
           {
             verdicts.near("uniaxial compression",

@@ -201,7 +201,8 @@ namespace Voussoir
     void
     check_response_spectrum(Verdicts &verdicts)
     {
-      // suddenly constant: 1 + exp(-pi xi / sqrt(1 - xi^2))
+      // constant acceleration, applied suddenly: 1 + exp(-pi xi / sqrt(1 -
+      // xi^2))
       for (const double xi : {0., 0.05, 0.2})
         verdicts.near(
           "suddenly constant acceleration, amplification",

@@ -170,8 +170,8 @@ namespace Voussoir
 
 
     /**
-     * An observer that has been used in a run, or a part of one, gives the same
-     * results of another run as a new observer.
+     * An observer that has been used in a run, or a part of one, gives, for
+     * another run, the same results as a new observer.
      */
     class ObserversAgain : public Check
     {

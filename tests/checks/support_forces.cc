@@ -116,7 +116,7 @@ namespace Voussoir
         verdicts.below("its error over time",
                        of_fixed / (2. * factor * velocity(end - 20. / speed)),
                        2. * tolerance);
-        // sampled between the lines of the table, too, not in every step
+        // sampled also between the lines of the table, but not in every step
         const auto   summary = read_summary("rod_waves");
         const double last    = double(summary.at("end time [s]")) -
                             double(summary.at("time step [s]"));

@@ -32,7 +32,7 @@ class HalfSpace:
         self.kp = self.ks / np.sqrt(3)
 
     def nu(self, k):
-        """Wave numbers downwards of P and S."""
+        """Vertical wave numbers of P and S."""
         return np.sqrt(self.kp**2 - k**2 + 0j), np.sqrt(self.ks**2 - k**2 + 0j)
 
     def thrown_back(self, k, wave):

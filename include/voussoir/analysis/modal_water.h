@@ -51,8 +51,8 @@ namespace Voussoir
                  const Vector &motion,
                  const double *water_motion) const;
 
-    /** Flux of a floor which meets no solid and moves by one in this direction,
-     * as a rigid base moves it. */
+    /** Flux of a floor without solid below under a unit motion of a rigid base
+     * in this direction. */
     void
     add_momentum_of_floor(Vector            &momentum,
                           double            *water_momentum,

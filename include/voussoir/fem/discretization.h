@@ -334,7 +334,7 @@ namespace Voussoir
     for (const auto &buffer : incoming)
       for (std::size_t i = 0; i < buffer.second.size(); i += sizeof(Item))
         items.push_back(buffer.second.data() + i);
-    // the records of one node by themselves
+    // sorted, so that the order of the records of a node is reproducible
     if (reproducible)
       std::sort(items.begin(), items.end(), [](const char *a, const char *b) {
         return std::memcmp(a, b, sizeof(Item)) < 0;

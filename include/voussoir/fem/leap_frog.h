@@ -18,7 +18,7 @@ namespace Voussoir
     double time_step; // dt [s]
     bool   central = true;
 
-    /** The part of dt c that joins the mass on the left-hand side. */
+    /** The part of dt c that is added to the mass on the left-hand side. */
     double
     implicit_share() const
     {

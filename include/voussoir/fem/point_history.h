@@ -13,7 +13,7 @@ namespace Voussoir
   /**
    * State of an integration point that has left the elastic range, beside the
    * internal variables of its law: its crack, and its last step, to which the
-   * energy of the next one refers. See DampedResponse.
+   * energy of the next step refers. See DampedResponse.
    */
   struct ActivePoint
   {

@@ -48,7 +48,7 @@ namespace Voussoir
     void
     load(const std::vector<double> &numbers);
 
-    /** Where a level lies: interpolation weights of the nodes around it. */
+    /** Place of a level: interpolation weights of the nodes around it. */
     struct Interpolation
     {
       unsigned int        first_node;

@@ -5,7 +5,8 @@
 
 namespace Voussoir
 {
-  /** How a crack would open, or concrete be crushed, under a stress. */
+  /** Direction in which a crack would open, or concrete be crushed, under a
+   *  stress. */
   template <typename Number>
   struct CrackDirections
   {

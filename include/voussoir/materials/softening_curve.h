@@ -114,8 +114,8 @@ namespace Voussoir
               const double band,
               CurveMemory &memory) const;
 
-    /** At an effective strain s/E [1] in a band of this width [m]; elastic
-     *  below the limit. */
+    /** State at an effective strain s/E [1] in a band of this width [m];
+     *  elastic below the limit. */
     Point
     at(const double strain, const double band) const;
 

@@ -33,7 +33,7 @@ namespace Voussoir
   {
     SpectrumShape shape = SpectrumShape::hydropower_code;
 
-    /** Of the code's shape: plateau [-], its end [s], exponent behind it. */
+    /** Of the code's shape: plateau [-], its end [s], exponent of the decay. */
     double maximum_amplification = 2.5;
     double characteristic_period = 0.2;
     double decay_exponent        = 0.6;

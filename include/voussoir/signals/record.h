@@ -30,7 +30,7 @@ namespace Voussoir
   {
     AccelerationUnit unit = AccelerationUnit::g;
 
-    /** Of a file with a single column [s]; 0 for all others. */
+    /** Time step of a file with a single column [s]; 0 for all other files. */
     double time_step = 0;
 
     /** The column to take, counted from 1 without the time column. */

@@ -25,7 +25,8 @@ namespace Voussoir
     double displacement = 0., time = 0.;
   };
 
-  /** Of the oscillator of a natural period [s], as response_spectrum(). */
+  /** Peak response of the oscillator of a natural period [s], computed as by
+   *  response_spectrum(). */
   PeakResponse
   peak_response(const TimeSeries &acceleration,
                 const double      period,

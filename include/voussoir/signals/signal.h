@@ -116,7 +116,8 @@ namespace Voussoir
     end() const override;
 
   private:
-    /** Fading factor of the displacement: its derivative of that order. */
+    /** The derivative of that order of the fading factor of the displacement.
+     */
     double
     fade(const unsigned int order, const double time) const;
 

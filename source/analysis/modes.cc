@@ -19,7 +19,7 @@ namespace Voussoir
   namespace
   {
     /** The wanted modes and some more, which speed up the iteration. The model
-     *  must have three times as many unknowns. */
+     *  must have three times as many unknowns as wanted modes. */
     unsigned int
     block_size(const ModalSystem &system, const unsigned int number)
     {

@@ -27,14 +27,14 @@ namespace Voussoir
       supports,
       "Supports of the absorbing faces in the static stages: fixed, fixed "
       "along their normal (roller), or on the springs of the boundary. Their "
-      "reactions stay when the faces begin to absorb.");
+      "reactions are kept as forces when the faces begin to absorb.");
     prm.add_parameter(
       "Load increments",
       increments,
       "Least number of increments in which the loads of a stage grow where "
       "materials crack or yield in it, as cracks and plastic flow depend on "
-      "the path; they are halved where the return mapping of the materials "
-      "requires it. Stages without cracks and yielding take one.",
+      "the path; increments are halved where the return mapping of the "
+      "materials requires it. Stages without cracks and yielding take one.",
       Patterns::Integer(1, 1000));
     prm.add_parameter("Relative tolerance",
                       tolerance,

@@ -88,7 +88,7 @@ namespace Voussoir
         return cube;
       }
 
-      /** Cubes that a point may fall into, whatever its round-off. */
+      /** Cubes that a point may fall into with any round-off. */
       std::set<Cube>
       near(const Point<3> &p, const double tolerance) const
       {

@@ -14,7 +14,7 @@ namespace Voussoir
 
   namespace
   {
-    // All in the units of ContactEquations.
+    // Units are those of ContactEquations.
 
     // A residual this large is round-off.
     constexpr double round_off = 1e-12;
@@ -62,7 +62,7 @@ namespace Voussoir
             start();
             for (unsigned int j = 0; j < max_corrections; ++j)
               {
-                // a homotopy that loses its path is mostly near its end
+                // a homotopy that loses its path mostly does so near its end
                 const bool arrived = follow();
                 finish(best);
                 if (!arrived || best.residual <= round_off)
@@ -165,7 +165,7 @@ namespace Voussoir
         return false;
       }
 
-      /** Whether the shear of no point turns much. */
+      /** Whether the shear of every point nearly keeps its direction. */
       bool
       keeps_direction(const Vector &next) const
       {

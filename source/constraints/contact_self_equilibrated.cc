@@ -13,7 +13,7 @@ namespace Voussoir
 
   namespace
   {
-    // Share of the distance to a limit that is left, so that no round-off leads
+    // Share of the distance to a limit that remains, so that no round-off leads
     // beyond it.
     constexpr double margin = 1e-6;
 
@@ -28,7 +28,8 @@ namespace Voussoir
     // change little from step to step.
     constexpr double largest_share = 0.5;
 
-    /** How the force of a point may change with its status and motion kept. */
+    /** Admissible changes of the force of a point that keep its status and
+     *  motion. */
     class FreeForce
     {
     public:

@@ -117,8 +117,9 @@ namespace Voussoir
                       "part of a name, as in \"joint *\".");
     prm.add_parameter("Between",
                       between,
-                      "Two cell sets instead: the faces between them are the "
-                      "surface, under the name of the interface.");
+                      "Two cell sets, instead of \"Face sets\": the faces "
+                      "between them are the surface, under the name of the "
+                      "interface.");
     prm.add_parameter("Initial gap",
                       initial_gap,
                       "Opening at the start, or after grouting; an interface "

@@ -15,7 +15,7 @@ namespace Voussoir
 
 
     // Shear per pressure with which a point that closes regains cohesion, and
-    // the factor on it from one multiplier to the next.
+    // the factor on this ratio from one multiplier to the next.
     constexpr double cohesion_per_pressure = 10., over_relaxation = 10.;
 
 

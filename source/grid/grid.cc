@@ -236,7 +236,8 @@ namespace Voussoir
                                          serial,
                                          SparsityTools::Partitioner::metis);
     };
-    // one rank of a machine makes the whole mesh, and sends the others theirs
+    // one rank of a machine makes the whole mesh, and sends the others their
+    // parts
     const unsigned int n_ranks =
       Utilities::MPI::n_mpi_processes(mpi_communicator);
     const auto description = TriangulationDescription::Utilities::

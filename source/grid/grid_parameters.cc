@@ -47,8 +47,8 @@ namespace Voussoir
       partition,
       "How the cells are distributed to the ranks; the results are the same. "
       "With p4est every rank stores the mesh before refinement; with METIS one "
-      "rank of each machine makes the refined mesh, and sends the others "
-      "theirs, which takes less memory for a fine mesh from a file.");
+      "rank of each machine makes the refined mesh, and sends the others their "
+      "parts, which takes less memory for a fine mesh from a file.");
     prm.add_parameter(
       "Count partitions",
       counted_ranks,

@@ -29,10 +29,10 @@ namespace Voussoir
       prm,
       "Coefficients",
       coefficients,
-      "Normal and tangential spring per area, with the distance r: paper "
-      "E/2r, G/2r; Liu 3D 4/3 G/r, 2/3 G/r; Liu 2D G/r, G/2r; Deeks-Randolph "
-      "G/r, G/2r; Du-Zhao (lambda+2G)/1.8r, G/1.8r with dashpots 1.1 rho c. "
-      "The others have dashpots rho c.");
+      "Normal and tangential spring per area, with the distance r: paper E/2r, "
+      "G/2r; Liu 3D 4/3 G/r, 2/3 G/r; Liu 2D G/r, G/2r; Deeks-Randolph G/r, "
+      "G/2r; Du-Zhao (lambda+2G)/1.8r, G/1.8r with dashpots 1.1 rho c. The "
+      "other sets have dashpots rho c.");
     prm.add_parameter(
       "Source point",
       source,

@@ -22,9 +22,9 @@ namespace Voussoir
 
 
     /**
-     * J_1(t) / t. It is 1/(i pi) times the integral of sqrt(1 + z^2) exp(z t)
-     * from -i to i; along the left unit semicircle z = i tanh(u + i pi/4) the
-     * exponentials decay, and the trapezoidal rule in u converges
+     * J_1(t) / t. This function is 1/(i pi) times the integral of sqrt(1 + z^2)
+     * exp(z t) from -i to i; along the left unit semicircle z = i tanh(u + i
+     * pi/4) the exponentials decay, and the trapezoidal rule in u converges
      * exponentially. The sum is accurate to 2e-4, and to 2e-3 within 1e-5 of
      * the frequency 1.
      */

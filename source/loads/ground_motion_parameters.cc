@@ -249,7 +249,7 @@ namespace Voussoir
         throw UserError("\"Peak acceleration " + axis_names[c] +
                         "\" in section \"Ground motion\" is \"" + as_recorded +
                         "\", but the target spectrum of a record that is "
-                        "matched is a multiple of it; set it.");
+                        "matched is a multiple of this peak; give a number.");
     match.check(spectrum.spectrum, "Ground motion/Spectrum");
     if (spectrum.vertical.shape != SpectrumShape::as_horizontal)
       match.check(spectrum.vertical, "Ground motion/Spectrum/Vertical");

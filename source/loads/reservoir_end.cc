@@ -148,8 +148,8 @@ namespace Voussoir
         "the \"Radiating end\" in section \"Reservoir\", or cells before "
         "it, lean by up to ",
         std::asin(std::min(leans, 1.)) * 180. / numbers::PI,
-        " degrees; the far reservoir behind it is that of an upright end "
-        "on which cells stand at right angles");
+        " degrees; the far reservoir behind it is computed for an upright end "
+        "with cells at right angles to it");
 
     std::map<Dof, unsigned int> number;
     for (unsigned int i = 0; i < dof_of_node.size(); ++i)

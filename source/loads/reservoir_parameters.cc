@@ -48,8 +48,8 @@ namespace Voussoir
       prm,
       "Far reservoir",
       far_reservoir,
-      "Compressible: model of the reservoir behind the radiating end. "
-      "Channel: the section of the end continues without end, and takes no "
+      "Compressible: model of the reservoir behind the radiating end. Channel: "
+      "the section of the end continues to infinity; the channel takes no "
       "energy below its cut-off frequency, sound speed / (4 depth) where the "
       "bottom is level, except by absorption at its bottom. Plane waves: a "
       "dashpot of density times sound speed, as in most programs, which takes "

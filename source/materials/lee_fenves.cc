@@ -113,10 +113,10 @@ namespace Voussoir
         prm.add_parameter(
           "Stiffness recovery",
           recovery,
-          "Share w of the stiffness that comes back when a "
-          "crack closes; Lee and Fenves take 1. With 0 parts on both sides of "
-          "a crack through the body penetrate each other. With 1 a crack "
-          "takes 4 % more energy, as it is relieved of lateral stress too.",
+          "Share w of the stiffness that comes back when a crack closes; Lee "
+          "and Fenves take 1. With 0, parts on both sides of a crack through "
+          "the body penetrate each other. With 1 a crack takes 4 % more "
+          "energy, as it is relieved of lateral stress too.",
           Patterns::Double(0., 1.));
       }
 

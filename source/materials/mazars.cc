@@ -73,7 +73,7 @@ namespace Voussoir
         tension = tension.of_static_state(young_modulus);
       }
 
-      /** Stress and inelastic strain stay, as in SplitDamage. */
+      /** Stress and inelastic strain are kept, as in SplitDamage. */
       SymmetricTensor3<double>
       hand_over(const SymmetricTensor3<double> &strain,
                 const PointResponse<double>    &response,

@@ -52,7 +52,8 @@ namespace Voussoir
       return result;
     };
 
-    // Newton's method with differences; halved steps where it does not help
+    // Newton's method with differences; steps are halved where the residual
+    // does not fall
     dealii::Vector<double> residual = miss(strain);
     const double           goal     = 1e-10 * modulus * 1e-4;
     for (unsigned int iteration = 0;

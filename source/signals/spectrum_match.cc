@@ -90,7 +90,7 @@ namespace Voussoir
                            std::sin(damped_omega * t) / damped_omega;
       }
 
-      /** Samples between which the wavelet is, of a series. */
+      /** First and last sample of the wavelet in a series. */
       std::pair<std::size_t, std::size_t>
       samples(const TimeSeries &series) const
       {

@@ -118,7 +118,7 @@ namespace Voussoir
           }
       }
 
-      /** Along x; the end is that of the largest x. */
+      /** Slip along x; the end is at the largest x. */
       static Slip
       slip(const Simulation &simulation)
       {

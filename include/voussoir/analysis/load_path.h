@@ -146,8 +146,8 @@ namespace Voussoir
     double
     dissipation(const MaterialMemory &memory) const;
 
-    /** Whether materials have dissipated more than this [J] on any rank:
-     *  whether they have cracked or yielded since. */
+    /** Whether materials have dissipated more than this [J] on any rank, that
+     *  is, have cracked or yielded since. */
     bool
     dissipated(const MaterialMemory &memory, const double before = 0.) const;
 

@@ -9,10 +9,10 @@ namespace Voussoir
   /**
    * Cells of water that take part in the natural modes. With the pressure
    * Laplacian H, the storage Q of a pressure, volume/(rho c^2), and the flux
-   * S^T u that the wall's displacement u makes, the pressure of a motion at
+   * S^T u that the wall's displacement u causes, the pressure of a motion at
    * omega is (1/rho H - omega^2 Q) p = omega^2 S^T u .
    *
-   * Incompressible, Q = 0, it is an added mass, M_a = rho S H^-1 S^T. With
+   * Incompressible water, Q = 0, is an added mass, M_a = rho S H^-1 S^T. With
    * H^-1, the equations of solid and compressible water are symmetric, too:
    *   | K 0 | |u|           /| M 0 |       |S|                \ |u|
    *   | 0 Q | |p| = omega^2 ( | 0 0 | + rho |Q| H^-1 (S^T  Q)  ) |p| ,

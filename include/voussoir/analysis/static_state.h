@@ -97,12 +97,12 @@ namespace Voussoir
    * Each stage is solved at once with elastic materials first, by multigrid,
    * with interfaces in Newton steps. Where materials crack or yield under its
    * loads, these and the temperature grow in increments, as cracks and plastic
-   * flow depend on the path, and equilibrium is searched with the materials
-   * (see EquilibriumSearch). Where that fails, it is found by dynamic
-   * relaxation, which at the end of a stage also checks whether a state with
-   * interfaces is in equilibrium. An increment is halved while the return
-   * mapping of the materials differs between one step and two. An interface is
-   * grouted at the end of the stage that names its load.
+   * flow depend on the path, and equilibrium is searched for with the laws of
+   * the materials (see EquilibriumSearch). Where this search fails, equilibrium
+   * is found by dynamic relaxation, which at the end of a stage also checks
+   * whether a state with interfaces is in equilibrium. An increment is halved
+   * while the return mapping of the materials differs between one step and two.
+   * An interface is grouted at the end of the stage that names its load.
    *
    * Throws LostEquilibrium if no equilibrium is found.
    *

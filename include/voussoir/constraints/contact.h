@@ -97,7 +97,7 @@ namespace Voussoir
 
     /** Joins the interfaces that are grouted after one of these loads; returns
      *  whether there are any. Called on all ranks.
-     *  @param displacement at which their gap and slip begin */
+     *  @param displacement from which gap and slip count */
     bool
     grout(const std::vector<std::string> &loads, const Vector &displacement);
 

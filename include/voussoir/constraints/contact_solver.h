@@ -52,8 +52,8 @@ namespace Voussoir
           std::vector<dealii::Tensor<1, 3>> &displacement,
           std::vector<dealii::Tensor<1, 3>> &force);
 
-    /** Part that the bars at a point may take of dt^2 lambda / 4, which must
-     *  stay below one for stability. */
+    /** Share of the bars at a point in dt^2 lambda / 4, which must stay below
+     *  one for stability. */
     double
     bar_share_of_stable_step(const ContactPoints &contact,
                              const unsigned int   point) const;

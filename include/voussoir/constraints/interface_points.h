@@ -36,7 +36,7 @@ namespace Voussoir
 
     /** Joins the interfaces that are grouted after one of these loads; returns
      *  whether there are any. Called on all ranks.
-     *  @param displacement at which their gap and slip begin */
+     *  @param displacement from which gap and slip count */
     bool
     grout(const std::vector<std::string> &loads, const Vector &displacement);
 
@@ -88,7 +88,7 @@ namespace Voussoir
     set_uplift(const unsigned int interface);
 
     /** Grouts an interface: its sides are in contact from now on; gap and slip
-     * begin at this displacement of the nodes of the clusters. */
+     * count from this displacement of the nodes of the clusters. */
     void
     join(const unsigned int                       interface,
          const std::vector<dealii::Tensor<1, 3>> &displacement);

@@ -11,7 +11,7 @@ namespace Voussoir
   /**
    * A constraint that corrects the predicted motion at the end of each step
    * (contact, prescribed motion): it gets the displacement and velocity
-   * predicted without it and returns its impulse and work.
+   * predicted without the constraint and returns its impulse and work.
    */
   class Projection
   {
@@ -72,8 +72,8 @@ namespace Voussoir
       return {{false, false, false}};
     }
 
-    /** Corrects @p state at the end of a step of length @p time_step [s]; its
-     *  time is already that end. The result is of this rank. */
+    /** Corrects @p state at the end of a step of length @p time_step [s]; the
+     *  time of the state is already that end. The result is of this rank. */
     virtual Result
     project(State &state, const double time_step) = 0;
   };

@@ -100,8 +100,8 @@ namespace Voussoir
     double stiffness_coefficient = 0.;
 
     /** Viscosity for frequencies above those that the mesh carries [s]: it acts
-     *  on the velocity as the stiffness-proportional coefficient, whatever the
-     *  material's factor, and under every model. See
+     *  on the velocity as the stiffness-proportional coefficient, for any
+     *  factor of the material and under every model. See
      *  DampingParameters::mesh_viscosity. */
     double mesh_viscosity = 0.;
 

@@ -112,8 +112,8 @@ namespace Voussoir
                   const std::function<void(const ActiveCell &,
                                            const unsigned int)> &visit) const;
 
-    /** Number of a locally owned active cell among those, from zero, in their
-     *  order. */
+    /** Number of an active cell among the locally owned ones, from zero, in
+     *  their order. */
     unsigned int
     owned_cell(const Cell &cell) const;
 
@@ -123,11 +123,11 @@ namespace Voussoir
     const std::vector<std::string> &
     face_set_names() const;
 
-    /** Refuses a name that is no cell set; @p place names where it was read. */
+    /** Refuses a name that is no cell set; @p place names the entry. */
     void
     check_cell_set(const std::string &name, const std::string &place) const;
 
-    /** Refuses a name that is no face set; @p place names where it was read. */
+    /** Refuses a name that is no face set; @p place names the entry. */
     void
     check_face_set(const std::string &name, const std::string &place) const;
 

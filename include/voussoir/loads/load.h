@@ -47,16 +47,16 @@ namespace Voussoir
     add_forces(const double, NodalForces &) const
     {}
 
-    /** Whether it only makes sense in a static stage, because it would be an
-     *  impact if it were applied at once. */
+    /** Whether the load is for static stages only, because its sudden
+     *  application would be an impact. */
     virtual bool
     steady() const
     {
       return false;
     }
 
-    /** Whether it only makes sense outside of the static stages, because it
-     *  changes with time. */
+    /** Whether the load cannot belong to a static stage, because it changes
+     *  with time. */
     virtual bool
     over_time() const
     {

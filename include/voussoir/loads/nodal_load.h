@@ -21,8 +21,8 @@ namespace Voussoir
     add_forces(const double, NodalForces &)
     {}
 
-    /** Called with the state at the end of each step, for parts that move
-     *  beside the solid. */
+    /** Called with the state at the end of each step, for parts with a motion
+     *  of their own. */
     virtual void
     end_step(const State &)
     {}

@@ -15,7 +15,7 @@ namespace Voussoir
   class ReservoirEnd
   {
   public:
-    /** The water that ends here. */
+    /** Data of the water that ends at the section. */
     struct Water
     {
       double        density, speed;  // rho [kg/m3], c [m/s]

@@ -37,7 +37,7 @@ namespace Voussoir
    * where E and nu are those of waves, boundaries and one-point cells.
    *
    * A law with internal variables has n_history > 0 of them at each point,
-   * which begin at zero and stay there while it is elastic, and
+   * which begin at zero and stay there while the point is elastic, and
    *
    *     template <typename Number>
    *     PointResponse<Number>

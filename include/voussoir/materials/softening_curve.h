@@ -146,9 +146,9 @@ namespace Voussoir
 
     /**
      * Factor on the stresses, and its inverse on the displacements, which keeps
-     * the energy. It is below one where the band is so wide that a crack that
-     * opens along a straight line releases more elastic energy around it than
-     * it takes (snap-back).
+     * the energy. The factor is below one where the band is so wide that a
+     * crack that opens along a straight line releases more elastic energy
+     * around it than it takes (snap-back).
      */
     template <typename Number>
     Number
@@ -198,8 +198,8 @@ namespace Voussoir
            const std::string &what     = "a crack",
            const std::string &strength = "tensile strength") const;
 
-    /** From "strain or displacement: stress, ...", beginning at 0, for a
-     *  message named by @p place. */
+    /** Parses "strain or displacement: stress, ...", beginning at 0; @p place
+     *  names the entry. */
     static std::vector<std::pair<double, double>>
     parse(const std::string &table, const std::string &place);
 

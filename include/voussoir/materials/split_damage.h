@@ -79,7 +79,7 @@ namespace Voussoir
         compression.of_static_state(young_modulus, strength_increase);
     }
 
-    /** Stress and inelastic strain e - C^-1 : sigma stay, and so do the
+    /** Stress and inelastic strain e - C^-1 : sigma are kept, and so are the
      *  openings of cracks. */
     SymmetricTensor3<double>
     hand_over(const SymmetricTensor3<double> &strain,

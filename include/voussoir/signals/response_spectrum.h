@@ -19,7 +19,7 @@ namespace Voussoir
   };
 
   /** The largest displacement relative to the ground, with its sign [m], and
-   *  when [s]. */
+   *  its time [s]. */
   struct PeakResponse
   {
     double displacement = 0., time = 0.;

@@ -113,7 +113,7 @@ namespace Voussoir
         near_or_zero("largest principal stress [MPa]" + along,
                      faces.at("largest principal stress [MPa]"),
                      1.5);
-        // a double eigenvalue is known to the root of the round-off only
+        // a double eigenvalue is accurate to the root of the round-off only
         verdict->below("smallest principal stress [MPa]" + along,
                        faces.at("smallest principal stress [MPa]"),
                        1e-7);

@@ -40,7 +40,7 @@ def wait_for(condition, seconds=60.):
 
 
 def ranks(folder):
-    """Processes of the program in a folder, by their number."""
+    """Processes of the program in a folder, in the order of their ids."""
     found = []
     for process in pathlib.Path("/proc").glob("[0-9]*"):
         try:

@@ -9,7 +9,7 @@ with Voussoir, which it reads from a run's fields and ground_motion.csv.
            the level, of the column of faces, h that of the node
     rigid base: the forces - (M + M_w) a of all but massless rock
     boundary: springs and dashpots per area; K u + C v + sigma n of the free field,
-           which is a column of linear elements under Newmark, too
+           which is a column of linear elements, integrated by Newmark, too
 
 usage: arch_dam_newmark.py RUN [--massless] [--step DT] [--mass KIND] [--all-levels] [--write FILE]
                            [--picture FILE] [--calculix FILE]

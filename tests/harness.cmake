@@ -1,10 +1,10 @@
-# deal_ii_pickup_tests() with five cures: tests called long_* run only with
-# VOUSSOIR_ALL_TESTS; labels that ctest knows (deal.II 9.4 sets LABEL, which
-# ctest ignores); an edited parameter file, or page of doc/, runs its test
-# again; a check that finds something wrong, or a case that is refused, is run by
-# a script, since the harness shows no difference where a program fails; and a
-# test takes as many processors as it has ranks (deal.II 9.4 counts half of
-# them: ranks that wait for each other then share a core, five times as slow).
+# deal_ii_pickup_tests() with five corrections: tests called long_* run only with
+# VOUSSOIR_ALL_TESTS; labels that ctest knows (deal.II 9.4 sets LABEL, which ctest
+# ignores); an edited parameter file, or page of doc/, runs its test again; a check that
+# finds something wrong, or a case that is refused, is run by a script, since the
+# harness shows no difference when a program fails; and a test takes as many processors
+# as it has ranks (deal.II 9.4 counts half of them: ranks that wait for each other then
+# share a core, five times as slow).
 macro(voussoir_pickup_tests)
   set(_program ${TEST_TARGET})
   set(TEST_TARGET ${_program}_script)

@@ -324,11 +324,11 @@ namespace Voussoir
   {
     Iteration iteration(problem, std::move(start), number, tolerance);
     if (!iteration.run())
-      throw UserError("The natural modes do not converge, which they do not "
-                      "when a part of the model can move freely; fix it with "
-                      "\"Fixed\" or \"Roller\" in section \"Boundaries\", set "
-                      "\"Interfaces = all tied\" in section \"Modes\" if open "
-                      "interfaces detach it, or ask for fewer modes there.");
+      throw UserError("The natural modes do not converge, as when a part of "
+                      "the model can move freely; fix it with \"Fixed\" or "
+                      "\"Roller\" in section \"Boundaries\", set \"Interfaces "
+                      "= all tied\" in section \"Modes\" if open interfaces "
+                      "detach it, or ask for fewer modes there.");
 
     Eigenpairs result;
     result.iterations = iteration.iterations;

@@ -10,8 +10,8 @@ namespace Voussoir
   {
     constexpr unsigned int max_updates = 300;
 
-    // share of the tangent where all points stick: without it parts that have
-    // no other support move away
+    // share of the tangent with all points sticking, without which parts that
+    // have no other support move away
     constexpr double tied_share = 1e-3;
   } // namespace
 
@@ -97,8 +97,8 @@ namespace Voussoir
         effort.found   = effort.found &&
                        effort.contact.force <= 10. * tolerance &&
                        effort.contact.broken == 0;
-        // smaller than the tolerance of the multipliers, or both iterations
-        // alternate without converging
+        // must be below the tolerance of the multipliers: otherwise both
+        // iterations alternate without converging
         accuracy = std::clamp(0.2 * effort.contact.force, tolerance, accuracy);
       }
   }
@@ -219,7 +219,7 @@ namespace Voussoir
   void
   EquilibriumSearch::report_progress() const
   {
-    // what is missing falls by about the same factor in each step
+    // the residual falls by about the same factor in each step
     const double done =
       first_imbalance > tolerance ?
         std::clamp(std::log(first_imbalance / least_imbalance) /

@@ -360,8 +360,9 @@ namespace Voussoir
             state.material_memory = std::move(tried);
             return;
           }
-        log.line("  cracks or yields");
-        // interfaces start anew, as the load path does
+        log.line("  materials crack or yield");
+        // interfaces return to the beginning of the stage, as the load path
+        // does
         if (model.contact != nullptr)
           model.contact->set_points(before);
       }
@@ -398,7 +399,8 @@ namespace Voussoir
   void
   LoadPath::search_equilibrium(const Vector &force, MaterialMemory *memory)
   {
-    // within a stage only down to a part of the increments' own error of 1e-3
+    // within a stage, a small part of the error of the increments, 1e-3, is
+    // enough
     constexpr double on_the_path = 1e-5;
     const double     of_the_last = model.contact != nullptr ?
                                      0.1 * parameters.rest :
@@ -471,7 +473,7 @@ namespace Voussoir
     std::ostringstream line;
     line << "of static stage " << number << " of "
          << parameters.stage_names().size() << ": " << text;
-    // a first trial may end with the news that there is a path to follow
+    // a first trial may end with the need for load increments
     if (done > 0. && !(internal_force.has_memory() && increment[0] == 0.))
       line << ", time left in it "
            << duration_text(since_start.wall_time() * (1. - done) / done);

@@ -14,9 +14,9 @@ namespace Voussoir
   {
     prm.add_parameter("Number",
                       number,
-                      "How many of the lowest natural modes to compute; 0: "
-                      "none. Absorbing faces are fixed in them, and the moduli "
-                      "are those given.",
+                      "Number of the lowest natural modes to compute; 0: none. "
+                      "Absorbing faces are fixed in the modes, and the moduli "
+                      "are the given ones.",
                       Patterns::Integer(0, 1000));
     prm.add_parameter("Fixed materials",
                       fixed_materials,
@@ -39,9 +39,9 @@ namespace Voussoir
       water,
       "None: an empty reservoir. By reservoir: the added mass of section "
       "\"Reservoir\" or, if its model is compressible, its cells of water as "
-      "if these were incompressible. Incompressible: these cells, whatever the "
-      "model. Compressible: these cells as compressible water; the reservoir "
-      "then ends at a rigid wall, and has modes of its own.");
+      "incompressible water. Incompressible: these cells, under any model. "
+      "Compressible: these cells as compressible water; the reservoir then "
+      "ends at a rigid wall, and has modes of its own.");
     prm.add_parameter("Measured points",
                       points,
                       "Places of \"Measured shapes\", named points \"name: x y "

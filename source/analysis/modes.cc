@@ -19,7 +19,7 @@ namespace Voussoir
   namespace
   {
     /** The wanted modes and some more, which speed up the iteration. The model
-     *  must have three times as many unknowns. */
+     *  must have three times as many unknowns as wanted modes. */
     unsigned int
     block_size(const ModalSystem &system, const unsigned int number)
     {
@@ -73,7 +73,7 @@ namespace Voussoir
     }
 
 
-    /** Effective over moving mass; 0 where nothing can move. */
+    /** Effective over moving mass; 0 in directions without moving mass. */
     Tensor<1, 3>
     share(const Tensor<1, 3> &mass, const Tensor<1, 3> &moving_mass)
     {

@@ -10,8 +10,9 @@ namespace Voussoir
 
   namespace
   {
-    // products with the operator before and after each correction, and the
-    // part of the spectrum they damp; 3 to 6 take the same time together
+    // products with the operator before and after each correction, and the part
+    // of the spectrum that they damp; degrees from 3 to 6 take the same time in
+    // total
     constexpr unsigned int smoother_degree = 4;
     constexpr double       smoothing_range = 30.;
   } // namespace
@@ -48,7 +49,7 @@ namespace Voussoir
     ML_set_random_seed(1);
     coarser.initialize(matrix, list);
 
-    // the hierarchy is only read, but ML knows no const
+    // the hierarchy is only read, but ML's interface has no const
     levels = const_cast<ML_Struct *>(
       dynamic_cast<const ML_Epetra::MultiLevelPreconditioner &>(
         coarser.trilinos_operator())

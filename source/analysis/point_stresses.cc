@@ -30,7 +30,7 @@ namespace Voussoir
   PointStresses::find_places(const Discretization         &discretization,
                              const std::set<unsigned int> &materials_of_faces)
   {
-    // whether there is none of its faces, and the material
+    // 1 if the material has no faces, else 0; and the material
     using Rank = std::array<unsigned int, 2>;
     struct Candidate
     {

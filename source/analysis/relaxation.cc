@@ -157,7 +157,7 @@ namespace Voussoir
         if (!std::isfinite(speed) || too_far(state.displacement))
           break;
         // friction and opening joints may give a negative quotient: the last
-        // frequency then stays
+        // frequency is then kept
         const double measured = natural_frequency(velocity, mass_coefficient);
         if (measured > 0.)
           frequency = frequency == 0. ?

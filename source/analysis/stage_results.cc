@@ -213,7 +213,7 @@ namespace Voussoir
   {
     std::ostringstream text;
     text << std::setprecision(4);
-    // what is less is round-off [mm, MPa, MN]
+    // smaller numbers are round-off [mm, MPa, MN]
     constexpr double least = 1e-9;
     const auto number = [](const nlohmann::json &values, const auto &name) {
       const double value = values.at(name);

@@ -15,26 +15,26 @@ namespace Voussoir
     prm.add_parameter(
       "Stages",
       stages,
-      "Loads that act before the earthquake: stages separated by "
-      "semicolons, in their order, with the names of loads separated by "
-      "commas, as in \"weight; water, silt; temperature\". They stay as they "
-      "are at t = 0. A stage may have a name, that of the load combination "
-      "after it, as in \"weight; usual: water, silt; winter: temperature\", by "
-      "which its results are kept. Empty: no static stage.");
+      "Loads that act before the earthquake: stages separated by semicolons, "
+      "in their order, with the names of loads separated by commas, as in "
+      "\"weight; water, silt; temperature\". They remain constant from t = 0 "
+      "on. A stage may have a name, that of the load combination after it, as "
+      "in \"weight; usual: water, silt; winter: temperature\", under which its "
+      "results are kept. Empty: no static stage.");
     add_option(
       prm,
       "Supports",
       supports,
       "Supports of the absorbing faces in the static stages: fixed, fixed "
       "along their normal (roller), or on the springs of the boundary. Their "
-      "reactions stay when the faces begin to absorb.");
+      "reactions are kept as forces when the faces begin to absorb.");
     prm.add_parameter(
       "Load increments",
       increments,
       "Least number of increments in which the loads of a stage grow where "
       "materials crack or yield in it, as cracks and plastic flow depend on "
-      "the path; they are halved where the return mapping of the materials "
-      "requires it. Stages without cracks and yielding take one.",
+      "the path; increments are halved where the return mapping of the "
+      "materials requires it. Stages without cracks and yielding take one.",
       Patterns::Integer(1, 1000));
     prm.add_parameter("Relative tolerance",
                       tolerance,
@@ -51,7 +51,7 @@ namespace Voussoir
       points,
       "Named points \"name: x y z\" [m], separated by \";\", whose "
       "displacement and stresses after each stage are in static_stages.csv. "
-      "\"usual\" among them: where the mesh has an \"upstream face\", the "
+      "The item \"usual\": where the mesh has an \"upstream face\", the "
       "upstream edge of the crest at the crown and at its quarters, and the "
       "base of the crown. Empty: these and the points of the histories.");
     prm.add_parameter(
@@ -66,7 +66,7 @@ namespace Voussoir
                       "Folder, beside that of the results, in which the static "
                       "state is kept for later runs with the same mesh, "
                       "materials, interfaces, boundaries and static loads. "
-                      "Empty: it is not kept, and none is taken.");
+                      "Empty: no state is kept or taken.");
   }
 
 
@@ -134,7 +134,7 @@ namespace Voussoir
       if (!titles.insert(stage.title()).second)
         throw UserError("Two \"Stages\" in section \"Static state\" have the "
                         "name \"" +
-                        stage.title() + "\"; give one of them another.");
+                        stage.title() + "\"; rename one of them.");
     for (const auto &[name, load] : loads)
       if (load->steady() && staged.count(name) == 0)
         throw UserError("The load \"" + name +

@@ -80,7 +80,7 @@ namespace Voussoir
                 const std::map<std::string, const Load *> &load_of,
                 nlohmann::json                            &report);
 
-      /** All of them so far. */
+      /** All loads so far. */
       StaticLoads
       static_loads() const;
 

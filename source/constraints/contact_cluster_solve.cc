@@ -16,8 +16,8 @@ namespace Voussoir
 
   namespace
   {
-    // Forces are found when they change by less than this part, or move their
-    // points by less than this part of the displacement, which is round-off.
+    // Forces have converged when they change by less than the first share, or
+    // move their points by less than the second share of the displacement.
     constexpr double accuracy = 1e-12, round_off = 1e-13;
 
     // Sweeps before another method is tried.
@@ -315,7 +315,7 @@ namespace Voussoir
     iterate_newton(points, cluster, before.largest);
     find_moves(points, cluster);
     Sweep result = sweep(points, cluster);
-    if (!(result.change <= before.change)) // it led astray
+    if (!(result.change <= before.change)) // no improvement
       {
         for (unsigned int k = 0; k < cluster.n_points; ++k)
           points[cluster.first_point + k].force = holding[k];
@@ -340,8 +340,8 @@ namespace Voussoir
 
   namespace
   {
-    /** A point k in Newton's iteration, with the rows of the linear system for
-     *  the changes of the forces, of which it has three. */
+    /** A point k in Newton's iteration, with its three rows of the linear
+     *  system for the changes of the forces. */
     struct NewtonPoint
     {
       const unsigned int        k;
@@ -414,8 +414,8 @@ namespace Voussoir
   // One step of Newton's iteration for all points together, on the law of
   // contact without inequalities (Alart and Curnier 1991): with g the gap, r a
   // stiffness and the trial F - r g, a point is closed if the normal trial
-  // exceeds the tension, and slides if the tangential one exceeds its limit L,
-  // against which it then is F_t = L trial / |trial|.
+  // exceeds the tension, and slides if the tangential one exceeds its limit L;
+  // then F_t = L trial / |trial|.
   double
   ContactSolver::newton_step(Points &points, const Cluster &cluster)
   {

@@ -88,7 +88,7 @@ namespace Voussoir
         return cube;
       }
 
-      /** Cubes that a point may fall into, whatever its round-off. */
+      /** Cubes that a point may fall into with any round-off. */
       std::set<Cube>
       near(const Point<3> &p, const double tolerance) const
       {
@@ -198,7 +198,7 @@ namespace Voussoir
     };
 
 
-    // The cluster of the records of one point, which are sorted. An empty one
+    // The cluster of the records of one point, which are sorted. It is empty
     // where all these nodes are at the end of an interface.
     KeyedCluster
     make_cluster(const std::vector<const Record *> &records,
@@ -227,7 +227,7 @@ namespace Voussoir
           if (partner == records.end())
             problems.add(*record, interfaces);
           else if (record->node == (*partner)->node)
-            continue; // the end of the interface, where it may hang
+            continue; // at the end of an interface a node may hang
           else if (record->hanging)
             problems.add(*record, interfaces);
           else if (record->side == 0)
@@ -291,8 +291,8 @@ namespace Voussoir
         grid.check_face_set(side, "The interface \"" + name + "\"");
 
     // All records of one point meet on the rank of its cube. A point that may
-    // fall into several cubes goes to all of them, and only that of the lowest
-    // record's position makes the cluster.
+    // fall into several cubes is sent to all of them, and only the cube of the
+    // lowest record's position makes the cluster.
     const double size      = smallest_cell(grid, interfaces);
     const double tolerance = coincidence * size;
     const Cubes  cubes(size / discretization.degree);

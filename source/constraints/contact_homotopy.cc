@@ -14,7 +14,7 @@ namespace Voussoir
 
   namespace
   {
-    // All in the units of ContactEquations.
+    // Units are those of ContactEquations.
 
     // A residual this large is round-off.
     constexpr double round_off = 1e-12;
@@ -62,7 +62,7 @@ namespace Voussoir
             start();
             for (unsigned int j = 0; j < max_corrections; ++j)
               {
-                // a homotopy that loses its path is mostly near its end
+                // a homotopy that loses its path mostly does so near its end
                 const bool arrived = follow();
                 finish(best);
                 if (!arrived || best.residual <= round_off)
@@ -74,8 +74,8 @@ namespace Voussoir
       }
 
     private:
-      /** The state at t = 0: all points are farther open than bonds can pull
-       *  them. Random forces and gaps vanish along the homotopy, so that no two
+      /** The state at t = 0: all points are open by more than bonds can close.
+       *  Random forces and gaps vanish along the homotopy, so that no two
        *  points reach the end of a piece at once. */
       void
       start()
@@ -117,8 +117,8 @@ namespace Voussoir
           }
       }
 
-      /** Makes a homotopy begin at the solution of the last one, such that its
-       *  solution has no effect of the compliance of the points. */
+      /** Starts a homotopy at the solution of the last one such that the effect
+       *  of the compliance of the points vanishes from its solution. */
       void
       correct_softness()
       {
@@ -165,7 +165,7 @@ namespace Voussoir
         return false;
       }
 
-      /** Whether the shear of no point turns much. */
+      /** Whether the shear of every point nearly keeps its direction. */
       bool
       keeps_direction(const Vector &next) const
       {
@@ -180,7 +180,7 @@ namespace Voussoir
         return true;
       }
 
-      /** Goes a step along the path, or to the end of its piece if that comes
+      /** Takes a step along the path, or to the end of its piece if that comes
        *  first; returns whether the step was short enough to stay on the path.
        */
       bool
@@ -241,7 +241,7 @@ namespace Voussoir
         return true;
       }
 
-      /** Follows the path from t = 0 to t = 1; returns whether it gets there.
+      /** Follows the path from t = 0 to t = 1; returns whether it arrives.
        */
       bool
       follow()

@@ -222,8 +222,8 @@ namespace Voussoir
                std::hypot(F[1], F[2]) <= limits.shear(false, F[0]);
       }
 
-      /** Finds the pressure that closes it while it slips; returns whether
-       *  there is one. */
+      /** Finds the pressure that closes the point while it slips; returns
+       *  whether there is one. */
       bool
       slides()
       {
@@ -303,8 +303,9 @@ namespace Voussoir
         return b[0] + D[0] * F;
       }
 
-      /** With its cohesion it would open, without it not: it is closed without
-       *  pressure, with the part of the cohesion that keeps it closed. */
+      /** With its full cohesion the point would open, without cohesion it would
+       *  not: it is closed without pressure, with the part of the cohesion that
+       *  keeps it closed. */
       void
       close_with_cohesion()
       {

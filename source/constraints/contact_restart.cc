@@ -99,7 +99,7 @@ namespace Voussoir
         interfaces.update_limits(point);
       }
 
-    // sums are taken over the ranks: the first one gets all
+    // sums are taken over the ranks: the first rank gets them all
     for (ContactSurface &surface : interfaces.surfaces)
       surface.energy = {};
     total = {};

@@ -13,7 +13,7 @@ namespace Voussoir
 
   namespace
   {
-    // Share of the distance to a limit that is left, so that no round-off leads
+    // Share of the distance to a limit that remains, so that no round-off leads
     // beyond it.
     constexpr double margin = 1e-6;
 
@@ -24,11 +24,12 @@ namespace Voussoir
     constexpr double dependent = 1e-10;
 
     // Part of the sum of F^2 / A that self-equilibrated forces may have. Below
-    // it the forces stay as they are: those of the step before are where the
-    // next search begins, and should change little from step to step.
+    // it the forces are kept: the next search begins at them, and they should
+    // change little from step to step.
     constexpr double largest_share = 0.5;
 
-    /** How the force of a point may change with its status and motion kept. */
+    /** Admissible changes of the force of a point that keep its status and
+     *  motion. */
     class FreeForce
     {
     public:
@@ -75,7 +76,7 @@ namespace Voussoir
         return result;
       }
 
-      /** Part of a change that the limits admit, at most one. */
+      /** Largest share of a change that the limits admit, at most one. */
       double
       admissible(const Tensor<1, 3> &change) const
       {
@@ -136,8 +137,8 @@ namespace Voussoir
         return under_pressure ? limits.with_pressure() : 0.;
       }
 
-      /** Smallest part of a change at which the normal force is at the end of
-       *  its side of zero pressure. */
+      /** Smallest part of a change at which the normal force reaches zero or
+       *  its lower limit. */
       double
       to_bound(const Tensor<1, 3> &change) const
       {
@@ -192,7 +193,7 @@ namespace Voussoir
     };
 
 
-    /** Less the components of @p v along an orthonormal basis. */
+    /** Subtracts the components of @p v along an orthonormal basis. */
     void
     project(std::vector<double>                    &v,
             const std::vector<std::vector<double>> &basis)
@@ -209,11 +210,11 @@ namespace Voussoir
   } // namespace
 
 
-  // Of all the forces with the same motion those with the least sum of F^2 / A:
-  // the gradient of that sum in the space of self-equilibrated forces, on the
-  // surface of the constraints, as far as the first point that would slip or
-  // open, which is a constraint from there on. Without this they may grow from
-  // step to step, as forces in a ring of points whose friction cones have a
+  // Finds, of all forces with the same motion, those with the least sum of F^2
+  // / A. Follows the gradient of that sum in the space of self-equilibrated
+  // forces, on the surface of the constraints, up to the first point that would
+  // slip or open, which is a constraint from there on. Otherwise forces may
+  // grow from step to step, as in a ring of points whose friction cones have a
   // direction in common.
   void
   ContactSolver::remove_self_equilibrated(Points        &points,

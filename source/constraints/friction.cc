@@ -24,9 +24,9 @@ namespace Voussoir
         prm.add_parameter(
           "Cohesion",
           constant.cohesion,
-          "Shear strength without pressure, while closed; it stays during "
-          "slip, and is lost where the interface has been open by more than "
-          "0.01 mm [Pa]." +
+          "Shear strength without pressure, while closed; it is kept during "
+          "slip, and lost where the interface has been open by more than 0.01 "
+          "mm [Pa]." +
             usually(Usual::interface_cohesion),
           Patterns::Double(0.));
       }

@@ -63,10 +63,9 @@ namespace Voussoir
     prm.add_parameter(
       "Drain factor",
       drain_factor,
-      "Excess of the pressure at the drains over the downstream "
-      "pressure, as a part of that at the upstream faces; the "
-      "pressure is linear between. 1 at position 0 for no "
-      "drains.",
+      "Excess of the pressure at the drains over the downstream pressure, as a "
+      "share of the excess at the upstream faces; pressure is linear between "
+      "faces and drains. 1 at position 0 for no drains.",
       Patterns::Double(0., 1.));
     prm.add_parameter("Density",
                       density,
@@ -76,9 +75,9 @@ namespace Voussoir
     prm.add_parameter("Comes with",
                       comes_with,
                       "A load: the pressure inside begins with the static "
-                      "stage that names it. Empty: with that of the first load "
-                      "of class \"water\"; where no stage has one, from the "
-                      "start.");
+                      "stage that names this load. Empty: with the stage of "
+                      "the first load of class \"water\"; without such a "
+                      "stage, from the start.");
     prm.leave_subsection();
   }
 
@@ -118,12 +117,13 @@ namespace Voussoir
                       "part of a name, as in \"joint *\".");
     prm.add_parameter("Between",
                       between,
-                      "Two cell sets instead: the faces between them are the "
-                      "surface, under the name of the interface.");
+                      "Two cell sets, instead of \"Face sets\": the faces "
+                      "between them are the surface, under the name of the "
+                      "interface.");
     prm.add_parameter("Initial gap",
                       initial_gap,
-                      "Opening at the start, or after grouting; such an "
-                      "interface has no bond [m]." +
+                      "Opening at the start, or after grouting; an interface "
+                      "with a gap has no bond [m]." +
                         usually(Usual::gap),
                       Patterns::Double(0.));
     prm.add_parameter(
@@ -131,14 +131,13 @@ namespace Voussoir
       grouted_after,
       "A load: until the end of the static stage that names it, the interface "
       "transmits no force, and its sides move independently. Opening and slip "
-      "count from that moment. Empty: joined from the start.");
+      "count from the end of that stage. Empty: joined from the start.");
     prm.add_parameter(
       "Tied after grouting",
       tied,
-      "Once it is grouted, or from the start, its two sides are "
-      "one body that neither opens nor slips, whatever the law "
-      "and the bars: for linear analyses of a dam whose blocks "
-      "stand free under their weight.");
+      "Once grouted, or from the start, the two sides of the interface are one "
+      "body that neither opens nor slips, under any law and with any bars: for "
+      "linear analyses of a dam whose blocks stand free under their weight.");
     prm.add_parameter(
       "Key depth",
       key_depth,

@@ -105,7 +105,8 @@ namespace Voussoir
     const Discretization                            &discretization,
     const std::function<double(const Grid::Cell &)> &wave_speed)
   {
-    // 2 leave some chatter where friction is above 0.7 (see doc/theory.md)
+    // 2 cells leave some chatter where friction is above 0.7 (see
+    // doc/theory.md)
     constexpr double cells = 4.;
 
     // sums and numbers of them at the nodes of the surfaces

@@ -27,8 +27,8 @@ namespace Voussoir
                           Patterns::MultipleSelection("x|y|z"));
         prm.add_parameter("Displacement",
                           displacement,
-                          "Displacement at factor 1, x, y, z [m], from where "
-                          "the nodes are at rest." +
+                          "Displacement at factor 1, x, y, z [m], from the "
+                          "positions at rest." +
                             usually(Usual::displacement));
         factor.declare(
           prm,
@@ -103,7 +103,7 @@ namespace Voussoir
           return (factor(end) - factor(end - time_step)) / time_step;
         };
         const Tensor<1, 3> velocity = rate(now) * displacement;
-        // of the half step before, by the same rule, or at rest
+        // velocity of the half step before, by the same rule, or at rest
         const Tensor<1, 3> last_velocity = before < 0.5 * time_step ?
                                              Tensor<1, 3>() :
                                              rate(before) * displacement;

@@ -15,11 +15,12 @@ namespace Voussoir
 
 
     // Shear per pressure with which a point that closes regains cohesion, and
-    // the factor on it from one multiplier to the next.
+    // the factor on this ratio from one multiplier to the next.
     constexpr double cohesion_per_pressure = 10., over_relaxation = 10.;
 
 
-    /** Pressure of a spring on the gap @p b above that at which it opens. */
+    /** Excess of the force of a spring at the gap @p b over the force at which
+     *  the point opens. */
     double
     closing_force(const ContactLimits &limits,
                   const Tensor<1, 3>  &b,
@@ -32,10 +33,10 @@ namespace Voussoir
     /**
      * Limits with the part of the cohesion c that acts. The full cohesion acts
      * under pressure, none across an opening, and any part between where a
-     * point just touches: with a shear that jumps by the full cohesion as a
-     * point closes there is no equilibrium where a part of it keeps the point
-     * closed. That part is a multiplier k of its own, min(max(k + 10 (p - r g),
-     * 0), c).
+     * point just touches. If the shear jumped by the full cohesion as a point
+     * closes, there would be no equilibrium in which a part of the cohesion
+     * keeps the point closed. That part is a multiplier k of its own, min(max(k
+     * + 10 (p - r g), 0), c).
      */
     ContactLimits
     with_part_of_cohesion(const ContactLimits &limits,
@@ -48,7 +49,7 @@ namespace Voussoir
       result.cohesion = std::clamp(multiplier + cohesion_per_pressure * closing,
                                    0.,
                                    limits.cohesion);
-      if (closing < 0.) // it acts across any gap
+      if (closing < 0.) // bonds act across any gap
         {
           result.bond += result.cohesion;
           result.cohesion = 0.;
@@ -57,8 +58,8 @@ namespace Voussoir
     }
 
 
-    /** Minus the derivative of the force by the gap @p b, under which the force
-     *  of the law has been found, for this spring. */
+    /** Minus the derivative of the force by the gap @p b for this spring, given
+     *  the force of the law at this gap. */
     Tensor<2, 3>
     tangent_of(const ContactForce  &found,
                const Tensor<1, 3>  &b,
@@ -330,7 +331,7 @@ namespace Voussoir
     for (unsigned int k = 0; k < spring.size(); ++k)
       {
         ContactPoint &point = interfaces.points[k];
-        // the history of the last iterate, without those before it
+        // the history of the last iterate alone
         point.history = history_at(k);
         if (point.status != ContactStatus::sticking && !point.limits.locked)
           {

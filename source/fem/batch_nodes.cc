@@ -32,7 +32,7 @@ namespace Voussoir
       }
     for (unsigned int v = 0; v < 8; ++v)
       {
-        // one more than needed
+        // the fourth is not used
         std::array<Lanes, 4> components;
         vectorized_load_and_transpose(4,
                                       vector.begin(),

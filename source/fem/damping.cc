@@ -54,18 +54,17 @@ namespace Voussoir
     prm.add_parameter(
       "Reference frequency",
       reference,
-      "Frequency of the free vibration for which the materials' "
-      "moduli hold under Maxwell damping [Hz]; in slower motion "
-      "they are smaller, in faster motion larger. \"first mode\": the lowest "
-      "natural frequency where section \"Modes\" computes some, else 3; 0: "
-      "the relaxed moduli.");
+      "Frequency of the free vibration for which the materials' moduli hold "
+      "under Maxwell damping [Hz]; in slower motion they are smaller, in "
+      "faster motion larger. \"first mode\": the lowest natural frequency if "
+      "section \"Modes\" computes any, else 3; 0: the relaxed moduli.");
     prm.add_parameter(
       "Mesh viscosity",
       mesh_viscosity,
-      "Where materials can crack or yield: damping ratio at the highest "
-      "frequency of the mesh, of waves that are too short for the cells; "
-      "within the band at most 0.005. Without it the oscillation after one "
-      "crack causes further cracks.",
+      "Damping ratio at the highest frequency of the mesh, of waves that are "
+      "too short for the cells, in models whose materials can crack or yield; "
+      "within the band at most 0.005. Without this viscosity the oscillation "
+      "after one crack causes further cracks.",
       Patterns::Double(0., 0.3));
     prm.add_parameter("From modes",
                       modes,
@@ -162,7 +161,7 @@ namespace Voussoir
   void
   Damping::add_mesh_viscosity(const double undamped_limit)
   {
-    // xi = pi f beta; the mesh ends at w = 2 / (its stable step)
+    // xi = pi f beta; the mesh has frequencies up to w = 2 / (its stable step)
     mesh_viscosity =
       std::min(parameters.mesh_viscosity * undamped_limit,
                0.005 / (numbers::PI * parameters.highest_frequency));

@@ -31,11 +31,11 @@ namespace Voussoir
       "cell. With one point a step costs about half, and walls of one or two "
       "cells bend as they should, while full integration at degree 1 makes "
       "them too stiff; but damage follows the mean strain of a cell only, and "
-      "a damaged cell keeps its stiffness against bending: where concrete "
-      "cracks take full integration or several cells through the wall. \"One "
-      "point where elastic\" has one point in materials that stay elastic and "
-      "Gauss points in those that crack or yield: for a dam in a large rock "
-      "mass. The mass is always lumped at the Gauss-Lobatto nodes.");
+      "a damaged cell keeps its stiffness against bending. Where concrete "
+      "cracks, full integration or several cells through the wall are needed. "
+      "\"One point where elastic\" has one point in materials that stay "
+      "elastic and Gauss points in those that crack or yield: for a dam in a "
+      "large rock mass. The mass is always lumped at the Gauss-Lobatto nodes.");
     add_option(
       prm,
       "Sums",
@@ -52,13 +52,13 @@ namespace Voussoir
       "Arithmetic of the internal forces of elastic cells of degree 1 in the "
       "time loop. Single: strain, stress and forces of a cell are computed in "
       "single precision, twice as many cells at a time, from relative "
-      "displacements of its nodes that are formed in double precision; sums at "
-      "the nodes, the motion, cells that crack or yield and static equilibrium "
-      "are in double precision. Faster by a half to two thirds, with round-off "
-      "of 1e-7 of the strain, that of the static state included. Cells of "
-      "higher degree and reproducible sums are in double precision whatever is "
-      "asked for; the smoother of the static solver, which changes no result, "
-      "is in single precision where it can be.");
+      "displacements of its nodes, which are formed in double precision; sums "
+      "at the nodes, the motion, cells that crack or yield and static "
+      "equilibrium are in double precision. Faster by a half to two thirds, "
+      "with round-off of 1e-7 of the strain, that of the static state "
+      "included. Cells of higher degree and reproducible sums are always in "
+      "double precision; the smoother of the static solver, which changes no "
+      "result, is in single precision where possible.");
   }
 
 
@@ -83,9 +83,9 @@ namespace Voussoir
 
   namespace
   {
-    // A crack across a row of cells of degree 2: strain is linear in a cell,
-    // the force is equal in its outer points, of which one opens with the
-    // centre while the other unloads.
+    // A crack across a row of cells of degree 2: the strain is linear in a cell
+    // and the force equal in its outer points; one of these opens with the
+    // centre, the other unloads.
     double
     share_of_crack(const Quadrature<1> &quadrature, const unsigned int degree)
     {
@@ -94,8 +94,8 @@ namespace Voussoir
     }
 
 
-    // Corners of the cells of a batch; lanes without cell have those of the
-    // last one.
+    // Corners of the cells of a batch; lanes without a cell have those of the
+    // last cell.
     std::array<Point<3, Lanes>, 8>
     corners_of(const Discretization::MatrixFree &matrix_free,
                const unsigned int                batch)
@@ -291,7 +291,7 @@ namespace Voussoir
         internal::MatrixFreeFunctions::MappingInfo<3, double, Lanes> &>(
         matrix_free.get_mapping_info())
         .cell_data[0];
-    // FEEvaluation::reinit takes the address of the first
+    // FEEvaluation::reinit takes the address of the first entry
     std::fill(geometry.data_index_offsets.begin(),
               geometry.data_index_offsets.end(),
               0);

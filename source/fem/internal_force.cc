@@ -171,13 +171,13 @@ namespace Voussoir
   double
   InternalForce::limit_of_sweep(const SweepInput &input) const
   {
-    // beyond it linear kinematics do not hold
+    // beyond this strain linear kinematics do not hold
     constexpr double largest_strain = 1. / 16.;
     const double     limit          = limit_of_forces(largest_strain);
     if (input.bound == nullptr)
       return limit;
 
-    // quanta of a strained cell are too large for a motion without strain
+    // quanta of a strained cell are too coarse for a motion with little strain
     const double enough =
       std::ldexp(largest_strain * discretization.longest_edge, -20);
     const auto         &parts = input.bound->parts;
@@ -189,7 +189,7 @@ namespace Voussoir
           largest[i] = factor * largest_entry(*vector, enough / factor);
           motion += largest[i];
         }
-    // one by one: the sum of a rank depends on its cells
+    // each by itself: the sum of a rank depends on its cells
     Utilities::MPI::max(largest, discretization.grid.communicator(), largest);
     motion = std::accumulate(largest.begin(), largest.end(), 0.);
     if (motion >= enough)
@@ -197,8 +197,8 @@ namespace Voussoir
     double s = 1.;
     for (const CellKernel *kernel : kernels)
       s = std::max(s, kernel->damping_factor());
-    // |u_e| <= sqrt(24) max |u| ; nodes that are fixed have no mass, but are
-    // like the others
+    // |u_e| <= sqrt(24) max |u| ; fixed nodes have no mass here, but are like
+    // the others
     const double stiffness = 100. * input.bound->mass.linfty_norm() /
                              (input.bound->time_step * input.bound->time_step);
     return std::min(limit, stiffness * s * motion);

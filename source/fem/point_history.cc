@@ -131,7 +131,7 @@ namespace Voussoir
   namespace
   {
     // Calls visit(Lanes &) for each internal variable of a point beside those
-    // of its law, and returns how many that are.
+    // of its law, and returns their number.
     template <typename Visitor>
     unsigned int
     for_each_number(ActivePoint &point, const Visitor &visit)

@@ -97,8 +97,8 @@ namespace Voussoir
                 here_unit = *unit;
                 mine      = key;
               }
-        // not the library's minimum, which is one of MPI_UNSIGNED_LONG: Open
-        // MPI 4.1 takes those from 2^63 on, and so `nowhere`, for negative
+        // not deal.II's minimum, which is one of MPI_UNSIGNED_LONG: Open MPI
+        // 4.1 takes numbers from 2^63 on, such as `nowhere`, for negative
         std::uint64_t first;
         MPI_Allreduce(&mine, &first, 1, MPI_UINT64_T, MPI_MIN, communicator);
         if (first == nowhere)

@@ -1,5 +1,5 @@
 // deal.II's matrix-free classes at the vector width of the compiler flags; the
-// packaged library holds them for its own, narrower width only.
+// packaged library contains them for its own, narrower width only.
 #include <voussoir/fem/simd.h>
 
 #if VOUSSOIR_SIMD_WIDENED

@@ -49,7 +49,7 @@ namespace Voussoir
     for (unsigned int i = 0; i < 2; ++i)
       {
         entries[i] = matrix_free.node_entries[batch + (i < n ? i : 0)];
-        // what the next two batches will read
+        // prefetches entries of the next two batches
         if (entries[i] != nullptr)
           for (unsigned int k = 0; k < 8 * width; k += 16)
             __builtin_prefetch(entries[i] + 16 * width + k);
@@ -187,8 +187,9 @@ namespace Voussoir
         vectorized_transpose_and_store(
           false, 4, components.data(), places.data(), buffers[v].data());
       }
-    // In the order of the nodes: what has just been stored is not read. And
-    // without the fourth entry, which is of a node that may have just been.
+    // In the order of the nodes, so that no entry is read that has just been
+    // stored; and without the fourth entry, whose node may have just been
+    // stored.
     double *sums = vector.begin();
     for (unsigned int v = 0; v < 8; ++v)
       for (unsigned int lane = 0; lane < 2 * width; ++lane)

@@ -27,10 +27,10 @@ namespace Voussoir
 
 
     /**
-     * The dt at which limit(dt) = dt, or just below. (dt/limit)^2 is dt^2 times
-     * an eigenvalue over 4, and grows with dt, at least in proportion. So where
-     * it is below one at dt it is above one at limit^2/dt, and the other way
-     * round: each limit bounds the dt from both sides.
+     * The dt at which limit(dt) = dt, or just below. The ratio (dt/limit)^2 is
+     * dt^2 times an eigenvalue over 4, and grows with dt, at least in
+     * proportion. So if it is below one at dt, it is above one at limit^2/dt,
+     * and vice versa: each limit bounds the dt from both sides.
      */
     double
     fixed_point(const std::function<double(const double)> &limit)

@@ -10,19 +10,20 @@ namespace Voussoir
   {
     prm.add_parameter("Fixed",
                       fixed,
-                      "Face sets that do not move (relative to the ground, if "
-                      "the earthquake enters through a rigid base).");
+                      "Face sets on which all displacements are fixed "
+                      "(relative to the ground, if the earthquake enters "
+                      "through a rigid base).");
     prm.add_parameter(
       "Roller",
       roller,
-      "Face sets that are fixed along their normal, as planes of symmetry; "
-      "planes of constant x, y or z.");
+      "Face sets that are fixed along their normal, such as planes of "
+      "symmetry; planes of constant x, y or z.");
     prm.add_parameter("Antisymmetric",
                       antisymmetric,
-                      "Face sets that move at right angles to themselves only, "
-                      "the two components in the plane fixed: planes of "
-                      "symmetry of a structure whose other half moves the "
-                      "opposite way; planes of constant x, y or z.");
+                      "Face sets on which the two tangential components are "
+                      "fixed: planes of symmetry of a structure whose other "
+                      "half moves the opposite way; planes of constant x, y or "
+                      "z.");
   }
 
 

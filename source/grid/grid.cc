@@ -236,7 +236,8 @@ namespace Voussoir
                                          serial,
                                          SparsityTools::Partitioner::metis);
     };
-    // one rank of a machine makes the whole mesh, and sends the others theirs
+    // one rank of a machine makes the whole mesh, and sends the others their
+    // parts
     const unsigned int n_ranks =
       Utilities::MPI::n_mpi_processes(mpi_communicator);
     const auto description = TriangulationDescription::Utilities::
@@ -443,7 +444,7 @@ namespace Voussoir
     std::uint64_t key  = coarse_cell(cell);
     for (auto child = path.rbegin(); child != path.rend(); ++child)
       key = 8 * key + *child;
-    // the level keeps apart a cell and its own first child
+    // the level distinguishes a cell from its own first child
     return (key << 4) + path.size();
   }
 } // namespace Voussoir

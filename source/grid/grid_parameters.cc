@@ -16,12 +16,11 @@ namespace Voussoir
     prm.add_parameter(
       "Global refinement",
       global_refinement,
-      "How many times each cell is cut into eight. The new "
-      "nodes of an arch dam without wedges lie on its true "
-      "faces, joints and canyon; other meshes are refined by "
-      "the middles of their edges. Every rank stores the whole mesh before "
-      "refinement, and only its part afterwards, so give large meshes as "
-      "coarse ones.",
+      "How many times each cell is cut into eight. The new nodes of an arch "
+      "dam without wedges lie on its true faces, joints and canyon; other "
+      "meshes are refined at the middles of their edges. Every rank stores the "
+      "whole mesh before refinement, and only its part afterwards; so give "
+      "large meshes in coarse cells.",
       Patterns::Integer(0, 6));
     prm.add_parameter(
       "Local refinement",
@@ -48,14 +47,14 @@ namespace Voussoir
       partition,
       "How the cells are distributed to the ranks; the results are the same. "
       "With p4est every rank stores the mesh before refinement; with METIS one "
-      "rank of each machine makes the refined mesh, and sends the others "
-      "theirs, which takes less memory for a fine mesh of a file.");
+      "rank of each machine makes the refined mesh, and sends the others their "
+      "parts, which takes less memory for a fine mesh from a file.");
     prm.add_parameter(
       "Count partitions",
       counted_ranks,
       "Numbers of ranks, separated by commas, for which the log describes a "
       "partition by p4est: balance, neighbours of a rank and nodes that it "
-      "exchanges with them. The run itself needs no such ranks.",
+      "exchanges with them. The run itself may have another number of ranks.",
       Patterns::List(Patterns::Integer(1, 1000000)));
   }
 

@@ -23,21 +23,21 @@ namespace Voussoir
       prm,
       "Absorbing type",
       type,
-      "Dashpots alone, or springs beside them, which keep the model in place "
-      "and suit waves that spread from the dam.");
+      "Dashpots alone, or dashpots and springs; springs keep the model in "
+      "place and suit waves that spread from the dam.");
     add_option(
       prm,
       "Coefficients",
       coefficients,
-      "Normal and tangential spring per area, with the distance r: paper "
-      "E/2r, G/2r; Liu 3D 4/3 G/r, 2/3 G/r; Liu 2D G/r, G/2r; Deeks-Randolph "
-      "G/r, G/2r; Du-Zhao (lambda+2G)/1.8r, G/1.8r with dashpots 1.1 rho c. "
-      "The others have dashpots rho c.");
+      "Normal and tangential spring per area, with the distance r: paper E/2r, "
+      "G/2r; Liu 3D 4/3 G/r, 2/3 G/r; Liu 2D G/r, G/2r; Deeks-Randolph G/r, "
+      "G/2r; Du-Zhao (lambda+2G)/1.8r, G/1.8r with dashpots 1.1 rho c. The "
+      "other sets have dashpots rho c.");
     prm.add_parameter(
       "Source point",
       source,
-      "Where scattered waves come from, x, y, z [m]: the "
-      "stiffness of springs follows from the distance to this point.");
+      "Source of scattered waves, x, y, z [m]: the stiffness of springs "
+      "follows from the distance to this point.");
     prm.add_parameter(
       "Radius",
       radius,
@@ -179,7 +179,7 @@ namespace Voussoir
     }
 
 
-    /** Distance r of a node from where scattered waves come from [m]. */
+    /** Distance r of a node from the source of scattered waves [m]. */
     double
     source_distance(const AbsorbingParameters  &parameters,
                     const BoundaryCoefficients &coefficients,

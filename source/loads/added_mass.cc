@@ -23,8 +23,8 @@ namespace Voussoir
     };
 
 
-    // Where the resultant of the water is zero, as in a tank, the river is
-    // taken along y.
+    // Where the resultant of the water pressure is zero, as in a tank, the
+    // river is taken along y.
     Axes
     find_axes(const Discretization           &discretization,
               const std::vector<std::string> &sets,
@@ -97,7 +97,7 @@ namespace Voussoir
                     [&](const auto &cell, const unsigned int face) {
                       const auto nodes = discretization.cell_nodes(
                         discretization.dof_cell(cell));
-                      // an upright face along the river is a line across the
+                      // an upright face along the river has no width across the
                       // valley
                       const double rim   = 1e-6 * cell->face(face)->diameter();
                       double       begin = 1e300, end = -1e300;
@@ -124,7 +124,7 @@ namespace Voussoir
     }
 
 
-    // Where the water ends below, in upright sections across the valley.
+    // Bottom of the water in upright sections across the valley.
     class Bed
     {
     public:
@@ -194,7 +194,7 @@ namespace Voussoir
       "Normal: the water resists motion along the face's normal, which couples "
       "x, y and z on slanted faces. Uncoupled: motion along the river, across "
       "and upwards, each by itself. River: motion along the river only, the "
-      "direction of the resultant of the water.");
+      "direction of the resultant of the water pressure.");
   }
 
 

@@ -141,7 +141,8 @@ namespace Voussoir
     if (n == 0)
       return {};
 
-    // without free surface K is singular; a square of this area has 1/area
+    // without free surface K is singular; eigenvalues of a square of this area
+    // are of the order 1/area
     const double        shift = 1. / std::accumulate(m.begin(), m.end(), 0.);
     const ShiftedMatrix matrix(stiffness, areas, nodes, shift);
     std::mt19937        random; // the same start vectors on all ranks

@@ -122,8 +122,8 @@ namespace Voussoir
     displacement.resize(geometry.nodes.size());
     velocity = force = displacement;
 
-    // many nodes and points share a level, to round-off, for which the first
-    // one of a rank must not count where results are reproducible
+    // many nodes and points share a level up to round-off; where results are
+    // reproducible, their level must not be that of the first one of a rank
     const double tolerance = 1e-6 * (column.top() - column.bottom());
     const auto   key       = [&](const double z) -> double {
       return geometry.reproducible ?
@@ -252,8 +252,8 @@ namespace Voussoir
                        const double               longest,
                        const double               maximum_frequency)
   {
-    // independent of this run's end time, since a run that continues it needs
-    // the same motion
+    // independent of the end time of this run, since a run that continues it
+    // needs the same motion
     double duration = 0.;
     for (const auto &component : surface)
       if (component)
@@ -300,7 +300,7 @@ namespace Voussoir
     for (unsigned int d = 0; d < 3; ++d)
       if (surface[d])
         {
-          // the incident wave comes before its response at the surface
+          // the incident wave precedes its response at the surface
           const unsigned int delay = static_cast<unsigned int>(
             std::ceil(2. * column.travel_time() / time_step));
           TimeSeries target{time_step, std::vector<double>(delay, 0.)};

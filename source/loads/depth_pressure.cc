@@ -152,7 +152,7 @@ namespace Voussoir
         prm.add_parameter(
           "Buoyant unit weight",
           unit_weight,
-          "Weight of the silt under water less its buoyancy [N/m3]; 8e3 to "
+          "Weight of the silt per volume less its buoyancy [N/m3]; 8e3 to "
           "11e3. Pore water belongs to the load of the water." +
             usually(Usual::silt_weight),
           Patterns::Double(0.));

@@ -9,7 +9,8 @@ namespace Voussoir
   {
     using Complex = std::complex<double>;
 
-    // Modes of which a step is a larger part of a radian are not resolved.
+    // Modes whose phase advances by more than this in a step [rad] are not
+    // resolved.
     constexpr double largest_angle = 0.5;
 
 
@@ -21,11 +22,11 @@ namespace Voussoir
 
 
     /**
-     * J_1(t) / t. It is 1/(i pi) times the integral of sqrt(1 + z^2) exp(z t)
-     * from -i to i; along the left unit semicircle z = i tanh(u + i pi/4) the
-     * exponentials decay, and the trapezoidal rule in u converges
-     * exponentially. The sum is good to 2e-4, and to 2e-3 within 1e-5 of the
-     * frequency 1.
+     * J_1(t) / t. This function is 1/(i pi) times the integral of sqrt(1 + z^2)
+     * exp(z t) from -i to i; along the left unit semicircle z = i tanh(u + i
+     * pi/4) the exponentials decay, and the trapezoidal rule in u converges
+     * exponentially. The sum is accurate to 2e-4, and to 2e-3 within 1e-5 of
+     * the frequency 1.
      */
     std::vector<Term>
     kernel()
@@ -45,8 +46,8 @@ namespace Voussoir
     }
 
 
-    // The error may supply at most the energy of a dashpot of this share of
-    // 1/(rho c) with the wrong sign.
+    // The error supplies at most the energy of a dashpot of minus this share of
+    // 1/(rho c).
     constexpr double error_of_kernel = 2e-4;
   } // namespace
 
@@ -94,8 +95,9 @@ namespace Voussoir
                                            0.5 * time_step / (1. - half),
                                            2. * w * w * term.weight});
           }
-        // the impulse goes by leapfrog, memory by the trapezoidal rule: without
-        // the second part this difference may supply energy, too
+        // the impulse is integrated by leap-frog, memory by the trapezoidal
+        // rule: without the second term this difference could supply energy,
+        // too
         viscosity.push_back(error_of_kernel +
                             Utilities::fixed_power<2>(0.5 * omega * time_step));
         memory.emplace_back(terms.size());

@@ -14,30 +14,29 @@ namespace Voussoir
                "Type",
                type,
                "The earthquake: none, recorded accelerations from files "
-               "(record), a Ricker wavelet, a sine, a single pulse, or "
-               "an artificial motion that follows a design spectrum "
-               "(spectrum). Its details are in the section of that "
-               "name; the other ones are not used.");
+               "(record), a Ricker wavelet, a sine, a single pulse, or an "
+               "artificial motion that follows a design spectrum (spectrum). "
+               "Its details are in the section of that name; the other "
+               "sections are not used.");
     add_option(
       prm,
       "Given at",
       given_at,
-      "Where the motion belongs. outcrop: on bare rock at the bottom of the "
+      "Place of the given motion. outcrop: on bare rock at the bottom of the "
       "model, twice the incident wave there, as in most codes; damping of the "
-      "rock then weakens it on its way up. level rock: on the rock of the "
-      "bottom, if that reached up to the surface of the model, whatever its "
-      "damping. free surface: on top of the "
-      "modelled ground without dam and canyon, from where the wave is "
-      "deconvolved. incident wave: the upgoing wave itself at the bottom of "
-      "the model.");
+      "rock then weakens it on its way up. level rock: on bare rock at the "
+      "height of the model's surface, of the rock at its bottom, whose damping "
+      "is taken into account. free surface: on top of the modelled ground "
+      "without dam and canyon, from where the wave is deconvolved. incident "
+      "wave: the upgoing wave itself at the bottom of the model.");
     for (unsigned int c = 0; c < 3; ++c)
       prm.add_parameter(
         "Peak acceleration " + axis_names[c],
         peak_entries[c],
         "Largest acceleration, " + axis_meanings[c] +
-          ", before the overload factor, from 0 to 10 [g = "
-          "9.81 m/s2]; 0 for no motion. \"as recorded\" takes a record "
-          "unscaled; with the other types there is no motion.",
+          ", before the overload factor, from 0 to 10 [g = 9.81 m/s2]; 0 for "
+          "no motion. \"as recorded\" takes a record unscaled; with other "
+          "types it means no motion.",
         Anything());
     prm.add_parameter(
       "Reversed",
@@ -47,8 +46,8 @@ namespace Voussoir
       MultipleSelection("x|y|z"));
     prm.add_parameter("Overload factor",
                       overload_factor,
-                      "Multiplies all components, for studies beyond the "
-                      "design earthquake [-]." +
+                      "Factor on all components, for studies beyond the design "
+                      "earthquake [-]." +
                         usually(Usual::overload),
                       Double(0.));
 
@@ -83,9 +82,9 @@ namespace Voussoir
     for (unsigned int c = 0; c < 3; ++c)
       prm.add_parameter("Column " + axis_names[c],
                         columns[c],
-                        "Which column of File " + axis_names[c] +
-                          " to take if it is a table, counted from 1 without "
-                          "the time column.",
+                        "Column of File " + axis_names[c] +
+                          " if that is a table, counted from 1 without the "
+                          "time column.",
                         Integer(1));
     add_option(
       prm,
@@ -148,9 +147,9 @@ namespace Voussoir
       "Ramp cycles",
       ramp_cycles,
       "Number of cycles in which the motion is faded in and, at the end, out; "
-      "meanwhile it exceeds the peak acceleration, by 15 % for 1 and by 2 % "
-      "for 2. 0: the acceleration is a full sine from the start, so that the "
-      "ground drifts to one side.",
+      "meanwhile the motion exceeds the peak acceleration, by 15 % for 1 and "
+      "by 2 % for 2. 0: the acceleration is a full sine from the start, so "
+      "that the ground drifts to one side.",
       Integer(0));
   }
 
@@ -163,7 +162,7 @@ namespace Voussoir
                "Quantity",
                quantity,
                "Quantity with the shape of a single pulse. displacement: the "
-               "ground returns. velocity: it stays displaced.",
+               "ground returns. velocity: the ground stays displaced.",
                {Quantity::displacement, Quantity::velocity});
     prm.add_parameter("Duration",
                       duration,
@@ -250,7 +249,7 @@ namespace Voussoir
         throw UserError("\"Peak acceleration " + axis_names[c] +
                         "\" in section \"Ground motion\" is \"" + as_recorded +
                         "\", but the target spectrum of a record that is "
-                        "matched is a multiple of it; set it.");
+                        "matched is a multiple of this peak; give a number.");
     match.check(spectrum.spectrum, "Ground motion/Spectrum");
     if (spectrum.vertical.shape != SpectrumShape::as_horizontal)
       match.check(spectrum.vertical, "Ground motion/Spectrum/Vertical");

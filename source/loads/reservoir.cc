@@ -25,8 +25,8 @@ namespace Voussoir
     constexpr double largest_relative_step = 0.95;
 
 
-    // z of the normal out of the water, which upright planes of symmetry do not
-    // have.
+    // Limit of z of the normal out of the water, which sets the floor apart
+    // from upright planes of symmetry.
     constexpr double largest_normal_of_floor = -0.3;
 
 
@@ -54,8 +54,8 @@ namespace Voussoir
     }
 
 
-    // The free surface has no pressure, which is right on top of the water
-    // only.
+    // Warns of a free surface below the top of the water, where its zero
+    // pressure would be wrong.
     void
     check_surface(const AcousticSpace            &space,
                   const std::vector<std::string> &sets,
@@ -278,7 +278,7 @@ namespace Voussoir
 
     // the areas at the unknowns of this rank, whichever rank owns the solid's
     // nodes
-    std::array<Vector, 4> sums; // the last sum shows where there are any
+    std::array<Vector, 4> sums; // the last is positive where there are any
     for (unsigned int d = 0; d < 4; ++d)
       {
         sums[d].reinit(wall);

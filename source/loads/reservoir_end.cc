@@ -12,11 +12,11 @@ namespace Voussoir
 
   namespace
   {
-    // Motion above the frequencies of so many modes leaves as a plane wave: in
-    // 280 m of water in a canyon above 20 Hz.
+    // Motion above the frequencies of this number of modes leaves as plane
+    // waves: in a canyon with 280 m of water, above 20 Hz.
     constexpr unsigned int most_modes = 64;
 
-    // Sine of the slope of an end from which on the log has a note.
+    // Sine of the slope of an end above which the log has a warning.
     constexpr double largest_slope = 0.1;
 
 
@@ -148,8 +148,8 @@ namespace Voussoir
         "the \"Radiating end\" in section \"Reservoir\", or cells before "
         "it, lean by up to ",
         std::asin(std::min(leans, 1.)) * 180. / numbers::PI,
-        " degrees; the far reservoir behind it is that of an upright end "
-        "on which cells stand at right angles");
+        " degrees; the far reservoir behind it is computed for an upright end "
+        "with cells at right angles to it");
 
     std::map<Dof, unsigned int> number;
     for (unsigned int i = 0; i < dof_of_node.size(); ++i)

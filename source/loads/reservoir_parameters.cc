@@ -27,7 +27,7 @@ namespace Voussoir
     prm.add_parameter(
       "Cell sets",
       cell_sets,
-      "Cell sets of the water, with the model compressible or where section "
+      "Cell sets of the water, for the model compressible and where section "
       "\"Modes\" needs them.");
     prm.add_parameter("Sound speed",
                       sound_speed,
@@ -37,7 +37,8 @@ namespace Voussoir
     prm.add_parameter(
       "Free surface",
       surface,
-      "Face sets of the surface of the water's cells, without pressure.");
+      "Face sets of the free surface of the cells of water, where the pressure "
+      "is zero.");
     prm.add_parameter(
       "Radiating end",
       end,
@@ -47,8 +48,8 @@ namespace Voussoir
       prm,
       "Far reservoir",
       far_reservoir,
-      "Compressible: model of the reservoir behind the radiating end. "
-      "Channel: the section of the end continues without end, and takes no "
+      "Compressible: model of the reservoir behind the radiating end. Channel: "
+      "the section of the end continues to infinity; the channel takes no "
       "energy below its cut-off frequency, sound speed / (4 depth) where the "
       "bottom is level, except by absorption at its bottom. Plane waves: a "
       "dashpot of density times sound speed, as in most programs, which takes "
@@ -61,9 +62,9 @@ namespace Voussoir
     prm.add_parameter(
       "Bottom reflection coefficient",
       bottom_reflection,
-      "Compressible: reflected over incident pressure of a wave at the "
-      "sediment of the bottom, at normal incidence; 1 without sediment. The "
-      "rock below radiates by its own motion [-].",
+      "Compressible: ratio of reflected to incident pressure at the sediment "
+      "of the bottom, at normal incidence; 1 without sediment. The rock below "
+      "radiates by its own motion [-].",
       Patterns::Double(0., 1.));
   }
 } // namespace Voussoir

@@ -22,13 +22,13 @@ namespace Voussoir
         prm.add_parameter(
           "Cell sets",
           cell_sets,
-          "Cell sets of the change of temperature, with their outer nodes; in "
-          "the cells beside them it decreases to zero.");
+          "Cell sets whose temperature changes, outer nodes included; in the "
+          "cells beside them the change decreases to zero.");
         prm.add_parameter("Uniform change",
                           uniform,
                           "Change of temperature since the joints were closed, "
-                          "the same everywhere [K]; negative where it is "
-                          "colder. The table is added to it.");
+                          "the same everywhere [K]; negative if colder. The "
+                          "table is added to this change.");
         prm.add_parameter(
           "Table",
           table_text,
@@ -202,7 +202,7 @@ namespace Voussoir
 
       std::vector<double>       elevations, means, differences; // the table
       std::vector<unsigned int> heated_nodes;
-      std::vector<double>       changes; // of these [K]
+      std::vector<double>       changes; // of these nodes [K]
     };
 
     const Registry<Load>::Add<Temperature> registered_temperature(

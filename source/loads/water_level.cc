@@ -47,7 +47,7 @@ namespace Voussoir
       {
         text << "begin at z = " << bottom
              << " m, so that they stay dry; give an elevation z in the "
-                "coordinates of the mesh, or leave it out.";
+                "coordinates of the mesh, or leave out this section.";
         throw UserError(text.str());
       }
     if (!bed && level > top + 1e-6 * (top - bottom))

@@ -26,7 +26,8 @@ namespace Voussoir
       type,
       "Vertical: x and y components travel upwards as S waves, z as a P wave, "
       "through the layers at the model's sides. Oblique waves travel in a "
-      "homogeneous half-space; their motion is the one component given.");
+      "homogeneous half-space; their motion is the single component that is "
+      "given.");
     prm.add_parameter("Angle",
                       angle,
                       "Oblique waves: angle between the direction of travel "
@@ -41,8 +42,8 @@ namespace Voussoir
     prm.add_parameter(
       "Maximum frequency",
       maximum_frequency,
-      "For motions given on level rock or at the free surface: frequencies "
-      "above are removed when the wave at the base is computed [Hz].",
+      "For motions given on level rock or at the free surface: higher "
+      "frequencies are removed when the wave at the base is computed [Hz].",
       Patterns::Double(1.));
   }
 
@@ -88,8 +89,8 @@ namespace Voussoir
     };
 
 
-    /** The lowest rock up to the top, in elements no thinner than its own,
-     *  which are stable. */
+    /** A column of the lowest rock up to the top, in elements no thinner than
+     *  those of that rock, which are stable. */
     std::vector<WaveColumn::Layer>
     lowest_rock(const std::vector<WaveColumn::Layer> &layers)
     {
@@ -214,7 +215,7 @@ namespace Voussoir
              << " degrees, but an oblique SV wave must stay below the "
                 "critical angle of this rock, "
              << std::setprecision(4) << critical * 180. / numbers::PI
-             << " degrees; choose a smaller one.";
+             << " degrees; choose a smaller angle.";
         throw UserError(text.str());
       }
   }

@@ -101,10 +101,10 @@ namespace Voussoir
         add_option(prm,
                    "Tension law",
                    tension_law,
-                   "Stress over the opening of a crack: exponential, "
-                   "linear, the curve of the Chinese code GB 50010 "
-                   "scaled to the fracture energy, or an own table, "
-                   "which has its own strength and energy.");
+                   "Stress over the opening of a crack: exponential, linear, "
+                   "the curve of the Chinese code GB 50010 scaled to the "
+                   "fracture energy, or a table, which has its own strength "
+                   "and energy.");
         prm.add_parameter("Tension table",
                           tension_table,
                           "Openings [m] and stresses [Pa], as in \"0: 2.9e6, "
@@ -113,8 +113,8 @@ namespace Voussoir
                    "Compression law",
                    compression_law,
                    "The curve of GB 50010, linear up to 0.4 fc, its part "
-                   "beyond the peak scaled to the crushing energy, or an "
-                   "own table.");
+                   "beyond the peak scaled to the crushing energy, or a "
+                   "table.");
         prm.add_parameter("Compression table",
                           compression_table,
                           "Inelastic strains and stresses [Pa], as in \"0: "
@@ -123,12 +123,12 @@ namespace Voussoir
         prm.add_parameter(
           "Irreversible share in tension",
           irreversible_tension,
-          "Part of the inelastic strain that stays when a crack "
-          "is unloaded.",
+          "Share of the inelastic strain that stays when a crack is unloaded.",
           Patterns::Double(0., 0.95));
         prm.add_parameter("Irreversible share in compression",
                           irreversible_crushing,
-                          "The same in compression.",
+                          "Share of the inelastic strain that stays on "
+                          "unloading from crushing.",
                           Patterns::Double(0., 0.95));
       }
 
@@ -268,7 +268,7 @@ namespace Voussoir
                                                 element_length));
       }
 
-      /** Uniaxial compression as severe as the principal stresses s-, largest
+      /** Equivalent uniaxial compression of the principal stresses s-, largest
        *  first. */
       template <typename Number>
       Number
@@ -379,7 +379,7 @@ namespace Voussoir
     const Registry<Material>::Add<MaterialOf<ConcreteDamage>>
       registered_concrete_damage(
         "concrete damage",
-        "Concrete with damage in tension and compression on the effective "
-        "stress; cracks close with their stiffness back.");
+        "Concrete with damage in tension and compression of the effective "
+        "stress; closing cracks regain their stiffness.");
   } // namespace
 } // namespace Voussoir

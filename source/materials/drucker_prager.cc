@@ -29,9 +29,9 @@ namespace Voussoir
     /**
      * Drucker and Prager (1952) with tension cut-off,
      *   sqrt(J2) + a I1 <= k ,   I1 <= 3 pt .
-     * Flow goes along the gradient of sqrt(J2) + a' I1 on the cone and of I1 on
-     * the cut-off. The cut-off lies at the apex of the cone at the latest, so
-     * that the return to the edge of the two is the return to the apex, too.
+     * Plastic flow is along the gradient of sqrt(J2) + a' I1 on the cone and of
+     * I1 on the cut-off. The cut-off lies at or before the apex of the cone, so
+     * that the return to their edge includes the return to the apex.
      */
     struct DruckerPrager : PerfectPlasticity
     {

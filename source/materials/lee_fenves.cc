@@ -15,8 +15,9 @@ namespace Voussoir
   namespace
   {
     /**
-     * Lee and Fenves (1998). Plastic strain e_p develops in the effective
-     * stress s = C : (e - e_p) where that of LublinerSurface reaches fc, with
+     * Lee and Fenves (1998). Plastic strain e_p develops where the equivalent
+     * compression of LublinerSurface under the effective stress s = C : (e -
+     * e_p) reaches fc, with
      *   beta = (1 - alpha) fc / ft - (1 + alpha) ,  gamma = 0 ,
      * along the gradient of |dev s| + a_p I1. With the weight r of tension
      * among the principal stresses, the plastic strains
@@ -28,10 +29,10 @@ namespace Voussoir
      * where b_t and b_c make the plastic work over the cell's length that of
      * the fracture and the crushing energy. The stress is
      *   sigma = (1 - D_c) [(1 - D_t) s + w D_t s_c] ,
-     * where s_c is the part of s of a material without tensile strength: w of
-     * the stiffness comes back when a crack closes. Lee and Fenves put (1 -
-     * D_c) (1 - D_t + w (1 - r) D_t) s, which has no potential: a block that
-     * rocks and slides on its crack gains energy in every cycle.
+     * where s_c is the part of s of a material without tensile strength: the
+     * share w of the stiffness comes back when a crack closes. Lee and Fenves
+     * take (1 - D_c) (1 - D_t + w (1 - r) D_t) s, which has no potential: a
+     * block that rocks and slides on its crack gains energy in every cycle.
      *
      * In the return mapping the deviator of s keeps its direction and its trace
      * falls in proportion, which leaves one equation. Beyond the apex the
@@ -69,11 +70,9 @@ namespace Voussoir
         prm.add_parameter(
           "Fracture energy",
           fracture_energy,
-          "Fracture energy: plastic work of a crack per area, the "
-          "integral of the stress over the plastic opening "
-          "[N/m]. The loss of stiffness takes "
-          "energy besides, in proportion to the size of the "
-          "cells." +
+          "Fracture energy: plastic work of a crack per area, the integral of "
+          "the stress over the plastic opening [N/m]. The loss of stiffness "
+          "takes further energy, in proportion to the size of the cells." +
             usually(Usual::fracture_energy),
           Patterns::Double(1e-3));
         prm.add_parameter("Yield strength in compression",
@@ -103,20 +102,21 @@ namespace Voussoir
           "Damage ratio in tension",
           tension_ratio,
           "Rate of the damage over that of the stress as a crack opens; with 1 "
-          "the effective strength stays and all softening is loss of "
+          "the effective strength is constant and all softening is loss of "
           "stiffness. Below 1 large cells would snap back.",
           Patterns::Double(1., 1.9));
         prm.add_parameter("Damage ratio in compression",
                           crushing_ratio,
-                          "The same in compression.",
+                          "Rate of the damage over that of the stress in "
+                          "crushing.",
                           Patterns::Double(1., 1.9));
         prm.add_parameter(
           "Stiffness recovery",
           recovery,
-          "Share w of the stiffness that comes back when a "
-          "crack closes; Lee and Fenves take 1. With 0 parts on both sides of "
-          "a crack through the body penetrate each other. With 1 a crack "
-          "takes 4 % more energy, as it is relieved of lateral stress too.",
+          "Share w of the stiffness that comes back when a crack closes; Lee "
+          "and Fenves take 1. With 0, parts on both sides of a crack through "
+          "the body penetrate each other. With 1 a crack takes 4 % more "
+          "energy, as it is relieved of lateral stress too.",
           Patterns::Double(0., 1.));
       }
 
@@ -174,8 +174,8 @@ namespace Voussoir
         return all > 0. ? positive / all : 0.;
       }
 
-      /** Uniaxial compression as severe as a stress, given strengths in tension
-       *  and crushing. */
+      /** Equivalent uniaxial compression of a stress, given strengths in
+       *  tension and crushing. */
       template <typename Number>
       Number
       equivalent_compression(const Number &first,
@@ -415,8 +415,8 @@ namespace Voussoir
     const Registry<Material>::Add<MaterialOf<LeeFenves>> registered_lee_fenves(
       "lee-fenves",
       "Concrete with plastic strain and damage in tension and compression "
-      "after Lee and Fenves (1998), modified: a crack that closes gets the "
-      "stiffness of the pressed directions back, not of all, so that the "
-      "stress has a potential.");
+      "after Lee and Fenves (1998), modified: a closing crack regains its "
+      "stiffness in the compressed directions only, so that the stress has a "
+      "potential.");
   } // namespace
 } // namespace Voussoir

@@ -22,21 +22,20 @@ namespace Voussoir
       inertia_factor,
       "Factor on the density in the equation of motion. A factor of 0.01 on "
       "the rock makes the massless foundation of older practice; time steps "
-      "shrink with its root. A rock with a factor below one takes no inertial "
-      "earthquake force.",
+      "shrink with the root of the factor. A rock with a factor below one "
+      "takes no inertial earthquake force.",
       Patterns::Double(1e-4, 1.));
     prm.add_parameter(
       "Damping factor",
       damping,
-      "Damping of this material relative to the section "
-      "\"Damping\"; 0 for none. Mass-proportional damping is the same in all "
-      "materials.",
+      "Factor on the damping of section \"Damping\" for this material; 0 for "
+      "none. Mass-proportional damping is the same in all materials.",
       Patterns::Double(0., 4.));
     prm.add_parameter("Static factor",
                       static_factor,
-                      "Modulus under the loads of the static stage over the "
-                      "dynamic one; 0.67 where the dynamic modulus is taken as "
-                      "1.5 times the static one.",
+                      "Modulus under the loads of the static stages over the "
+                      "dynamic modulus; 0.67 where the dynamic modulus is "
+                      "taken as 1.5 times the static one.",
                       Patterns::Double(0.01, 2.));
     prm.add_parameter("Thermal expansion",
                       expansion,

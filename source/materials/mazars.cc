@@ -20,8 +20,8 @@ namespace Voussoir
      * Of these strains, a_t is the share due to the tensile principal stresses.
      * D_t follows the exponential curve of a crack band; in compression
      *   D_c = 1 - (1 - A) k0 / k - A exp(-B (k - k0)) ,   k0 = ft / E.
-     * A crack that closes does not get its stiffness back: the model is for
-     * monotonic loads, not for cycles.
+     * A closing crack does not regain its stiffness: the model is for monotonic
+     * loads, not for cycles.
      */
     struct Mazars : IsotropicElasticity, TensileCrack
     {
@@ -73,7 +73,7 @@ namespace Voussoir
         tension = tension.of_static_state(young_modulus);
       }
 
-      /** Stress and inelastic strain stay, as in SplitDamage. */
+      /** Stress and inelastic strain are kept, as in SplitDamage. */
       SymmetricTensor3<double>
       hand_over(const SymmetricTensor3<double> &strain,
                 const PointResponse<double>    &response,
@@ -181,7 +181,8 @@ namespace Voussoir
                            weight * memory.damage +
                              (1. - weight) *
                                damage_in_compression(largest, threshold));
-                // as D_t does, which in the static state follows its curve
+                // in proportion to that of D_t, which in the static state
+                // follows its curve
                 const double growth = memory.damage - before_in_tension;
                 lane_of(lost, lane) =
                   (damage - before) * (growth > 0. ?
@@ -223,7 +224,7 @@ namespace Voussoir
 
     const Registry<Material>::Add<MaterialOf<Mazars>> registered_mazars(
       "mazars",
-      "Concrete with one damage by Mazars, for monotonic loads: cracks that "
-      "close do not get their stiffness back.");
+      "Concrete with one damage after Mazars (1986), for monotonic loads: "
+      "closing cracks do not regain their stiffness.");
   } // namespace
 } // namespace Voussoir

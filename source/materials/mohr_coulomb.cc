@@ -14,11 +14,11 @@ namespace Voussoir
     /**
      * In principal stresses s1 >= s2 >= s3, the planes
      *   (si - sj) + (si + sj) sin phi <= 2 c cos phi   (i < j)
-     * and the tension cut-off si <= ft, at the apex at the latest. Flow goes
-     * along (ei - ej) + (ei + ej) sin psi, and ei on the cut-off. Planes,
-     * edges and corners are the sets of up to three of these six; on each the
-     * return is linear, and the right one is that which needs no multiplier
-     * below zero and leaves no plane violated.
+     * and the tension cut-off si <= ft, at or before the apex. Plastic flow is
+     * along (ei - ej) + (ei + ej) sin psi, and ei on the cut-off. Planes, edges
+     * and corners are the sets of up to three of these six; on each the return
+     * is linear; the admissible one has no negative multiplier and violates no
+     * plane.
      */
     struct MohrCoulomb : PerfectPlasticity
     {
@@ -134,7 +134,8 @@ namespace Voussoir
         return largest;
       }
 
-      /** Back to the surface, from principal stresses in falling order. */
+      /** Returns to the surface, from principal stresses in descending order.
+       */
       Triple
       returned(const Triple &trial) const
       {

@@ -166,10 +166,10 @@ namespace Voussoir
       }
 
       /**
-       * The shear modulus of Voigt's mean, and the P wave of the fastest wave
-       * of all directions. Direction and polarisation of that wave can be
-       * exchanged without changing its speed, so that each is optimised for the
-       * other in turn.
+       * Equivalent constants: the shear modulus of Voigt's mean, and the P-wave
+       * speed of the fastest wave of all directions. Direction and polarisation
+       * of that wave can be exchanged without changing its speed, so that each
+       * is optimised for the other in turn.
        */
       void
       find_equivalent()

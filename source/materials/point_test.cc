@@ -52,7 +52,8 @@ namespace Voussoir
       return result;
     };
 
-    // Newton's method with differences; halved steps where it does not help
+    // Newton's method with differences; steps are halved where the residual
+    // does not fall
     dealii::Vector<double> residual = miss(strain);
     const double           goal     = 1e-10 * modulus * 1e-4;
     for (unsigned int iteration = 0;
@@ -61,12 +62,12 @@ namespace Voussoir
       {
         if (iteration == 100)
           throw UserError("The material test finds no strain that gives the "
-                          "wanted stresses; the material may have no more "
+                          "prescribed stresses; the material may have lost its "
                           "strength. Control the strain of the failing "
                           "component instead.");
         FullMatrix<double> tangent(unknown.size(), unknown.size());
-        // small against the residual and away from the wanted stress, as a law
-        // may have a kink there
+        // small against the residual and away from the prescribed stress, where
+        // a law may have a kink
         const double size =
           std::max(1e-14, std::min(1e-9, 0.1 * residual.l2_norm() / modulus));
         for (unsigned int k = 0; k < unknown.size(); ++k)

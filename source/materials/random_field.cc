@@ -23,8 +23,8 @@ namespace Voussoir
     }
 
 
-    /** Probability that the field, less a shift, is below a share of all its
-     *  values. */
+    /** Probability that the shifted field is below the quantile of this share.
+     */
     double
     shifted_probability(const double share, const double shift)
     {
@@ -42,34 +42,36 @@ namespace Voussoir
       "Modulus variation",
       modulus_variation,
       "Coefficient of variation of the moduli over space: standard deviation "
-      "over mean, which is the value that the material has. 0: uniform [-].",
+      "over mean; the mean is the value of the material. 0: uniform [-].",
       Patterns::Double(0., 1.));
     prm.add_parameter(
       "Strength variation",
       strength_variation,
-      "The same of strengths, cohesion and tension cut-off. They are large where "
-      "the moduli are. Friction and fracture energies are uniform [-].",
+      "Coefficient of variation of strengths, cohesion and tension cut-off, "
+      "which are large where the moduli are. Friction and fracture energies "
+      "are uniform [-].",
       Patterns::Double(0., 1.));
     prm.add_parameter(
       "Correlation lengths",
       lengths,
-      "In x, y and z: how far apart two points are whose correlation has fallen "
-      "to 1/e [m].",
+      "Distances in x, y and z at which the correlation of two points has "
+      "fallen to 1/e [m].",
       Patterns::List(Patterns::Double(0.01, 1e5), 3, 3));
     prm.add_parameter("Seed",
                       seed,
-                      "Another one makes another field of the same kind.",
+                      "Start of the random numbers: another seed gives another "
+                      "field of the same statistics.",
                       Patterns::Integer(0, 1000000000));
     prm.add_parameter(
       "Classes",
       n_classes,
-      "The material becomes so many, \"NAME 1\" the softest or weakest, each "
-      "of as large a share of the cells before refinement.",
+      "Number of classes that the material is divided into, \"NAME 1\" the "
+      "softest or weakest, with equal shares of the cells before refinement.",
       Patterns::Integer(2, 64));
     prm.add_parameter("Part",
                       part,
-                      "Number of the class that this section is. The program "
-                      "sets it in the file as it was run; 0: all of them.",
+                      "Number of the class of this section, set by the program "
+                      "in the file of the run; 0: all classes.",
                       Patterns::Integer(0, 64));
   }
 

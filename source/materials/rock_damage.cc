@@ -51,7 +51,8 @@ namespace Voussoir
           Patterns::Double(1e-3));
         prm.add_parameter("Residual cohesion",
                           residual_cohesion,
-                          "Share of the cohesion that stays.",
+                          "Share of the cohesion that remains after shear "
+                          "failure.",
                           Patterns::Double(0., 0.95));
       }
 

@@ -22,7 +22,7 @@ namespace Voussoir
     for (unsigned int i = 0; i < nodes.size(); ++i)
       if (nodes[i].stress >= nodes[peak].stress)
         peak = i;
-    // of the same energy between the same stresses
+    // straight line of the same energy between the same stresses
     const double first = nodes[peak].stress, last = nodes.back().stress;
     straight =
       first > last ? 2. * energy(nodes) / (first * first - last * last) : 1e30;
@@ -129,7 +129,7 @@ namespace Voussoir
   {
     const double inelastic =
       (strain - stress / curve.young_modulus) / curve.stretch;
-    // the flow of the law is relieved sideways as the opening is
+    // flow is relieved laterally in the same way as the opening
     const double irreversible =
       curve.irreversible_share * curve.stretch * inelastic;
     return {stress, inelastic, irreversible, strain - irreversible};
@@ -195,13 +195,13 @@ namespace Voussoir
       }
     memory.largest = largest + followed * (trial - largest);
 
-    // from e_a, s_a; at first as if from the limit
+    // from e_a, s_a; in the first step as if from the limit
     const double strain      = memory.largest - old.irreversible;
     const double last        = is_new ? limit : memory.last;
     const double last_stress = progress.intact * young_modulus * last;
 
     // The energy of the curve and that of the step are linear along each piece,
-    // as is their difference: continue until it vanishes.
+    // as is their difference: continue until this difference vanishes.
     Point  now  = old;
     double used = 0.;
     for (;; ++node)

@@ -159,10 +159,10 @@ namespace Voussoir
       prm,
       "Baseline correction",
       method,
-      "Method that removes the drift of velocity and displacement due to "
-      "small errors of the recorded acceleration. polynomial: a polynomial of "
-      "fourth degree is subtracted from the acceleration, so that the motion "
-      "ends at rest where it began. high-pass: the same after a Butterworth "
+      "Method that removes the drift of velocity and displacement due to small "
+      "errors of the recorded acceleration. polynomial: a polynomial of fourth "
+      "degree is subtracted from the acceleration, so that the motion ends at "
+      "rest where it began. high-pass: as polynomial, after a Butterworth "
       "filter without phase shift. none: the record as it is.");
     prm.add_parameter("Corner frequency",
                       corner_frequency,

@@ -39,7 +39,7 @@ namespace Voussoir
       return quotient;
     }
 
-    /** 1 up to 0.8 of the maximum frequency, half a cosine down to 0 there. */
+    /** Taper: 1 up to 0.8 of the maximum frequency, then half a cosine to 0. */
     double
     low_pass(const double frequency, const double maximum_frequency)
     {

@@ -22,13 +22,12 @@ namespace Voussoir
                "Shape",
                shape,
                std::string(
-                 "hydropower code: the standard design spectrum of "
-                 "the Chinese codes NB 35047 and GB 51247, which "
-                 "rises to a plateau from 0.1 s to the "
-                 "characteristic period and then decays; compare it and "
-                 "the default values with the printed code, which "
-                 "was not read. table: the "
-                 "entries Periods and Amplifications.") +
+                 "hydropower code: the standard design spectrum of the Chinese "
+                 "codes NB 35047 and GB 51247, which rises to a plateau from "
+                 "0.1 s to the characteristic period and then decays; compare "
+                 "it and the default values with the printed code, from which "
+                 "they were not taken. table: the entries Periods and "
+                 "Amplifications.") +
                  (is_vertical ? " as horizontal: that of the other components; "
                                 "the entries below are not used." :
                                 ""),

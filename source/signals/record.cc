@@ -40,7 +40,7 @@ namespace Voussoir
     std::vector<Line>
     read_lines(const std::string &file)
     {
-      // a pipe would be waited for
+      // a read of a pipe would block
       std::error_code error;
       std::ifstream   stream;
       if (std::filesystem::is_regular_file(file, error))
@@ -311,7 +311,9 @@ namespace Voussoir
                      "; all rows must be alike");
         }
       if (rows.size() < 2)
-        refuse(file, "there is one row of numbers only; two are the least");
+        refuse(file,
+               "there is one row of numbers only; at least two are "
+               "needed");
 
       const bool         has_time  = rows.front().size() > 1;
       const unsigned int n_columns = rows.front().size() - (has_time ? 1 : 0);

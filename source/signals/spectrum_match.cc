@@ -19,9 +19,9 @@
 // its peak response, with the amplitudes that bring all peaks to the target at
 // once (Lilhanand and Tseng 1988; wavelet and its width after Al Atik and
 // Abrahamson, Earthquake Spectra 26, 2010). As peaks move, this is repeated.
-// The wavelets hold enough cycles to leave velocity and displacement at rest;
+// The wavelets have enough cycles to leave velocity and displacement at rest;
 // parts before the start of the record are cut off, and the baseline correction
-// compensates for that.
+// compensates for this.
 
 namespace Voussoir
 {
@@ -34,7 +34,7 @@ namespace Voussoir
     // neighbouring periods compete.
     constexpr double regularisation = 0.003;
 
-    // A peak that is further off is corrected in several iterations.
+    // A peak with a larger error is corrected in several iterations.
     constexpr double largest_correction = 0.6;
 
 
@@ -90,7 +90,7 @@ namespace Voussoir
                            std::sin(damped_omega * t) / damped_omega;
       }
 
-      /** Samples between which the wavelet is, of a series. */
+      /** First and last sample of the wavelet in a series. */
       std::pair<std::size_t, std::size_t>
       samples(const TimeSeries &series) const
       {
@@ -220,12 +220,13 @@ namespace Voussoir
       prm,
       "Method",
       method,
-      "How records are fitted to a target spectrum, which is the one of "
-      "section \"Ground motion/Spectrum\" (Shape to Amplifications, Damping "
-      "ratio) times the Peak acceleration of the component. each component: by "
+      "How records are fitted to a target spectrum, which is that of section "
+      "\"Ground motion/Spectrum\" (Shape to Amplifications, Damping ratio) "
+      "times the Peak acceleration of the component. each component: by "
       "wavelets at the times of the peak responses, after a factor. one "
       "factor: all components by the same factor, so that their shapes and "
-      "ratios stay. none: a record is scaled to the Peak acceleration only.");
+      "ratios are kept. none: a record is scaled to the Peak acceleration "
+      "only.");
     prm.add_parameter("Shortest period",
                       shortest_period,
                       "Shortest natural period whose response is fitted [s].",

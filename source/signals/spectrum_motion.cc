@@ -54,7 +54,7 @@ namespace Voussoir
     prm.leave_subsection();
     prm.add_parameter("Damping ratio",
                       damping_ratio,
-                      "Damping ratio the design spectrum is given for [-].",
+                      "Damping ratio of the design spectrum [-].",
                       Double(0.005, 0.3));
     prm.add_parameter("Duration",
                       duration,
@@ -76,8 +76,8 @@ namespace Voussoir
                       Double(0.));
     prm.add_parameter("Decay rate",
                       decay_rate,
-                      "Behind the plateau the intensity is "
-                      "exp(-rate * time) [1/s].",
+                      "After the plateau the intensity is exp(-rate * time) "
+                      "[1/s].",
                       Double(0.));
     prm.add_parameter("Seed",
                       seed,
@@ -186,8 +186,8 @@ namespace Voussoir
     }
 
     /**
-     * Multiply each half wave that exceeds the peak 1 so that it just reaches
-     * it, and the largest one if none does.
+     * Scales each half wave that exceeds the peak 1 to this peak, and the
+     * largest one if none does.
      */
     void
     limit_peak(std::vector<double> &a)
@@ -207,7 +207,7 @@ namespace Voussoir
         }
     }
 
-    /** Multiply the Fourier amplitudes by target / obtained spectrum. */
+    /** Multiplies the Fourier amplitudes by target / obtained spectrum. */
     void
     fit_amplitudes(TimeSeries           &motion,
                    const DesignSpectrum &target,

@@ -174,7 +174,7 @@ namespace Voussoir
       [&](const unsigned int begin, const unsigned int end) {
         update_motion(state, base, begin, end);
       });
-    if (!is_reproducible) // ends the run at the next line of the energy balance
+    if (!is_reproducible) // the next line of the energy balance ends the run
       state.velocity = std::numeric_limits<double>::quiet_NaN();
 
     // (M + M_a + dt/2 C) v+ = ... + dt (F_n - K_b u_n) at nodes with these

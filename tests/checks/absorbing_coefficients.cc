@@ -35,8 +35,8 @@ namespace Voussoir
     }
 
 
-    /** Springs and dashpots at the nodes of a box, with the areas and the
-     *  distances of its nodes by hand. */
+    /** Springs and dashpots at the nodes of a box, with areas and distances of
+     *  its nodes calculated by hand. */
     class BoundaryCoefficients : public Check
     {
     public:
@@ -152,7 +152,7 @@ namespace Voussoir
      * A P pulse runs down a column and meets a spring k and a dashpot b rho c
      * per area:
      *   |R|^2 = ((1-b)^2 x^2 + 1) / ((1+b)^2 x^2 + 1) ,  x = w rho c / k ,
-     * which is little where k r is large for the wave.
+     * which is small where k r is large for the wave.
      */
     class Absorption : public Check
     {
@@ -209,7 +209,7 @@ namespace Voussoir
           run_and_record(*simulation,
                          {{"middle", Point<3>(0., 0., -0.5 * height)}});
 
-        // velocities, which fade faster than displacements
+        // velocities, which decay faster than displacements
         auto v = histories.component(0, 2);
         std::adjacent_difference(v.begin(), v.end(), v.begin());
         return reflected_shares(histories.times, v, frequencies, height / c);

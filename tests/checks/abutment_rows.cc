@@ -13,10 +13,10 @@ namespace Voussoir
   {
     /**
      * The cells beside the line where an arch dam meets its rock, for several
-     * dams and cell sizes: they form a layer on either side, so that at each of
-     * its points as many cells meet as in a regular mesh, and they are well
-     * shaped and not small. Without such layers up to six met at a point, and
-     * spots of stress sat there.
+     * dams and cell sizes: they form a layer on either side, so that as many
+     * cells meet at each of its points as in a regular mesh, and they are well
+     * shaped and not small. Without such layers up to six cells met at a point,
+     * with local peaks of stress.
      */
     class AbutmentRows : public Check
     {
@@ -44,7 +44,7 @@ namespace Voussoir
       }
 
     private:
-      /** A box of 1 x 2 x 4 whose height leans over by 45 degrees. */
+      /** A box of 1 x 2 x 4 whose third direction is inclined by 45 degrees. */
       static void
       measure_known_cells(Verdicts &verdicts)
       {

@@ -16,9 +16,9 @@ namespace Voussoir
     /**
      * The wedges of rock in the banks of an arch dam: the mesh does not tangle,
      * each wedge is a body of its own once the dam is cut off its rock, and the
-     * bottom is a plane of the dip and the direction asked for, which meets the
-     * edge of dam and rock at the elevation asked for in the dam's middle. The
-     * dam's joints stay upright planes.
+     * base plane has the dip and the direction given, and meets the edge of dam
+     * and rock at the given elevation in the dam's middle. The dam's joints
+     * stay upright planes.
      */
     class AbutmentWedgeCheck : public Check
     {
@@ -106,7 +106,7 @@ namespace Voussoir
                  mesh.face_sets.at(name + " base"))
               for (unsigned int v = 0; v < 4; ++v)
                 {
-                  // at each corner, so that it is no twisted face
+                  // at each corner, so that the face is not twisted
                   const auto         x = corners(mesh, face);
                   const unsigned int a = v ^ 1U, b = v ^ 2U;
                   Tensor<1, 3> n = cross_product_3d(x[a] - x[v], x[b] - x[v]);
@@ -189,8 +189,8 @@ namespace Voussoir
         return bend;
       }
 
-      /** Elevation of the bottom where it meets the dam's middle surface: the
-       *  middle vertex of those on the edge of dam and rock. */
+      /** Elevation of the base plane where it meets the dam's middle surface:
+       *  the middle vertex of those on the edge of dam and rock. */
       static double
       foot(const CoarseMesh &mesh, const std::string &name)
       {

@@ -7,11 +7,11 @@ namespace Voussoir
   namespace
   {
     /**
-     * A wedge in the bank of an arch dam that is so soft that it does not hold
-     * it, in its static state under its own weight. Its bottom dips towards the
-     * river, away from side and back, so that it alone carries the wedge, a
-     * block on an inclined plane: its safety is friction over the tangent of
-     * the dip.
+     * A wedge in the bank of an arch dam, which is so soft that it does not
+     * support the wedge, in the static state under its own weight. The base
+     * plane dips towards the river, away from lateral and rear release planes,
+     * so that it alone carries the wedge as a block on an inclined plane: the
+     * safety is friction over the tangent of the dip.
      */
     class AbutmentWedgeSafety : public Check
     {

@@ -85,7 +85,7 @@ namespace Voussoir
 
     /**
      * Westergaard's added mass of the nodes of a plane face: 7/8 rho sqrt(H h)
-     * of the node's area times n n^T, or the part of it that an option leaves.
+     * of the node's area times n n^T, or the part of it that an option keeps.
      */
     class AddedMassDirection : public Check
     {
@@ -121,7 +121,7 @@ namespace Voussoir
       }
 
     private:
-      // the cases' numbers, by hand
+      // the numbers of the cases, calculated by hand
       static constexpr double length = 12., height = 40., thickness = 5.,
                               density       = 1000.;
       static constexpr unsigned int n_along = 3, n_up = 16;
@@ -216,7 +216,7 @@ namespace Voussoir
         verdicts.below(name + ": nodes against m n n^T",
                        difference / largest,
                        1e-12);
-        // the sum over nodes misses the root at the surface
+        // the sum over nodes does not resolve the root at the surface
         verdicts.near(name + ": trace over 7/12 rho H^2 b",
                       sum / (7. / 12. * density * level * level * length *
                              direction.norm()),

@@ -28,9 +28,9 @@ namespace Voussoir
 
 
     /**
-     * Volume and length of a mesh of an arch dam. Its faces are flat between
-     * the vertices, which lie on the dam's, so that its error is proportional
-     * to the square of the cell size.
+     * Volume and length of a mesh of an arch dam. Faces of the mesh are flat
+     * between the vertices, which lie on the dam's faces, so that its error is
+     * proportional to the square of the cell size.
      */
     class MeasuredDam
     {
@@ -39,7 +39,7 @@ namespace Voussoir
         : mesh(mesh)
       {}
 
-      /** By 2 x 2 x 2 points, exact for the trilinear map. */
+      /** Volume by 2 x 2 x 2 points, exact for the trilinear map. */
       double
       volume() const
       {
@@ -223,7 +223,7 @@ namespace Voussoir
       }
 
 
-      /** Quadratic functions of the elevation, once by their numbers and once
+      /** Quadratic functions of the elevation, given by their coefficients and
        *  by four arches. */
       void
       run_table(const ParameterFile &file, Verdicts &verdicts) const

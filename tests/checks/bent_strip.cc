@@ -15,9 +15,10 @@ namespace Voussoir
      *
      *   w = 4 q L^3 / (E' h^2) + q L / G .
      *
-     * Full integration at degree 1 sees in each of the n cells through the
-     * thickness a strain without the thickness' own and a shear that is none
-     * of bending: with the length l of a cell it makes the strip stiffer by
+     * Full integration at degree 1 has, in each of the n cells through the
+     * thickness, a strain without the component across the thickness, and a
+     * parasitic shear. With the length l of a cell this makes the strip stiffer
+     * by
      *
      *   r = 1 - 1/n^2 + (M + G (n l/h)^2) / (n^2 E') ,  M = lambda + 2 G .
      */

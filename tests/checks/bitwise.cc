@@ -16,7 +16,7 @@ namespace Voussoir
     using Content = std::map<std::string, std::map<std::uint64_t, std::string>>;
 
 
-    /** Those of all ranks, on each, byte by byte. */
+    /** The numbers of all ranks, on each rank, byte by byte. */
     std::map<std::uint64_t, std::string>
     gathered(const KeyedValues &values, const MPI_Comm communicator)
     {
@@ -73,8 +73,8 @@ namespace Voussoir
 
     /**
      * With reproducible sums all ranks together, with either partition, compute
-     * bit for bit what one rank computes by itself, and without they do not:
-     * otherwise the comparison would prove nothing.
+     * bit for bit what one rank computes by itself, and without reproducible
+     * sums they do not: otherwise the comparison would prove nothing.
      */
     class Bitwise : public Check
     {
@@ -125,7 +125,8 @@ namespace Voussoir
 
         for (const std::string partition : {"p4est", "METIS"})
           {
-            // the static state is found by all and kept for the one
+            // the static state is found by all ranks and kept for the single
+            // rank
             const Content together =
               marched("reproducible", partition, communicator);
             Content alone;

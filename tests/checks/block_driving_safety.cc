@@ -84,8 +84,8 @@ namespace Voussoir
                              std::numeric_limits<double>::infinity() :
                              std::stod(text));
         std::vector<double> crossings;
-        // the load comes before 0.1 s; a line has the mean of the last whole
-        // 8 ms, and comes 4 to 12 ms after their middle
+        // the load is applied before 0.1 s; a line has the mean over the last
+        // whole 8 ms, and is 4 to 12 ms later than their middle
         for (std::size_t i = 1; i < times.size(); ++i)
           if (times[i - 1] > 0.15 && (safety[i] < 1.) != (safety[i - 1] < 1.))
             crossings.push_back(times[i]);

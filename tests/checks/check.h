@@ -9,8 +9,8 @@ namespace Voussoir
 {
   /**
    * The lines a test prints: one quantity each, with its reference and a
-   * verdict. Values are rounded to four digits, so that the reference output
-   * holds on other processors.
+   * verdict. Values are rounded to four digits, so that the reference output is
+   * valid on other processors.
    */
   class Verdicts
   {
@@ -29,8 +29,8 @@ namespace Voussoir
     void
     below(const std::string &name, const double value, const double limit);
 
-    /** value >= limit; prints the limit only: of a bound, today's digits are no
-     *  reference. */
+    /** value >= limit; prints the limit only, as the digits of a bounded value
+     *  are no reference. */
     void
     above(const std::string &name, const double value, const double limit);
 
@@ -89,14 +89,14 @@ namespace Voussoir
   }
 
 
-  /** Largest amount of an entry on all ranks, or NaN if there is one: the norms
-   *  of deal.II drop it. */
+  /** Largest amount of an entry on all ranks, or NaN if an entry is NaN: the
+   *  norms of deal.II ignore NaN. */
   double
   largest_entry(const Vector &vector);
 
   /**
    * A test: a parameter file in tests/ names it in its section "Check" and the
-   * rest of that file is the case it looks at.
+   * rest of that file is the case that is tested.
    */
   class Check
   {

@@ -60,11 +60,11 @@ namespace Voussoir
 
 
     /**
-     * Contact where the mass of a node is no multiple of the identity, since
-     * water on a leaning face moves with it. The step is compared with
+     * Contact where the mass of a node is no multiple of the identity, because
+     * of the added mass of water on a slanted face. The step is compared with
      * equations (14) to (16) of the paper, C p = -g / dt^2 with C = R (M1^-1 +
      * M2^-1) R^T , from the dense masses and from the motion of the same blocks
-     * that do not meet.
+     * without contact.
      */
     class AddedMassContact : public Check
     {
@@ -74,7 +74,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        // held together by the friction, sliding, without friction
+        // sticking by friction, sliding, without friction
         for (const auto &[name, friction] :
              std::vector<std::pair<std::string, double>>{{"sticking", 100.},
                                                          {"sliding", 0.3},

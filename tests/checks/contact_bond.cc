@@ -120,7 +120,7 @@ namespace Voussoir
     };
 
 
-    /** Strengths before and after, and the energy that it takes between. */
+    /** Strengths before and after, and the energy dissipated in between. */
     class Bond : public LayerCheck
     {
     public:
@@ -202,7 +202,7 @@ namespace Voussoir
       registered_bond("contact bond", "Laws of a bond in tension and shear.");
 
 
-    /** Keys hold up to an opening of their depth. */
+    /** Keys prevent slip up to an opening of their depth. */
     class Keys : public LayerCheck
     {
     public:

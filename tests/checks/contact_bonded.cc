@@ -8,9 +8,9 @@ namespace Voussoir
   namespace
   {
     /**
-     * A body cut along interfaces that stay closed moves as the uncut body; the
-     * ranks together find the same motion as one, also where it opens and
-     * slips.
+     * A body cut along interfaces that stay closed moves as the uncut body; all
+     * ranks together compute the same motion as one, also where interfaces open
+     * and slip.
      */
     class Bonded : public Check
     {

@@ -188,7 +188,7 @@ namespace Voussoir
         inverse_mass.resize(8);
       }
 
-      /** A node on planes of fixed ones, which may constrain it by more points
+      /** A node on planes of fixed nodes, which may constrain it by more points
        *  than it has degrees of freedom. */
       void
       add_wedge(Random &random)
@@ -211,7 +211,7 @@ namespace Voussoir
                                                              free_node(random));
       }
 
-      /** Of which some are fixed in a direction or two. */
+      /** Nodes, of which some are fixed in a direction or two. */
       Tensor<2, 3>
       free_node(Random &random) const
       {
@@ -402,8 +402,8 @@ namespace Voussoir
       }
 
     private:
-      /** A node between two walls whose distance is negative; number of
-       *  clusters that are reported as unsolved. */
+      /** A node between two walls that overlap; returns the number of clusters
+       *  that are reported as unsolved. */
       static unsigned long long
       squeeze()
       {
@@ -484,7 +484,7 @@ namespace Voussoir
             const std::vector<Tensor<1, 3>> &displacement,
             Worst                           &worst)
       {
-        // less is none
+        // a smaller motion counts as none
         double motion_size = 1e-20, force_size = 0., compliance = 0.;
         std::vector<Tensor<1, 3>> force(predicted.size());
         for (unsigned int k = 0; k < before.size(); ++k)

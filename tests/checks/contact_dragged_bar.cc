@@ -10,11 +10,11 @@ namespace Voussoir
   namespace
   {
     /**
-     * A bar of length L and section b h that friction holds by q = (f p + c) b
-     * per length: pulled at its end by F, let go and pushed back by F, so
-     * slowly that it is always at rest. A change of the force by dF slides the
-     * bar over dF / q from its end if it is the first, and over half as far,
-     * against twice the friction, if it turns; with d = 1 or 2 the end moves by
+     * A bar of length L and section b h that friction resists by q = (f p + c)
+     * b per length: pulled at its end by F, let go and pushed back by F,
+     * quasi-statically. A first change of the force by dF slides the bar over
+     * dF / q from its end; a reversal slides half that length, against twice
+     * the friction; with d = 1 or 2 the end moves by
      *   dF^2 / (2 d E b h q) ,
      * and the integral of the slip grows by dF^3 / (6 d^2 E b h q^2).
      */
@@ -87,7 +87,7 @@ namespace Voussoir
                        section[0] * section[1] *
                        std::stod(file.given("Materials/stone/Young's modulus")),
                      force = traction * section[0] * section[1];
-        // increment by a change of the force
+        // increment due to a change of the force
         const auto change = [&](const double by, const double d) {
           const double size = std::abs(by);
           return Slip{by * size / (2. * d * stiffness * resistance),
@@ -118,7 +118,7 @@ namespace Voussoir
           }
       }
 
-      /** Along x; the end is that of the largest x. */
+      /** Slip along x; the end is at the largest x. */
       static Slip
       slip(const Simulation &simulation)
       {
@@ -160,7 +160,7 @@ namespace Voussoir
         return found;
       }
 
-      /** Each way with all before it. */
+      /** Each movement with all before it. */
       std::array<Slip, 3>
       in_stages(const ParameterFile &file, const MPI_Comm communicator) const
       {

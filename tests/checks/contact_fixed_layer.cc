@@ -12,8 +12,9 @@ namespace Voussoir
      * A thin layer fixed at its top, with its foot on a plane, and shear
      * tractions at the foot in static stages: the plane resists R of the
      * shear t and the layer the rest, t = R + k s with k = G / H. The foot
-     * sticks while |R| is below c + f p, then slides until it is at that limit,
-     * or at that of the broken bond, which stays broken; p = rho g H / 2.
+     * sticks while |R| is below c + f p, then slides until |R| is at that
+     * limit, or at the limit of the broken bond, which stays broken; p = rho g
+     * H / 2.
      */
     class FixedLayer : public Check
     {

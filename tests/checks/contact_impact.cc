@@ -107,7 +107,7 @@ namespace Voussoir
                       1e3 * separation,
                       1e3 * duration,
                       0.005);
-        // the nodal masses that meet are half a cell each, and stop each other
+        // the nodal masses in contact are half a cell each, and stop each other
         verdicts.near("energy lost [%]",
                       100. * energy_loss,
                       100. * simulation->run.contact->cell_size() / length *

@@ -12,7 +12,8 @@ namespace Voussoir
     /**
      * Keys prevent a block from sliding on an incline: the interface
      * resists more shear than friction could, and has no sliding safety.
-     * Without keys it has one, on an incline on which it sticks.
+     * Without keys the interface has a safety, on an incline on which the block
+     * sticks.
      */
     class KeyedSafety : public Check
     {
@@ -122,7 +123,7 @@ namespace Voussoir
         observer->observe(later);
         nlohmann::json summary;
         observer->finish(later, summary);
-        // as it is written
+        // as written in the file
         summary = nlohmann::json::parse(summary.dump()).at("interfaces");
 
         const CsvTable table(folder + "/interfaces.csv");

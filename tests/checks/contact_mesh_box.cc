@@ -109,7 +109,7 @@ namespace Voussoir
       }
 
 
-      // The lower half of a plane: its end has one node on both sides.
+      // The lower half of a plane: at its end both sides share one node.
       void
       crack(Verdicts &verdicts, const MPI_Comm communicator) const
       {
@@ -129,7 +129,8 @@ namespace Voussoir
       }
 
 
-      // Named from either side, the majority decides; sets keep their members.
+      // Faces named from both sides: the majority decides, and sets keep their
+      // members.
       void
       sides(Verdicts &verdicts, const MPI_Comm communicator) const
       {

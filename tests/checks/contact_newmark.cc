@@ -78,7 +78,7 @@ namespace Voussoir
                           1e3 * largest,
                           1e3 * mass.largest,
                           0.005);
-            // the block is elastic, the mass is not
+            // the block is elastic, the point mass is rigid
             verdicts.near(name + "slip at the end [mm]",
                           1e3 * slip(*simulation),
                           1e3 * mass.x,
@@ -130,7 +130,7 @@ namespace Voussoir
         bool   broken = false;
       };
 
-      /** Marches the mass in small steps. */
+      /** Integrates the motion of the mass in small steps. */
       void
       advance(Mass &mass, const double end) const
       {
@@ -148,7 +148,7 @@ namespace Voussoir
             const double sign = mass.v != 0. ? mass.v : drive;
             double next = mass.v + dt * (drive - std::copysign(rubs, sign));
             if (mass.v * next < 0.)
-              next = 0.; // it stops within the step
+              next = 0.; // the mass stops within the step
             mass.x += 0.5 * dt * (mass.v + next);
             mass.v = next;
             keep_largest(mass.largest, std::abs(mass.x));

@@ -10,13 +10,13 @@ namespace Voussoir
   {
     /**
      * A slender block of width b and height h that rocks from edge to edge
-     * under its weight (Housner 1963), at angles so small that the moment m g
-     * b/2 against it does not change: from an impact to the next it takes T = 2
-     * sqrt(2 theta I / (m g b / 2)) ,   I = m (b^2 + h^2) / 3 , with theta the
-     * largest angle of the motion. An impact costs energy and never gives any:
-     * Housner's, on the other edge alone, leaves r = 1 - 3/2 b^2 / (b^2 + h^2)
-     * of the angular velocity. An elastic block keeps more of it, or less, as
-     * waves in it interfere.
+     * under its weight (Housner 1963), at angles so small that the restoring
+     * moment m g b/2 is constant: the time from an impact to the next is T = 2
+     * sqrt(2 theta I / (m g b / 2)) , I = m (b^2 + h^2) / 3 , with theta the
+     * largest angle of the motion. An impact dissipates energy and never
+     * supplies any: Housner's impact, on the other edge alone, leaves the share
+     * r = 1 - 3/2 b^2 / (b^2 + h^2) of the angular velocity. An elastic block
+     * keeps more or less, as waves in it interfere.
      */
     class Rocking : public Check
     {

@@ -145,7 +145,7 @@ namespace Voussoir
             {
               worse(positive_part(-g[0]));
               worse((F[0] + s.tension * point.area) / force_size);
-              // strength of a bond without an end
+              // strength of a bond without a largest opening
               worse(positive_part(shear - s.bond * point.area) / force_size);
               continue;
             }
@@ -204,7 +204,8 @@ namespace Voussoir
     }
 
 
-    /** Which points are closed, by trying all choices with dense systems. */
+    /** Finds which points are closed, by trying all choices with dense systems.
+     */
     class WithoutFriction
     {
     public:
@@ -341,8 +342,8 @@ namespace Voussoir
                 const Strength law(
                   {trial % 4 == 0 ? 0.1 : 0.,
                    trial % 4 == 0 ? 0.2 : 0.,
-                   // cohesion that ends at opening makes a jump, and
-                   // with coupling there may be no solution
+                   // cohesion that ends at opening is a discontinuity, and with
+                   // coupling there may be no solution
                    trial % 3 == 0 && anisotropy == 0. ? 0.1 : 0.,
                    0.2 * (trial % 5)});
                 const unsigned int n_nodes = 2 + trial % 4;
@@ -437,7 +438,7 @@ namespace Voussoir
         worst.report("blocks on a base: ", verdicts);
       }
 
-      /** Friction that follows the pressure is nearly none long after a point
+      /** Friction that follows the pressure is nearly zero long after a point
        *  has opened. */
       static void
       friction_that_fades(Verdicts &verdicts)

@@ -98,9 +98,9 @@ namespace Voussoir
     /**
      * Blocks between rigid walls that slide on their base: their weight makes
      * them wider. Joined from the start they press against each other with nu
-     * rho g H^2 / 2 per width, free-standing they do not; pressed from both
-     * sides with q after that, they do with nu q H. All stresses are those of
-     * plane sections.
+     * rho g H^2 / 2 per width; free-standing blocks do not. If these are then
+     * pressed with q from both sides across the row, they press against each
+     * other with nu q H. All stresses are those of plane sections.
      */
     class Staging : public Check
     {
@@ -178,9 +178,9 @@ namespace Voussoir
                          slip,
                          1e-9);
 
-          // The gap begins where the blocks were when they met; away from
-          // the base all of them together grow by nu sigma L / E each. Their
-          // position between the walls is indeterminate.
+          // The gap counts from the places of the blocks at grouting; away from
+          // the base each of them grows by nu sigma L / E. Their position
+          // between the walls is indeterminate.
           const unsigned int n_surfaces =
             simulation->run.contact->surface_names().size();
           std::vector<double> overlap(n_surfaces), points(n_surfaces);
@@ -226,8 +226,8 @@ namespace Voussoir
     private:
       static constexpr double gravity = 9.81;
 
-      /** The rise of a block's top, in all and from later states. The foot of a
-       *  block that stands free disturbs the plane sections a little. */
+      /** The rise of a block's top, in total and since later states. The foot
+       *  of a block that stands free disturbs the plane sections a little. */
       static void
       compare_displacements(const ParameterFile &stages,
                             const double         of_weight,

@@ -58,8 +58,8 @@ namespace Voussoir
         verdicts.is_true("tan(theta) = 1.01 f slides",
                          !stands(tilted(1.01 * friction), communicator));
 
-        // it rests under the normal part of its weight, then the part along
-        // the plane comes as a traction on its back
+        // first the normal part of the weight acts, then the part along the
+        // plane as a traction on the back of the block
         const double angle      = std::atan(2. * friction);
         const double push       = density * gravity * std::sin(angle);
         const auto   parameters = make_case(file.with(

@@ -8,9 +8,9 @@ namespace Voussoir
   {
     /**
      * A block on a base with water in the joint under it, from a heel at x = 0
-     * to a toe: head linear between them, or with drains between. The
-     * pressure of contact is less by it, while the base still carries all of
-     * the weight.
+     * to a toe: head linear between them, or with drains between. The uplift
+     * reduces the pressure of contact, while the base still carries all of the
+     * weight.
      */
     class Uplift : public Check
     {
@@ -119,8 +119,8 @@ namespace Voussoir
     };
 
     /**
-     * A block that the water in its joint lifts, unless that on its top presses
-     * it down: the uplift must not act before the reservoir.
+     * A block that the water in its joint lifts, unless the water on its top
+     * presses it down: the uplift must not act before the reservoir.
      */
     class UpliftByStage : public Check
     {

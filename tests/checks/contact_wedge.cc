@@ -11,7 +11,7 @@ namespace Voussoir
     /**
      * A wedge in a notch: a prism along y whose section is a triangle with the
      * apex below, on two planes that rise to the left and to the right of it;
-     * a layer of cells under the planes holds it.
+     * a layer of cells under the planes supports it.
      */
     class Wedge : public MeshGenerator
     {
@@ -99,12 +99,13 @@ namespace Voussoir
      * The wedge against limit equilibrium. The frame is that of the sliding
      * line y, which is level; the weight is tilted by its plunge.
      *
-     * The elastic wedge in its static state carries shear across the line too,
+     * The elastic wedge in its static state also carries shear across the line,
      * so that the forces of each plane are not those of limit equilibrium; but
-     * the block's safety, from their resultant, is. A push from behind, which
-     * grows slowly, then leads through a safety of one. The shear across the
-     * line presses on the planes and adds a little to their resistance, until
-     * the wedge has slipped so far that all shear is along the line.
+     * the block's safety, which follows from their resultant, is. A push from
+     * behind, which grows slowly, then lowers the safety below one. The shear
+     * across the line presses on the planes and adds a little to their
+     * resistance, until the wedge has slipped so far that all shear is along
+     * the line.
      */
     class WedgeSafety : public Check
     {
@@ -210,11 +211,11 @@ namespace Voussoir
             N_right += on_right.pressure;
             ++samples;
           }
-        // the acceleration is that of the motion at the ends and in the middle
-        // of two equal intervals
+        // the acceleration follows from the displacements at the ends and in
+        // the middle of two equal intervals
         const unsigned int half = (samples - 1) / 2;
         const double       step = times[half] - times[0];
-        // elastic; it ends half a metre away
+        // elastic; the wedge ends half a metre away
         verdicts.below("motion while the load leaves a safety of 1.05 [mm]",
                        1e3 * before,
                        0.05);

@@ -7,11 +7,12 @@ namespace Voussoir
   namespace
   {
     /**
-     * A block that is pressed together in z and stretched in x, each time from
-     * new: its forces change with the stretch without a jump, also where the
-     * crack that would open no longer lies across x but across z. Half the step
-     * of the elongation gives half the largest change of the forces, unless
-     * they jump. Static equilibrium is searched for in such states.
+     * A block that is compressed in z and stretched in x, each time from its
+     * initial state: its forces change with the stretch without a jump, also
+     * where the direction of the crack that would open changes between x and z.
+     * Half the step of the stretch gives half the largest change of the forces,
+     * unless they jump. The search for static equilibrium needs this
+     * continuity.
      */
     class ContinuousResponse : public Check
     {

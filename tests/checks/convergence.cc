@@ -35,8 +35,8 @@ namespace Voussoir
     /**
      * Standing plane P wave in a laterally constrained column with fixed base:
      * the error in space falls with the power degree + 1 of the cell size. The
-     * known error of the scheme in time is taken out by comparing with its own
-     * frequency, sin(w' dt/2) = w dt/2.
+     * known error of the time integration is eliminated by comparison with the
+     * frequency of the scheme, sin(w' dt/2) = w dt/2.
      */
     class Convergence : public Check
     {

@@ -11,7 +11,7 @@ namespace Voussoir
   {
     /**
      * A bar along z whose weak cells crack: the expected number of layers of
-     * cells, for the energy of as many cracks, while cracks that close gain no
+     * cells, with the energy of as many cracks, while closing cracks gain no
      * energy.
      */
     class CrackBar : public Check

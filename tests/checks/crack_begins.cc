@@ -7,8 +7,9 @@ namespace Voussoir
   namespace
   {
     /**
-     * A damped bar is pulled apart: no energy jumps as its points leave the
-     * elastic range, none comes from damping, and the run continues to its end.
+     * A damped bar is pulled apart: the energies do not jump as its points
+     * leave the elastic range, damping supplies no energy, and the run
+     * continues to its end.
      */
     class CrackBegins : public Check
     {

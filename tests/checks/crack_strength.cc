@@ -8,8 +8,8 @@ namespace Voussoir
 
   namespace
   {
-    /** A short column that is pulled and pressed with growing motion fails at
-     * its strength, whatever the frequency and the damping. */
+    /** A short column that is pulled and pressed with growing amplitude fails
+     * at its strength, at any frequency and damping. */
     class CrackStrength : public Check
     {
     public:
@@ -59,7 +59,7 @@ namespace Voussoir
         double largest  = 0.;
         while (run.state.time < parameters.time.end_time)
           {
-            // the force of this step before the step is made
+            // the force at the beginning of this step
             filtered = run.state.displacement;
             filtered.add(run.damping.mesh_viscosity, run.state.velocity);
             for (unsigned int i = 0; i < run.state.memory.size(); ++i)
@@ -87,7 +87,7 @@ namespace Voussoir
               if (simulation->model.solid.discretization
                     .node_positions[node][2] == 0.)
                 pull -= node_value(force, node)[2];
-            keep_largest(largest, pull); // of one square metre
+            keep_largest(largest, pull); // on one square metre
             run.scheme.step(run.state);
           }
         return largest;

@@ -71,7 +71,7 @@ namespace Voussoir
                        largest(of_joints),
                        1e-9);
         verdicts.below("from its crest [m]", largest(of_crest), 1e-9);
-        // its elevation is found to 1e-9 of the dam's height
+        // the elevation is found to 1e-9 of the dam's height
         verdicts.below("from the canyon [m]", largest(of_canyon), 1e-6);
         verdicts.below(
           "hanging nodes from the middle of their edge or face [m]",
@@ -121,7 +121,7 @@ namespace Voussoir
       }
 
 
-      /** All but hanging ones. */
+      /** All nodes but hanging ones. */
       void
       for_each_node(const Grid                                  &grid,
                     const std::string                           &face_set,
@@ -135,7 +135,7 @@ namespace Voussoir
       }
 
 
-      /** By 2 x 2 x 2 points, exact for trilinear cells. */
+      /** Volume by 2 x 2 x 2 points, exact for trilinear cells. */
       static double
       volume(const Grid &grid)
       {

@@ -8,9 +8,9 @@ namespace Voussoir
   namespace
   {
     /**
-     * A wall with added mass that is let go in one of the natural modes to
-     * which Rayleigh damping is fitted: with C = alpha (M + M_a) + beta K it
-     * decays with the given ratio, in this mode alone.
+     * A wall with added mass that is released in one of the natural modes to
+     * which Rayleigh damping is fitted: with C = alpha (M + M_a) + beta K its
+     * motion decays with the given ratio, in this mode alone.
      */
     class DampingWithWater : public Check
     {

@@ -171,7 +171,8 @@ namespace Voussoir
             keep_smallest(smallest_step, now - last);
             keep_largest(largest, now);
             last = now;
-            // modes of the same frequency may share theirs out differently
+            // modes of the same frequency may share their effective mass
+            // differently
             if (all.frequencies[j + 1] > (1. + 1e-6) * all.frequencies[j])
               keep_largest(difference, std::abs(now - sum));
             if (j + 1 == modes_to_all)
@@ -195,9 +196,9 @@ namespace Voussoir
 
     /**
      * A rod of n cells that moves along its axis is a chain: masses m, m/2 at
-     * its free end, and springs. Mode j goes as sin(i a), a = (2j-1) pi/2n,
-     * with omega = 2 c/h sin(a/2), effective mass cot^2(a/2)/(2n) m of (n -
-     * 1/2) m that move; 8/pi^2 of n m for the first one of many cells.
+     * its free end, and springs. Mode j has the shape sin(i a), a = (2j-1)
+     * pi/2n, with omega = 2 c/h sin(a/2), effective mass cot^2(a/2)/(2n) m of
+     * (n - 1/2) m that move; 8/pi^2 of n m for the first one of many cells.
      */
     class Chain : public Check
     {

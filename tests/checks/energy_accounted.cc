@@ -7,8 +7,8 @@ namespace Voussoir
 
   namespace
   {
-    /** The energy of a driven, damped, absorbing model, whose concrete may
-     *  crack, balances. */
+    /** Energy balance of a driven, damped, absorbing model, whose concrete may
+     *  crack. */
     class EnergyAccounted : public Check
     {
     public:

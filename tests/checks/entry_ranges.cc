@@ -121,7 +121,7 @@ namespace Voussoir
                            false);
       }
 
-      /** Whether the case is warned of this value of an entry, or refuses it.
+      /** Whether the program warns of this value of an entry, or refuses it.
        */
       bool
       is_said(const std::string              &by_default,

@@ -52,8 +52,9 @@ namespace Voussoir
 
 
     /**
-     * A disk that is full for a while costs pictures of that time, and nothing
-     * else; one that stays full is reported, and the run ends with an error.
+     * A disk that is full for a while costs the pictures of that time, and
+     * nothing else; a disk that stays full is reported, and the run ends with
+     * an error.
      */
     class FailedWrites : public Check
     {
@@ -72,7 +73,7 @@ namespace Voussoir
                                  "Output/full disk/From=" + from,
                                  "Output/full disk/To=" + to}));
           std::string end = "done";
-          // which must not grow either
+          // the output must not grow either
           said.str("");
           std::streambuf *terminal = std::cout.rdbuf(said.rdbuf());
           try

@@ -19,12 +19,13 @@ namespace Voussoir
      *   L alpha T = w + L sigma/(a E) ,   sigma = t(w) ,
      *
      * with t = ft (1 - w ft/(2 Gf)) (linear) or ft exp(-w ft/Gf) (exponential).
-     * The layer of Lee and Fenves' law opens beside its plastic opening k by
-     * the elastic strain due to its damage D = 1 - (t/ft)^q,
+     * Under Lee and Fenves' law the opening of the layer is its plastic opening
+     * k plus the elastic strain due to its damage D = 1 - (t/ft)^q,
      *
      *   w = k + l (sigma / (1 - D) - sigma)/(a E) ,   t = ft exp(-k ft/Gf) .
      *
-     * The strength increase belongs to the earthquake and changes none of it.
+     * The strength increase acts in the earthquake only and does not change
+     * this state.
      */
     class FixedBar : public Check
     {
@@ -84,7 +85,7 @@ namespace Voussoir
       {
         const Material &sound = *simulation.model.solid.materials[0];
         const double modulus = factor * sound.elastic_constants().young_modulus,
-                     free_strain = sound.expansion * cooling; // that is missing
+                     free_strain = sound.expansion * cooling; // prevented
 
         const double below  = displacement_at(simulation, layer[0]),
                      above  = displacement_at(simulation, layer[1]);
@@ -112,7 +113,7 @@ namespace Voussoir
           2. * tolerance,
           "N/m");
 
-        // the earthquake that does not come
+        // without an earthquake
         Run   &run     = simulation.run;
         double fastest = 0.;
         for (unsigned int i = 0; i < 200; ++i)
@@ -191,7 +192,7 @@ namespace Voussoir
                            (std::pow(share, -ratio) - 1.);
       }
 
-      /** Energy that the crack has taken then, per area. */
+      /** Energy that the crack has dissipated at this opening, per area. */
       double
       energy_at(const double share, const double modulus) const
       {

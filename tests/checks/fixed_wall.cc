@@ -13,10 +13,11 @@ namespace Voussoir
     /**
      * A dam on a floor that is fixed and wet, as the walls of a canyon are:
      * where the ground rises with unit acceleration, the pressure of the water
-     * between walls that all rise is p = rho (H - z), whatever their shape. The
-     * modes take part by phi^T M r + int p phi . n dA , n out of the dam, as
-     * inertia and this pressure push it together. Through the water the motion
-     * of the floor excites the modes, unlike a motion of the dam alone.
+     * between walls that all rise is p = rho (H - z), for any shape of the
+     * walls. The modes take part by phi^T M r + int p phi . n dA , n out of the
+     * dam, as inertia and this pressure both act on the dam. Through the water
+     * the motion of the floor excites the modes, unlike a motion of the dam
+     * alone.
      */
     class FixedWall : public Check
     {

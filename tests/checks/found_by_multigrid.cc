@@ -7,8 +7,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * The static stages of a case are found, by multigrid unless any method
-     * will do, and the reactions equal the loads.
+     * The static stages of a case are found, by multigrid unless any method is
+     * allowed, and the reactions equal the loads.
      */
     class FoundByMultigrid : public Check
     {

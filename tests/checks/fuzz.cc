@@ -113,7 +113,7 @@ namespace Voussoir
     }
 
 
-    /** A sample with some damage, the same for the same number. */
+    /** A sample with some damage, which the number determines. */
     class Damager
     {
     public:
@@ -201,7 +201,7 @@ namespace Voussoir
             case 2: // a piece is missing
               text.erase(at, below(64));
               break;
-            case 3: // a piece comes twice
+            case 3: // a piece is repeated
               text.insert(at, text.substr(below(text.size() + 1), below(256)));
               break;
             case 4: // a piece of another sample
@@ -211,7 +211,7 @@ namespace Voussoir
                             other.substr(below(other.size() + 1), below(512)));
                 break;
               }
-            case 5: // a line is missing or comes twice
+            case 5: // a line is missing or repeated
               {
                 const auto begin = text.rfind('\n', at) + 1;
                 const auto end   = std::min(text.find('\n', at), text.size());
@@ -268,10 +268,10 @@ namespace Voussoir
 
 
     /**
-     * Damaged files are read or refused by a sentence, within seconds: none
-     * ends the program, hangs or throws anything else. A child process reads
-     * them one by one; if it ends early another one continues, and the input is
-     * kept.
+     * Damaged files are read, or refused by a sentence, within seconds: none
+     * ends the program, makes it hang or throws anything else. A child process
+     * reads them one by one; if it ends early, another process continues, and
+     * the input is kept.
      */
     class Fuzz : public Check
     {

@@ -1,4 +1,4 @@
-// The pages that make a class from an empty file: their cases are run as a
+// The pages that write a class from an empty file: their cases are run as a
 // reader would run them, and the results are compared.
 
 #include <voussoir/driver/command_line.h>
@@ -234,7 +234,7 @@ namespace Voussoir
                       1e-6 * density_of_water * g * 0.5 * water * water *
                         length,
                       1e-6);
-        // its lowest nodes are joined by the rock
+        // the rock joins its lowest nodes
         verdicts.near("area of the joint [m2]",
                       summary["interfaces"]["surfaces"]["joint"]["area [m2]"],
                       (height - 0.5 * row) * thickness,

@@ -13,7 +13,7 @@ namespace Voussoir
      * A damped layer on elastic rock in a steady vertical S wave: its surface
      * amplifies the motion of an outcrop by
      *   1 / | cos(k* H) + i a* sin(k* H) | ,  k* = w sqrt(rho / G*) ,
-     * a* the ratio of the complex impedances, which the rock makes real below.
+     * with the ratio a* of the complex impedances, real in the rock below, and
      *   G* = G g(f) / Re g(f_0) ,
      * where g is that of the Maxwell branches,
      *   g = 1 + sum D_i i w t_i / (1 + i w t_i) ,

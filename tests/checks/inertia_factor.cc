@@ -10,8 +10,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * A material of a quarter of its inertia vibrates twice as fast and weighs
-     * the same: a bar of n cells that hangs from its base, of which the lowest
+     * A material with a quarter of its inertia vibrates twice as fast and has
+     * the same weight: a bar of n cells that hangs from its base, whose lowest
      * circular frequency is 2 c/h sin(pi/4n).
      */
     class InertiaFactor : public Check
@@ -91,7 +91,7 @@ namespace Voussoir
         const auto  modes = make_simulation(*still, communicator);
         const Mode &mode  = modes->modes.list[0];
 
-        // modes alone take no steps
+        // a run of modes alone takes no steps
         const auto parameters =
           make_case(file.with({entry(factor), "Modes/Number=0"}));
         const auto simulation = make_simulation(*parameters, communicator);
@@ -105,7 +105,7 @@ namespace Voussoir
       }
 
 
-      /** From the first passage through zero to the last one. */
+      /** Period, from the first passage through zero to the last one. */
       static double
       period_of(const std::vector<double> &times, const std::vector<double> &u)
       {

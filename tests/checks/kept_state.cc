@@ -47,8 +47,8 @@ namespace Voussoir
 
     /**
      * A static state with joints and cracks is found once and kept: other runs
-     * take it, on other ranks too, but not with another material or from a
-     * damaged file.
+     * read it, on other numbers of ranks too, but not with another material or
+     * from a damaged file.
      */
     class KeptState : public Check
     {

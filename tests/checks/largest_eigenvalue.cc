@@ -60,7 +60,7 @@ namespace Voussoir
       /**
        * The matrix of Clement (1959), beside the diagonal sqrt(k (n - k)), has
        * the eigenvalues n - 1, n - 3, ..., 1 - n. From one end of it Lanczos
-       * iterations see the first rows only.
+       * iterations reach the first rows only.
        */
       static void
       chain(const unsigned int n, Verdicts &verdicts)

@@ -1,4 +1,4 @@
-// the kernels of a law use intrinsics that GCC takes for uninitialized numbers
+// the kernels of a law use intrinsics in which GCC finds uninitialized numbers
 #pragma GCC diagnostic ignored "-Wuninitialized"
 
 #include <voussoir/materials/isotropic_elasticity.h>
@@ -13,8 +13,8 @@ namespace Voussoir
   namespace
   {
     /** A law with internal variables that takes all defaults of LawDefaults:
-     *  above all, it has no yield_ratio. The energy norm of its stress stays at
-     *  a limit. */
+     *  above all, it has no yield_ratio. The energy norm of its stress is
+     *  bounded by a limit. */
     struct Plain : IsotropicElasticity
     {
       static constexpr unsigned int n_history = 1; // largest norm so far [Pa]

@@ -45,7 +45,7 @@ namespace Voussoir
           rock = simulation->model.solid.materials[0]->elastic_constants(),
           soil = simulation->model.solid.materials[1]->elastic_constants();
 
-        // the column, marched beside the model
+        // the column, integrated beside the model
         WaveColumn column(
           layers_of_sides(simulation->model.boundary.side_faces(),
                           {rock, soil},
@@ -67,7 +67,7 @@ namespace Voussoir
           *simulation,
           {{"corner", upper}, {"middle", middle}},
           [&](const State &state) {
-            // the column shows the displacement at the start of its step
+            // the column has the displacement at the start of its step
             const double t = state.time - simulation->run.time_step.length;
             column.advance(Tensor<1, 3>(
               {motion[0]->velocity(t), 0., motion[2]->velocity(t)}));

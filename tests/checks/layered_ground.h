@@ -8,11 +8,11 @@
 namespace Voussoir
 {
   /**
-   * Horizontal layers under a plane wave that comes up vertically, in closed
-   * form (Haskell's matrices; Kramer 1996, section 7.2), over the complex
-   * frequency s. Damping follows from the entries of the case: under Maxwell
-   * damping the modulus of a constant ratio xi (Kjartansson 1979),
-   * (s/w0)^(2 gamma) / cos(pi gamma), gamma = atan(2 xi) / pi.
+   * Horizontal layers under a vertically rising plane wave, in closed form
+   * (Haskell's matrices; Kramer 1996, section 7.2), over the complex frequency
+   * s. Damping follows from the entries of the case: under Maxwell damping the
+   * modulus of a constant ratio xi (Kjartansson 1979), (s/w0)^(2 gamma) /
+   * cos(pi gamma), gamma = atan(2 xi) / pi.
    */
   class LayeredGround
   {
@@ -34,7 +34,7 @@ namespace Voussoir
     std::complex<double>
     surface_over_outcrop(const std::complex<double> s, const bool p_wave) const
     {
-      // of displacement 1 and no stress at the surface; downwards
+      // from displacement 1 and no stress at the surface, downwards
       std::complex<double> displacement = 1., stress = 0.;
       for (unsigned int i = materials.size(); i-- > 0;)
         {
@@ -49,7 +49,7 @@ namespace Voussoir
           displacement = above * c + stress / (modulus * k) * sh;
           stress       = above * modulus * k * sh + stress * c;
         }
-      // the base is pushed by rho c (2 v_incident - v)
+      // the traction on the base is rho c (2 v_incident - v)
       return 1. /
              (displacement + stress / (s * materials[0].density *
                                        std::sqrt(squared_speed(0, p_wave))));
@@ -58,8 +58,8 @@ namespace Voussoir
     /**
      * Compares a motion of the surface with that of the outcrop, both sampled
      * at these times, at frequencies [Hz]. Both are weighted by exp(-8 t/T),
-     * which is a shift of the complex frequency: so oscillations after the end
-     * T are in neither.
+     * which is a shift of the complex frequency, so that oscillations after the
+     * end T do not matter.
      */
     void
     compare(const std::string         &name,

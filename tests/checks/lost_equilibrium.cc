@@ -12,8 +12,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * A stage that has no equilibrium is given up by a sentence that names the
-     * moving parts; the state before it is written.
+     * A stage without equilibrium is given up with a sentence that names the
+     * moving parts; the state before the stage is written.
      */
     class LostStage : public Check
     {

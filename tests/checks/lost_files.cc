@@ -77,9 +77,9 @@ namespace Voussoir
 
 
     /**
-     * Results that are taken away during a run are not made anew without their
-     * beginning: the run names the missing files and ends with an error. And no
-     * run continues without them.
+     * Results that are removed during a run are not created again without their
+     * beginning: the run names the missing files and ends with an error. No run
+     * continues without them.
      */
     class LostFiles : public Check
     {

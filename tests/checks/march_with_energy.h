@@ -5,7 +5,7 @@
 
 namespace Voussoir
 {
-  /** Marches to the end time and evaluates the balance when it is due;
+  /** Integrates to the end time and evaluates the balance when due;
    *  callback(evaluated) is called after each step. */
   template <typename Callback>
   void

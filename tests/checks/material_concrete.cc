@@ -71,8 +71,8 @@ namespace Voussoir
 
     /**
      * Strength, and the energy that a crack and crushing take beyond the peak:
-     * the area under the stress over the displacement of the cell that is not
-     * elastic. It must not depend on the size of the cell.
+     * the area under the stress over the inelastic displacement of the cell.
+     * This energy must not depend on the size of the cell.
      */
     class ConcreteEnergies : public MaterialCheck
     {
@@ -146,7 +146,7 @@ namespace Voussoir
       energies("concrete energies", "Energy of cracks and crushing.");
 
 
-    /** Stresses of an own compression law between its points. */
+    /** Stresses of a compression table between its points. */
     class CompressionTable : public MaterialCheck
     {
     public:
@@ -190,8 +190,8 @@ namespace Voussoir
 
 
     /**
-     * The strain that stays without stress: a share of the inelastic strain,
-     * that is of the strain less sigma/E.
+     * The strain that remains without stress: a share of the inelastic strain,
+     * which is the strain less sigma/E.
      */
     class IrreversibleStrain : public MaterialCheck
     {

@@ -24,7 +24,7 @@ namespace Voussoir
     }
 
 
-    /** Work that a crack does as its plastic opening grows, against 200 N/m.
+    /** Work done on a crack as its plastic opening grows, against 200 N/m.
      */
     void
     check_plastic_work(const Material &material,
@@ -155,7 +155,7 @@ namespace Voussoir
       lee_fenves("lee-fenves", "The reference law of concrete at one point.");
 
 
-    /** A crack of this law that closes, is pressed and opens again. */
+    /** A crack of this law that closes, is compressed and opens again. */
     class MaterialLeeFenvesClosing : public MaterialCheck
     {
     public:
@@ -168,7 +168,7 @@ namespace Voussoir
         // effective stress is no longer uniaxial
         check_plastic_work(material, 0.05, verdicts);
 
-        // a crack that closes, is pressed and opens again
+        // a crack that closes, is compressed and opens again
         PointTest cycle(material, 1., 1e-3);
         advance(cycle, {{{true, 4e-4}, {}, {}}}, 2000);
         const double opened = cycle.stress[0][0];
@@ -265,7 +265,7 @@ namespace Voussoir
       rock_shear("rock shear damage", "Rock that loses cohesion, at a point.");
 
 
-    /** Mazars' law: energy of a crack and strength in compression. */
+    /** The law of Mazars: energy of a crack and strength in compression. */
     class MaterialMazars : public MaterialCheck
     {
     public:

@@ -44,8 +44,8 @@ namespace Voussoir
                      one = 2. * cohesion * std::cos(phi) / (1. - std::sin(phi));
         const double apex = cohesion / std::tan(phi);
 
-        // the same in compression for the planes and the cone that is fitted
-        // there
+        // in compression the planes and the cone that is fitted there have the
+        // same strength
         if (surface != "plane strain cone")
           {
             verdicts.near("uniaxial compression",
@@ -109,7 +109,7 @@ namespace Voussoir
       }
 
     private:
-      /** After pressure from all sides, the other two stresses stay. */
+      /** After pressure from all sides, the other two stresses are constant. */
       PointTest
       failed(const Material &material,
              const double    pressure,
@@ -150,8 +150,8 @@ namespace Voussoir
         return -test.stress[2][2];
       }
 
-      /** All planes, edges and corners: no stress beyond the surface, none
-       *  below it after a return. */
+      /** All planes, edges and corners: after a return, the stress is neither
+       *  beyond nor inside the surface. */
       void
       evaluate_random_returns(const Material &material,
                               Verdicts       &verdicts) const

@@ -12,8 +12,8 @@ namespace Voussoir
      * Damage with a delay: under a constant rate of strain the equivalent
      * strain of a point without lateral contraction is
      *   x = e - T de/dt (1 - exp(-(t - t0)/T)) ,
-     * t0 when it cracks, and with linear softening to zero at the strain w/l
-     * the stress is ft (w/l - x)/(w/l - ft/E) e/x.
+     * with the time t0 of cracking, and with linear softening to zero at the
+     * strain w/l the stress is ft (w/l - x)/(w/l - ft/E) e/x.
      */
     class MaterialRate : public Check
     {

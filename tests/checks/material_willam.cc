@@ -12,9 +12,9 @@ namespace Voussoir
      * Cracking in mixed mode: the path of strains of Willam, Pramono and Sture
      * (1987) in plane stress. A point is pulled along z to its strength, and
      * then the strains continue as de_zz : de_xx : dgamma_xz = 0.5 : 0.75 : 1 ,
-     * so that the principal axes turn while the crack opens. A crack that turns
-     * with them has the axes of the strain, never more stress than the
-     * strength, and no shear stress left at the end; fixed cracks keep some.
+     * so that the principal axes turn while the crack opens. A rotating crack
+     * has the axes of the strain, never more stress than the strength, and no
+     * shear stress at the end; with fixed cracks some shear stress remains.
      */
     class Willam : public Check
     {

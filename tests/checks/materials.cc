@@ -82,8 +82,8 @@ namespace Voussoir
 
 
     /**
-     * Properties of every class of materials, those of other authors too: with
-     * the default entries, each registered class is tested.
+     * Properties of every registered class of materials, with the default
+     * entries, classes of other authors included.
      */
     class Materials : public Check
     {
@@ -281,7 +281,7 @@ namespace Voussoir
       }
 
 
-      /** One strain everywhere: no force inside, whatever the law does. */
+      /** A uniform strain: no force inside, under any law. */
       void
       evaluate_patch(const std::string &name,
                      Case              &parameters,
@@ -323,8 +323,8 @@ namespace Voussoir
       }
 
 
-      /** Width of the band of a crack in a cell: Oliver's formula as it is
-       *  written, over the corner functions at the centre. */
+      /** Width of the band of a crack in a cell: Oliver's formula as published,
+       *  over the corner functions at the centre. */
       static double
       width_across(const Triangulation<3>::active_cell_iterator &cell,
                    const double                                  share,
@@ -391,7 +391,7 @@ namespace Voussoir
               {
                 auto &history = histories[{cell->active_cell_index(), q}];
                 history.resize(material.n_history());
-                // of the crack that would open, until one has opened
+                // of the crack that would open, as long as none has opened
                 double &band = bands[{cell->active_cell_index(), q}];
                 if (std::all_of(history.begin(),
                                 history.end(),

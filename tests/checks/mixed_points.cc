@@ -8,9 +8,9 @@ namespace Voussoir
   {
     /**
      * A material that cracks on an elastic one, both with the same moduli. With
-     * one point where elastic, nodes inside each have the same forces as if all
-     * cells were of their kind, and a constant strain gives no force inside,
-     * nor between the two.
+     * one point where elastic, nodes inside each material have the same forces
+     * as if all cells were of its kind, and a constant strain gives no force
+     * inside, nor between the two.
      */
     class MixedPoints : public Check
     {
@@ -94,7 +94,7 @@ namespace Voussoir
                              1e-3 * p[2] * p[2] + 5e-4 * p[1]});
       }
 
-      /** Far below it. */
+      /** Far below the strength. */
       static Tensor<1, 3>
       stretched(const Point<3> &p)
       {

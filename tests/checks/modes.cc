@@ -104,7 +104,7 @@ namespace Voussoir
 
 
     /**
-     * A rod along z, fixed below and free to move along itself only: modes and
+     * A rod along z, fixed below and free to move axially only: modes and
      * effective masses in closed form, also with water that weighs as much as
      * the rod on its free end.
      */
@@ -196,7 +196,8 @@ namespace Voussoir
       static NodalTerms
       with_end_mass(const Simulation &simulation, const double mass)
       {
-        // the nodes at the end carry the mass in the ratio of their own
+        // the nodes at the end share the added mass in the ratio of their own
+        // masses
         const Discretization &discretization =
           simulation.model.solid.discretization;
         NodalTerms terms             = simulation.model.terms;
@@ -280,7 +281,7 @@ namespace Voussoir
       registered_foundation("modes and foundation", "Rigid, massless, massed.");
 
 
-    /** Rayleigh damping has its ratio at the modes that are named. */
+    /** Rayleigh damping has the given ratio at the modes that are named. */
     class DampingFromModes : public Check
     {
     public:

@@ -6,7 +6,7 @@ namespace Voussoir
 
   namespace
   {
-    /** A body cut by interfaces that are tied has the modes of the whole one.
+    /** A body cut by interfaces that are tied has the modes of the uncut body.
      */
     class TiedModes : public Check
     {
@@ -90,8 +90,8 @@ namespace Voussoir
 
 
     /**
-     * A rod between two walls, cut in two unequal parts: modes along it after a
-     * weight has opened the cut, or closed it, or with the cut tied in either
+     * A rod between two walls, cut in two unequal parts: axial modes after a
+     * weight has opened or closed the cut, and with the cut tied in either
      * state.
      */
     class OpenedModes : public Check

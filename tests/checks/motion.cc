@@ -89,7 +89,7 @@ namespace Voussoir
     }
 
 
-    /** The ground is at rest after a correction, and shaken as before. */
+    /** After a correction the ground ends at rest, and shakes as before. */
     void
     check_baseline(const TimeSeries &elcentro, Verdicts &verdicts)
     {
@@ -140,7 +140,7 @@ namespace Voussoir
                            (2. * h) -
                          a));
         }
-      // at steps that meet the samples of a table, where its peak is
+      // at steps that include the samples of a table, where its peak is
       for (unsigned int i = 0; i <= 15500; ++i)
         keep_largest(acceleration,
                      std::abs(signal.acceleration(end * i / 15500.)));
@@ -173,7 +173,7 @@ namespace Voussoir
                    2.,
                    1e-5,
                    verdicts);
-      // while it fades in, a sine exceeds its amplitude by two percent
+      // during fading a sine exceeds its amplitude by two percent
       check_signal("sine", Sine(2., 3., 6, 2), 3., 3., 0.02, verdicts);
       check_signal("table",
                    Tabulated(elcentro),
@@ -201,7 +201,8 @@ namespace Voussoir
     void
     check_response_spectrum(Verdicts &verdicts)
     {
-      // suddenly constant: 1 + exp(-pi xi / sqrt(1 - xi^2))
+      // constant acceleration, applied suddenly: 1 + exp(-pi xi / sqrt(1 -
+      // xi^2))
       for (const double xi : {0., 0.05, 0.2})
         verdicts.near(
           "suddenly constant acceleration, amplification",
@@ -210,7 +211,7 @@ namespace Voussoir
             2.,
           1. + std::exp(-numbers::PI * xi / std::sqrt(1. - xi * xi)),
           2e-3);
-      // half a sine as long as the period, undamped: Chopra, section 4.8
+      // half a sine of the length of the period, undamped: Chopra, section 4.8
       TimeSeries half{0.002, {}};
       for (unsigned int i = 0; i <= 500; ++i)
         half.values.push_back(std::sin(numbers::PI * i * 0.002));
@@ -234,9 +235,9 @@ namespace Voussoir
 
 
     /**
-     * A layer on rock: a wave arrives after 20 steps, doubled, and every 26
-     * steps again, turned over and 0.4 times as large. Deconvolution computes
-     * the input from the response.
+     * A layer on rock: a wave arrives after 20 steps, doubled, and again every
+     * 26 steps, with reversed sign and 0.4 times as large. Deconvolution
+     * computes the input from the response.
      */
     void
     check_deconvolution(const TimeSeries &elcentro, Verdicts &verdicts)
@@ -302,7 +303,8 @@ namespace Voussoir
 
 
     /** Mean deviation from the spectrum of NB 35047: from 1 up to 2.5 at 0.1 s,
-     *  level to the characteristic period, then falling by the power 0.6. */
+     *  constant to the characteristic period, then falling with the power 0.6.
+     */
     double
     deviation_from_code(const TimeSeries &motion,
                         const double      characteristic_period = 0.2)

@@ -1,4 +1,4 @@
-// the kernels of a law use intrinsics that GCC takes for uninitialized numbers
+// the kernels of a law use intrinsics in which GCC finds uninitialized numbers
 #pragma GCC diagnostic ignored "-Wuninitialized"
 
 #include <voussoir/materials/isotropic_elasticity.h>
@@ -43,8 +43,8 @@ namespace Voussoir
     }
 
 
-    /** A law that returns no numbers while the strain is large, and numbers
-     *  again when it becomes smaller. */
+    /** A law that returns NaN while the strain is large, and numbers again when
+     *  the strain becomes smaller. */
     struct NotANumber : IsotropicElasticity
     {
       static constexpr unsigned int n_history = 1;

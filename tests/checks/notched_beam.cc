@@ -12,8 +12,8 @@ namespace Voussoir
   {
     /**
      * A beam of 2.1 m by 0.6 m, notched to half its height below the middle,
-     * with n cells over the height: a slice of cubes. It stands on 0.1 m at
-     * both ends and is pressed down on 0.1 m in the middle; the crack runs
+     * with n cells over the height: a slice of cubes. It is supported over 0.1
+     * m at both ends and loaded over 0.1 m in the middle; the crack runs
      * through the column of cells above the notch.
      */
     void

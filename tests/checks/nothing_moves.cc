@@ -8,7 +8,7 @@ namespace Voussoir
   {
     /** A model without excitation: modes alone are computed without steps, and
      *  steps alone give a warning. The result of a run equals summary.json,
-     *  also when that is read again. */
+     *  also when this file is read again. */
     class NothingMoves : public Check
     {
     public:

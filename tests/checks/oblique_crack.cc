@@ -56,9 +56,9 @@ namespace Voussoir
 
     private:
       /**
-       * The conditions of least energy, whatever the method: the strain of the
-       * cracks a and the stress n that is left lie in cones that are polar to
-       * each other, and n : a = 0.
+       * The conditions of least energy, for any method: the strain of the
+       * cracks a and the remaining stress n lie in cones that are polar to each
+       * other, and n : a = 0.
        */
       void
       check_conditions(Verdicts &verdicts) const
@@ -113,7 +113,7 @@ namespace Voussoir
       }
 
 
-      /** Pulled to its strength along x, and then apart at an angle. */
+      /** A point pulled along x to its strength, and then apart at an angle. */
       void
       open(const Material &material,
            const double    angle,
@@ -139,7 +139,7 @@ namespace Voussoir
         const double apart = 10. * energy / strength / size;
         for (unsigned int i = 1; i <= 2000; ++i)
           {
-            // relieved along the crack, too
+            // also relieved along the crack
             const double share = i / 2000.;
             stress             = material
                        .respond((1. - share) * strain +
@@ -154,8 +154,8 @@ namespace Voussoir
       }
 
 
-      /** A closed path of strains does the work that is stored and lost at its
-       *  end, and none as long as no damage grows. */
+      /** The work of a closed path of strains is the energy stored and lost at
+       *  its end, and zero as long as damage does not grow. */
       void
       close(const Material &material, Verdicts &verdicts) const
       {
@@ -206,9 +206,9 @@ namespace Voussoir
                        2e-3);
       }
 
-      /** Of the stress in one of @p steps from one random strain of an open
-       * crack to the next, over the strength: half as large in half the step
-       * unless the stress jumps. */
+      /** Largest change of the stress over the strength in one of @p steps from
+       * one random strain of an open crack to the next: half as large in half
+       * the step unless the stress jumps. */
       double
       largest_change(const Material &material, const unsigned int steps) const
       {

@@ -12,7 +12,7 @@ namespace Voussoir
   {
     /**
      * The vectorised operator against cell matrices assembled point by point
-     * without vectorisation, and the patch test: a linear displacement makes no
+     * without vectorisation, and the patch test: a linear displacement gives no
      * force inside.
      */
     class Operator : public Check

@@ -11,7 +11,7 @@ namespace Voussoir
     /**
      * Displacements at points over the whole run against the table of another
      * program: times, then x, y and z of each point, with the motion of a rigid
-     * base. The reference of tests/data/arch_dam_newmark.py.
+     * base. tests/data/arch_dam_newmark.py computes the reference.
      */
     class OtherHistories : public Check
     {

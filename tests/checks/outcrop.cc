@@ -8,11 +8,11 @@ namespace Voussoir
   namespace
   {
     /**
-     * The place of a given motion: one for the free surface is reproduced
+     * The place of a given motion: a motion of the free surface is reproduced
      * there, after twice the travel time of an S wave (see
-     * `incident_for_surface`), in layers with damping; one for an outcrop is
-     * twice the incident wave. Both use the same column, which is verified by
-     * the surface over the outcrop against plane waves in closed form.
+     * `incident_for_surface`), in layers with damping; a motion of an outcrop
+     * is twice the incident wave. Both use the same column, which is verified
+     * by the surface over the outcrop against plane waves in closed form.
      */
     class Outcrop : public Check
     {

@@ -32,7 +32,7 @@ namespace Voussoir
 
 
     /** The time step is fitted to the interval of the histories if that costs
-     *  little, and the lines of histories.csv come at equal intervals anyway.
+     *  little; the lines of histories.csv are at equal intervals in any case.
      */
     class EqualIntervals : public Check
     {
@@ -68,7 +68,7 @@ namespace Voussoir
                    lines / wanted * interval,
                    communicator,
                    verdicts);
-        // a step that is given stays
+        // a given step is not changed
         evaluate(file.with({"Time/Time step=" + exactly(interval / 2.5)}),
                  "2.5 steps, given",
                  2.5,
@@ -127,9 +127,9 @@ namespace Voussoir
 
 
     /**
-     * The filtered acceleration is the mean over T = 0.443/f, which leaves of a
-     * sine of frequency f0 the part sin(pi f0 T)/(pi f0 T): of a block that is
-     * moved, and of the ground under a rigid base.
+     * The filtered acceleration is the mean over T = 0.443/f, which leaves the
+     * part sin(pi f0 T)/(pi f0 T) of a sine of frequency f0: for a block that
+     * is moved, and for the ground under a rigid base.
      */
     class FilteredAcceleration : public Check
     {

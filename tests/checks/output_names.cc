@@ -60,7 +60,7 @@ namespace Voussoir
     }
 
 
-    /** One table of names stands behind all numbers in results. */
+    /** All numbers in results refer to one table of names. */
     class NamesInResults : public Check
     {
     public:
@@ -170,8 +170,8 @@ namespace Voussoir
 
 
     /**
-     * An observer that has been used in a run, or a part of one, gives the same
-     * results of another run as a new observer.
+     * An observer that has been used in a run, or a part of one, gives, for
+     * another run, the same results as a new observer.
      */
     class ObserversAgain : public Check
     {
@@ -248,8 +248,8 @@ namespace Voussoir
         return summary;
       }
 
-      /** Name and text of each file, without the lines in which deal.II says
-       *  when it wrote it. */
+      /** Name and text of each file, without the lines in which deal.II writes
+       *  the time. */
       static std::map<std::string, std::string>
       files_in(const std::string &folder)
       {

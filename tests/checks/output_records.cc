@@ -138,8 +138,8 @@ namespace Voussoir
       registered("stress envelopes", "Envelopes of principal stress.");
 
 
-    /** A sine of constant amplitude: at its own period the oscillator ends up
-     *  at 1/(2 xi) times the amplitude. */
+    /** A sine of constant amplitude: at its own period the oscillator reaches
+     *  1/(2 xi) times the amplitude. */
     class Spectrum : public Check
     {
     public:

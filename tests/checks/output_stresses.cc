@@ -77,7 +77,8 @@ namespace Voussoir
       nlohmann::json
       in_section(const Field &field) const
       {
-        // the block is 10 m thick; this line crosses its cells anywhere
+        // the block is 10 m thick; this line crosses its cells between their
+        // nodes
         return observed("section forces",
                         {{"Sections", "line: 3.7 5.3; edge: 4 10 8"},
                          {"Upstream", "back"},
@@ -112,7 +113,7 @@ namespace Voussoir
         near_or_zero("largest principal stress [MPa]" + along,
                      faces.at("largest principal stress [MPa]"),
                      1.5);
-        // a double eigenvalue is known to the root of the round-off only
+        // a double eigenvalue is accurate to the root of the round-off only
         verdict->below("smallest principal stress [MPa]" + along,
                        faces.at("smallest principal stress [MPa]"),
                        1e-7);

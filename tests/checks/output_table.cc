@@ -36,8 +36,8 @@ namespace Voussoir
       registered("infinite numbers", "In tables of comma-separated values.");
 
 
-    /** Texts in tables stay one cell, and no spreadsheet takes them for
-     *  formulas. */
+    /** A text in a table is one cell, and no spreadsheet takes it for a
+     *  formula. */
     class Headings : public Check
     {
     public:

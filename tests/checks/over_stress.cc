@@ -7,8 +7,8 @@ namespace Voussoir
 
   namespace
   {
-    /** Times and areas above the strength, of stresses along the front of a
-     *  block that change with time as given. */
+    /** Times and areas above the strength, for given stresses over time along
+     *  the front of a block. */
     class OverStress : public Check
     {
     public:
@@ -35,8 +35,8 @@ namespace Voussoir
       static constexpr double strength = 2e6;             // [Pa]
       static constexpr double length = 40., height = 20.; // of the front
 
-      /** @p stress along x [Pa] at a height [m] and a time [s], over so many
-       *  steps; Poisson's ratio is 0. */
+      /** @p stress along x [Pa] at a height [m] and a time [s], over a number
+       *  of steps; Poisson's ratio is 0. */
       nlohmann::json
       found(const std::function<double(const double, const double)> &stress,
             const unsigned int                                       n_steps,
@@ -65,7 +65,7 @@ namespace Voussoir
           .at("front");
       }
 
-      // s sin(w t), n periods T: n T (1/2 - asin(r f/s)/pi) above r f
+      // s sin(w t) over n periods T is above r f for n T (1/2 - asin(r f/s)/pi)
       void
       sine(const std::string &which) const
       {

@@ -7,7 +7,7 @@ namespace Voussoir
 {
   namespace
   {
-    /** A parameter file in all sorts of writing: it is read, or refused by one
+    /** Parameter files in all spellings and layouts are read, or refused by one
      *  sentence. */
     class ParameterText : public Check
     {
@@ -97,7 +97,7 @@ namespace Voussoir
           {
             answer = error.what();
           }
-        // which a terminal may show so
+        // which a terminal may show in this form
         for (char &c : answer)
           if (static_cast<unsigned char>(c) > '~')
             c = '?';

@@ -27,7 +27,7 @@ namespace Voussoir
     }
 
 
-    /** The printed parameters of a case can be read again and are the same
+    /** The printed parameters of a case can be read again and give the same
      *  case; every kind of class can be listed. */
     class Parameters : public Check
     {
@@ -88,8 +88,8 @@ namespace Voussoir
       }
 
     private:
-      /** Whether a section, as printed without a case, has one of its own for
-       *  each class, with entries. */
+      /** Whether a section, as printed without a case, has a subsection with
+       *  entries for each class. */
       template <typename Base>
       static void
       check_all_classes(const nlohmann::json &all,

@@ -28,7 +28,7 @@ namespace Voussoir
   /** Given components of xx, yy, zz. */
   using NormalControls = std::array<PointTest::Control, 3>;
 
-  /** On to strains or stresses in equal steps, without shear stress; @p
+  /** Proceeds to strains or stresses in equal steps, without shear stress; @p
    *  callback is called after each. */
   inline void
   advance(

@@ -29,7 +29,7 @@ namespace Voussoir
             const RandomField field(lengths, seed);
             for (unsigned int i = 0; i < n_points; ++i)
               {
-                // far from each other, and nowhere on a lattice
+                // far from each other, and not on a lattice
                 const Point<3> point(37. * i,
                                      1000. * std::sin(1. * i),
                                      1000. * std::sin(2.3 * i));
@@ -138,7 +138,7 @@ namespace Voussoir
                        std::abs(settlement / uniform - 1.),
                        0.001);
 
-        // the file as it was run is that of the same model
+        // the file that the run has written gives the same model
         std::ostringstream text;
         parameters->prm.print_parameters(text, ParameterHandler::ShortText);
         verdicts.is_true("the file as it was run has each class",

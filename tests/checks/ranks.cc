@@ -75,7 +75,7 @@ namespace Voussoir
                const std::string   &partition,
                const MPI_Comm       communicator) const
       {
-        // the stable step differs in the last digits, so it is given
+        // the stable step differs in the last digits, so a step is given
         const auto parameters =
           make_case(file.with({"Mesh/Partition=" + partition}));
         const auto simulation = make_simulation(*parameters, communicator);

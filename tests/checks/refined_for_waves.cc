@@ -8,8 +8,8 @@ namespace Voussoir
   {
     /**
      * A bar of two materials in cells of 20 m: "Nodes per wavelength" 8 at 10
-     * Hz asks for cells of at most 12.5 m where S waves have 1000 m/s, and
-     * of 37.5 m where they have 3000 m/s.
+     * Hz requires cells of at most 12.5 m where S waves have 1000 m/s, and of
+     * 37.5 m where they have 3000 m/s.
      */
     class RefinedForWaves : public Check
     {

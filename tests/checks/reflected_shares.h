@@ -6,9 +6,9 @@
 namespace Voussoir
 {
   /**
-   * |R| at each frequency from the pulses that pass the middle of a column,
-   * which begin at its surface: down after 1/2, up after 3/2, from the surface
-   * after 5/2 passages [s].
+   * |R| at each frequency from the pulses that pass the middle of a column.
+   * They start at its surface and pass down after 1/2, up after 3/2, and down
+   * from the surface after 5/2 passages [s].
    */
   inline std::map<double, double>
   reflected_shares(const std::vector<double> &times,

@@ -10,8 +10,8 @@ namespace Voussoir
   {
     using Complex = std::complex<double>;
 
-    /** Springs and dashpots per area of the boundary, as their authors have
-     *  them; of the springs times r. */
+    /** Springs and dashpots per area of the boundary, as published; springs
+     *  times r. */
     struct PublishedSet
     {
       double normal_spring, tangential_spring, dashpots; // [Pa], [Pa], [-]
@@ -36,8 +36,8 @@ namespace Voussoir
     }
 
 
-    /** A wave exp i(w t - k x + q z) that goes down, in rock over a level
-     *  boundary at z = 0 with normal and tangential impedances. */
+    /** A downward wave exp i(w t - k x + q z), in rock over a level boundary at
+     *  z = 0 with normal and tangential impedances. */
     struct PlaneWave
     {
       const std::string      kind;
@@ -51,7 +51,7 @@ namespace Voussoir
       }
 
       /** Shares of the incident energy that are reflected as the same kind of
-       *  wave and, of P and SV, as the other. */
+       *  wave and, for P and SV, as the other kind. */
       std::array<double, 2>
       shares(const double w, const double k) const
       {
@@ -99,7 +99,7 @@ namespace Voussoir
 
     /**
      * A packet of waves travels down a strip of rock and meets its absorbing
-     * bottom at an angle: on sides that only slide, or are free for SH waves,
+     * bottom at an angle: on sides that only slide (free ones for SH waves),
      * two crossing waves form a mode cos(k x), and k = pi / width and the
      * frequency determine the angle. The reflected share of the energy, against
      * the closed form for plane waves, over the packet's components.
@@ -250,7 +250,7 @@ namespace Voussoir
           }
 
         const double before = energy(*simulation);
-        // until its slow components have returned, too
+        // until the slow components have returned, too
         const double end = 2.5 * start * w / (c * c * q);
         while (state.time < end)
           simulation->run.scheme.step(state);

@@ -54,11 +54,11 @@ namespace Voussoir
 
 
     /**
-     * A short bar along z, rolling at its bottom, whose top is pulled and
-     * pushed by T(t) = P (1 - exp(-(t/t_0)^2)) sin(2 pi f t) besides a pull at
-     * rest. It is too short for waves, so its stress is that traction,
-     * independent of its strain under damping: an amplitude P around the static
-     * pull, above a strength as long as the traction is.
+     * A short bar along z, on rollers at its bottom, whose top is pulled and
+     * pushed by T(t) = P (1 - exp(-(t/t_0)^2)) sin(2 pi f t) in addition to a
+     * static pull. The bar is too short for waves, so its stress is that
+     * traction, independent of its strain under damping: an amplitude P around
+     * the static pull, and above a strength as long as the traction is.
      */
     class ReportedStress : public Check
     {
@@ -211,8 +211,8 @@ namespace Voussoir
 
     /**
      * The same bar with a layer whose strength is below the largest traction:
-     * no stress is above that strength, however damping changes the strain, and
-     * none is left once the crack is open.
+     * no stress is above that strength, even though damping changes the strain,
+     * and none remains once the crack is open.
      */
     class ReportedStressOfCrack : public Check
     {

@@ -9,8 +9,8 @@ namespace Voussoir
   namespace
   {
     /** Cells too long for the fracture energy of their concrete: the refinement
-     *  that the numerical check requires suffices, one level less does not, and
-     *  the number of cells is the one reported. */
+     *  that the numerical check requires is sufficient, one level less is not,
+     *  and the number of cells is as reported. */
     class RequiredRefinement : public Check
     {
     public:

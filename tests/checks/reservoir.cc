@@ -78,7 +78,7 @@ namespace Voussoir
     };
 
 
-    /** A tank with rigid walls and a free surface rings at c / 4H. */
+    /** A tank with rigid walls and a free surface oscillates at c / 4H. */
     class ReservoirResonance : public Check
     {
     public:
@@ -141,7 +141,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        // seen at the middle after 1/2, 3/2 and 5/2 passages
+        // at the middle after 1/2, 3/2 and 5/2 passages
         const auto radiating = peaks(file, communicator);
         verdicts.below("reflected by the radiating end",
                        radiating[1] / radiating[0],

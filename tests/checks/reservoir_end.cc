@@ -36,8 +36,8 @@ namespace Voussoir
       }
 
       /**
-       * Thrust / rho a H^2 on a wall that moves along an endless channel over a
-       * rigid bottom, in modes cos(l z), l H = pi/2, 3 pi/2, ...,
+       * Thrust / rho a H^2 on a wall that moves along an infinite channel over
+       * a rigid bottom, in modes cos(l z), l H = pi/2, 3 pi/2, ...,
        *   sum of 2 / (l H)^2 / kappa H , kappa^2 = l^2 - (omega/c)^2 ,
        * where waves travel away, kappa = i |kappa|, above the frequency of the
        * mode (Chopra 1967).
@@ -59,7 +59,7 @@ namespace Voussoir
     };
 
 
-    /** A smooth way from 0 to 1. */
+    /** A smooth transition from 0 to 1. */
     double
     ramp(const double x)
     {
@@ -97,8 +97,8 @@ namespace Voussoir
 
     /**
      * The pressure of a floor in vertical motion does not depend on the
-     * radiating end, and waves of a wall in horizontal motion leave through it
-     * as in an endless channel.
+     * radiating end, and waves of a wall in horizontal motion leave through
+     * this end as in an infinite channel.
      */
     class ReservoirEndMotion : public Check
     {

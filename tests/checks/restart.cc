@@ -46,7 +46,8 @@ namespace Voussoir
 
     /**
      * A run that is interrupted and continues from its checkpoint equals the
-     * uninterrupted run: bit for bit on as many ranks, to round-off on others.
+     * uninterrupted run: bit for bit on the same number of ranks, to round-off
+     * on others.
      */
     class Restart : public Check
     {
@@ -332,8 +333,8 @@ namespace Voussoir
       static void
       compare_energies(const Contact &a, const Contact &b, Verdicts &verdicts)
       {
-        // of all surfaces together: how the friction of a node where two of
-        // them meet is shared out is indeterminate
+        // of all surfaces together: where two surfaces meet in a node, the
+        // shares of its friction are indeterminate
         const nlohmann::json saved = a.save(), saved_too = b.save();
         double               change = 0., size = 0.;
         for (unsigned int part = 0; part < 5; ++part)
@@ -377,7 +378,8 @@ namespace Voussoir
       }
 
 
-      // the tables have nine digits; sums over other ranks round differently
+      // the tables have nine digits; sums over other numbers of ranks round
+      // differently
       static void
       compare_tables(const std::string &reference,
                      const std::string &folder,

@@ -11,8 +11,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * A run that continues from the middle of a crack that closes is the run
-     * that was not interrupted, bit for bit, its energies included.
+     * A run that continues while a crack closes equals the uninterrupted run,
+     * bit for bit, its energies included.
      */
     class RestartCrack : public Check
     {
@@ -123,7 +123,7 @@ namespace Voussoir
       }
 
 
-      /** When the impact of a crack that closes is largest [s]. */
+      /** Time of the largest impact of a closing crack [s]. */
       static double
       time_of_closing(const ParameterFile &file, const MPI_Comm communicator)
       {

@@ -94,7 +94,7 @@ namespace Voussoir
       }
 
 
-      /** Two columns: a sine of one pulse, and @p more of it. */
+      /** Writes times and one burst of a sine, amplified by 1 + @p more. */
       static void
       write_record(const double more, const MPI_Comm communicator)
       {

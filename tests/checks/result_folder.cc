@@ -43,7 +43,7 @@ namespace Voussoir
 
         remove_folders({"results", "results-2"}, communicator);
         {
-          // both check the folder before one of them claims it
+          // both runs check the folder before one of them claims it
           ResultFolder one(*parameters, plain, log),
             other(*parameters, plain, log);
           verdicts.is_true("nothing is there before", !fs::exists("results"));

@@ -10,9 +10,10 @@ namespace Voussoir
   {
     /**
      * The eigenvalues of the stiffness of a small body without supports: six of
-     * its motions are rigid, with the eigenvalue zero. All others have, with
-     * one point as much as with full integration or less, but not much: in a
-     * cube, where the strain varies along two directions, E/(M + 2 G) of it.
+     * its motions are rigid, with the eigenvalue zero. All others have positive
+     * eigenvalues; with one point these are at most those of full integration,
+     * and not much lower: in a cube, where the strain varies along two
+     * directions, E/(M + 2 G) of them.
      */
     class RigidModes : public Check
     {

@@ -13,14 +13,15 @@ namespace Voussoir
    * omega = k c_r,
    *   u = sin(k z),  p = P sin(omega (h - y)/c), y from the wet end upwards,
    *   E k cos(k L) = rho c omega tan(omega h/c) sin(k L) .
-   * Incompressible, c has no end.
+   * For incompressible water c is infinite.
    */
   struct RodAndColumn
   {
     ElasticConstants rod;
     double           length, depth, density, c;
 
-    /** Zero at natural frequencies: both sides times cos(omega h/c). */
+    /** Zero at natural frequencies: difference of both sides times cos(omega
+     *  h/c). */
     double
     mismatch(const double omega) const
     {
@@ -31,7 +32,7 @@ namespace Voussoir
                std::cos(in_water);
     }
 
-    /** The lowest ones [rad/s]. */
+    /** The lowest natural frequencies [rad/s]. */
     std::vector<double>
     frequencies(const unsigned int number) const
     {

@@ -12,8 +12,9 @@ namespace Voussoir
   {
     /**
      * Two runs on one model with joints that open and slip, concrete that
-     * cracks and a static state, which take their steps in turn: each is the
-     * run of another model alone, bit for bit, in its state and in its files.
+     * cracks and a static state, which take their steps in turn: each equals
+     * the run of another model alone, bit for bit, in its state and in its
+     * files.
      */
     class SecondRun : public Check
     {

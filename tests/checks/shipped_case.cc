@@ -27,8 +27,8 @@ namespace Voussoir
     }
 
 
-    /** A shipped case, coarsened: its summary and the order of its events show
-     *  what the "Expected:" in its head says. */
+    /** A shipped case, coarsened: its summary and the order of its events agree
+     *  with "Expected:" in its head. */
     class ShippedCase : public Check
     {
     public:

@@ -10,8 +10,8 @@ namespace Voussoir
 
   namespace
   {
-    /** A shipped study, coarsened: its runs show what the "Expected:" in its
-     *  head says. */
+    /** A shipped study, coarsened: its runs agree with "Expected:" in its head.
+     */
     class ShippedStudy : public Check
     {
     public:

@@ -30,7 +30,8 @@ namespace Voussoir
                          large    = displacement(*simulation, 1e-3, 0.),
                          moved    = displacement(*simulation, 1e-6, 1.),
                          slow     = displacement(*simulation, 3e-7, 0.);
-            // some of the cells, or the comparison is of nothing
+            // some cells must be in single precision, otherwise the comparison
+            // is empty
             verdicts.above(quadrature + ": elastic, not the same arithmetic",
                            difference(*simulation, small),
                            1e-9);

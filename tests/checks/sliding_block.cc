@@ -10,8 +10,7 @@ namespace Voussoir
   {
     /**
      * A block in the corner of a floor (up z), a side wall (at its lower x) and
-     * a back wall (at its lower y), pressed and driven in all the ways that it
-     * can go.
+     * a back wall (at its lower y), pressed and driven in all modes of sliding.
      */
     class SlidingBlockModes : public Check
     {

@@ -8,9 +8,9 @@ namespace Voussoir
 
   namespace
   {
-    /** A motion that is many times smaller is computed as accurately: its
-     *  energy balances, and without cracks and joints it is proportional to the
-     *  larger one.
+    /** A motion that is many times smaller is computed as accurately: the
+     *  energy balance closes, and without cracks and joints the motion is
+     *  proportional to the larger one.
      */
     class SmallMotion : public Check
     {

@@ -29,7 +29,7 @@ namespace Voussoir
         verdicts.below("velocity at 0.99 of the limit over the first",
                        below,
                        10.);
-        // a motion that has overflown has grown, too
+        // a motion that has overflowed has grown, too
         verdicts.is_true("velocity at 1.02 of the limit grows over a thousand "
                          "times",
                          !(above < 1e3));
@@ -43,7 +43,7 @@ namespace Voussoir
              const MPI_Comm       communicator) const
       {
         const auto parameters = make_case(file);
-        // a file may not ask for more than one
+        // in a file the factor is at most one
         parameters->time.safety_factor = factor;
         const auto simulation = make_simulation(*parameters, communicator);
         State     &state      = simulation->run.state;

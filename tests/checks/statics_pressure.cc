@@ -9,7 +9,7 @@ namespace Voussoir
   namespace
   {
     /** Force and moment of a depth pressure on an upright face of irregular
-     *  cells, wherever the level cuts them. */
+     *  cells, at any level that cuts them. */
     class DepthPressure : public Check
     {
     public:

@@ -7,7 +7,7 @@ namespace Voussoir
 
   namespace
   {
-    /** After the static stage nothing moves, unless an earthquake comes. */
+    /** After the static stage nothing moves without an earthquake. */
     class Rest : public Check
     {
     public:

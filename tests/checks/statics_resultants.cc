@@ -7,8 +7,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * Resultants of the loads of the Koyna section against the areas they are
-     * made of, and the reactions against the loads.
+     * Resultants of the loads of the Koyna section against loaded areas, and
+     * the reactions against the loads.
      */
     class KoynaResultants : public Check
     {

@@ -13,8 +13,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * Bodies whose temperature changes by dT0 everywhere or by dT0 in a linear
-     * way from the back to the front face, supported by planes of symmetry:
+     * Bodies whose temperature changes uniformly by dT0, or linearly by dT0
+     * from the back to the front face, supported by planes of symmetry:
      *
      * - free bar: u = alpha dT0 x, no stress
      * - clamped bar: no displacement along it, sigma_xx = -E alpha dT0

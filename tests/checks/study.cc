@@ -49,8 +49,8 @@ namespace Voussoir
 
 
     /**
-     * Settlement rho g H^2 / 2 E of columns of other stiffness and density; a
-     * run that is missing is done again, and no other one.
+     * Settlement rho g H^2 / 2 E of columns of different stiffness and density;
+     * only a missing run is repeated.
      */
     class StudyOfColumns : public Check
     {
@@ -99,7 +99,8 @@ namespace Voussoir
       }
     };
 
-    /** Runs of which one has no static equilibrium, and then none has. */
+    /** Runs, the second of which has no static equilibrium, and then runs none
+     *  of which has one. */
     class FailingRun : public Check
     {
     public:
@@ -169,9 +170,9 @@ namespace Voussoir
 
 
     /**
-     * Searches for the limit at which a run is "stopped", of which a mistake in
-     * the file and a full disk are none, and for another limit by a run that is
-     * stopped before it.
+     * Searches for the limit at which a run is "stopped", for which a mistake
+     * in the file and a full disk do not count, and for another limit by a run
+     * that is stopped before it.
      */
     class FailedLimit : public Check
     {
@@ -269,7 +270,7 @@ namespace Voussoir
 
 
     /** Mean and spread, in closed form, and of the settlements rho g H^2 / 2 E
-     *  of columns that are 2000, 2400 and 3100 kg/m3 heavy. */
+     *  of columns with densities of 2000, 2400 and 3100 kg/m3. */
     class StudyStatistics : public Check
     {
     public:

@@ -46,7 +46,7 @@ namespace Voussoir
         for (const double sum : sums)
           verdicts.near("change over that of both moduli", sum, 0.5, 0.01);
 
-        // of a run beside what was found
+        // of a run beside the result
         const auto summary =
           read_summary(found.at("runs").back().at("folder").get<std::string>());
         const auto &shapes = summary.at("modes").at("measured shapes");
@@ -80,7 +80,7 @@ namespace Voussoir
                    verdicts,
                    communicator);
 
-        // both moduli of the rock together cannot be told apart
+        // two moduli of the rock cannot be distinguished
         remove_folders({"alike"}, communicator);
         const auto alike =
           results_of(study.with({"Output/Folder=alike",

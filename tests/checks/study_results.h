@@ -7,7 +7,7 @@
 
 namespace Voussoir
 {
-  /** The case of a test, which is a file of its own beside it. */
+  /** The case of a test, a separate file beside that of the test. */
   inline ParameterFile
   study_file(const ParameterFile &file,
              const std::string   &name,

@@ -39,11 +39,10 @@ namespace Voussoir
 
 
     /**
-     * The end of a rod moves along it, prescribed, and nothing else there:
-     * until waves come back, R = rho c A v(t) ,  2 rho c A v(t - L/c) at the
-     * other end, which is fixed, in uniaxial strain or, with sides that are
-     * free, where the rod is slow, in uniaxial stress, R = E A u / L, with a
-     * contraction of nu u / L.
+     * The end of a rod moves axially as prescribed. In uniaxial strain, until
+     * waves return, R = rho c A v(t) there and 2 rho c A v(t - L/c) at the
+     * other end, which is fixed. With free sides and slow motion, in uniaxial
+     * stress, R = E A u / L, with a contraction of nu u / L.
      */
     class RodForces : public Check
     {
@@ -117,7 +116,7 @@ namespace Voussoir
         verdicts.below("its error over time",
                        of_fixed / (2. * factor * velocity(end - 20. / speed)),
                        2. * tolerance);
-        // sampled between the lines of the table, too, not in every step
+        // sampled also between the lines of the table, but not in every step
         const auto   summary = read_summary("rod_waves");
         const double last    = double(summary.at("end time [s]")) -
                             double(summary.at("time step [s]"));

@@ -10,9 +10,9 @@ namespace Voussoir
   namespace
   {
     /**
-     * Amplitudes at points over that of the incident wave, by the Fourier
-     * sums of a pulse, against those of steady waves: each one, or, where some
-     * are small, over one that stands for all.
+     * Amplitudes at points over that of the incident wave, by the Fourier sums
+     * of a pulse, against those of steady waves: each by itself or, where some
+     * are small, over a common scale.
      */
     class SurfaceAmplitudes : public Check
     {

@@ -12,8 +12,9 @@ namespace Voussoir
   {
     /**
      * A table whose run continues from a checkpoint at the time of one of its
-     * lines: killed before it has written that line anew, it has lost no line
-     * that the checkpoint counts; then it has each line once.
+     * lines: if the run is killed before it has written that line again, the
+     * table has lost no line that the checkpoint counts; afterwards it has each
+     * line once.
      */
     class TableGoesOn : public Check
     {

@@ -44,8 +44,8 @@ namespace Voussoir
     pressure(const dealii::Point<3> &position) const;
   };
 
-  /** A velocity that goes from 0 to 1 and back [m/s], smooth, at @p time over
-   *  the @p duration. */
+  /** A velocity that rises from 0 to 1 and returns [m/s], smooth, at @p time
+   *  over the @p duration. */
   double
   pulse(const double time, const double duration);
 } // namespace Voussoir

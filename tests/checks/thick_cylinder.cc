@@ -78,13 +78,13 @@ namespace Voussoir
 
 
     /**
-     * Rock around a pressure gallery, in plane strain: how far it yields by
-     * Mohr and Coulomb, and its stresses, against the closed form. With N = (1
-     * + sin phi) / (1 - sin phi), Y = 2 c sqrt(N) and A = Y / (N - 1), the
+     * Rock around a pressure gallery, in plane strain: the extent of yielding
+     * by Mohr and Coulomb, and the stresses, against the closed form. With N =
+     * (1 + sin phi) / (1 - sin phi), Y = 2 c sqrt(N) and A = Y / (N - 1), the
      * radial stress inside of the plastic radius R is
      *   A - (A + p) (a / r)^((N - 1) / N) ,
      * and N s_theta - s_r = Y; outside there is Lame's solution for the
-     * pressure that is left at R, with which R is about to yield.
+     * pressure at R, under which R is about to yield.
      */
     class ThickCylinder : public Check
     {
@@ -127,7 +127,7 @@ namespace Voussoir
             values.reinit(cell);
             values[FEValuesExtractors::Vector(0)]
               .get_function_symmetric_gradients(displacement, strains);
-            // the mean over a cell, which fits better than single points
+            // the mean over a cell, which is closer than single points
             Point<3> centre;
             double   stress = 0., size = 0.;
             for (const unsigned int q : values.quadrature_point_indices())

@@ -8,8 +8,8 @@ namespace Voussoir
   namespace
   {
     /**
-     * A block that is pulled by 4 mm sin(pi t)^2 and let back, all of which
-     * opens its middle layer: from face to face if all cells there are weak,
+     * A block that is pulled by 4 mm sin(pi t)^2, all of which is the opening
+     * of its middle layer: from face to face if all cells there are weak,
      * nowhere if the middle one is a hundred times as strong.
      */
     class ThroughCrack : public Check
@@ -79,8 +79,8 @@ namespace Voussoir
     /**
      * A block pressed on its foundation, which a force at its top bends to and
      * fro: the eccentricity e of the pressure on a weak layer opens it from
-     * either face in turn, and as e stays within the layer it is always pressed
-     * somewhere.
+     * either face in turn, and as e stays within the layer, a part of it is
+     * always in compression.
      */
     class CracksInTurn : public Check
     {

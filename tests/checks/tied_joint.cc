@@ -10,8 +10,9 @@ namespace Voussoir
     /**
      * Two blocks on a wall, the end of one at a second wall, whose weight acts
      * across the row while they stand free. The joint between them is grouted
-     * and tied, and the row pulled by q: it stretches by q L / E as one bar,
-     * friction and no bond or not, and stays so in the run.
+     * and tied, and the row pulled by q: it stretches by q L / E as one bar, in
+     * spite of a joint with friction and without bond, and remains so in the
+     * run.
      */
     class TiedJoint : public Check
     {

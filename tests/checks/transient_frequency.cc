@@ -7,7 +7,7 @@ namespace Voussoir
   namespace
   {
     /**
-     * A block that is let go in its first natural mode: its damped vibration
+     * A block that is released in its first natural mode: its damped vibration
      * has the frequency of the table of modes, for any damping ratio, band and
      * natural frequency.
      */

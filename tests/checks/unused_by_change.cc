@@ -10,8 +10,9 @@ namespace Voussoir
 
   namespace
   {
-    /** Entries and sections that --set or a file that includes another leave
-     *  without use are left out with a note; mistakes are refused as before. */
+    /** Entries and sections that become unused by --set, or by a file that
+     *  includes another, are left out with a note; mistakes are refused as
+     *  before. */
     class UnusedByChange : public Check
     {
     public:

@@ -154,7 +154,7 @@ namespace Voussoir
       }
 
 
-      /** Interfaces are observed for the verdict whatever the case asks for. */
+      /** Interfaces are observed for the verdict in any case. */
       static void
       observers(const ParameterFile &file, Verdicts &verdicts)
       {

@@ -51,7 +51,7 @@ namespace Voussoir
         while (simulation->run.state.time < parameters->time.end_time)
           {
             simulation->run.scheme.step(simulation->run.state);
-            // extremes of each level over the ranks, now and then
+            // extremes of each level over the ranks, at intervals
             const bool evaluated = simulation->run.state.step % 10 == 0;
             std::map<long, std::array<double, 6>> levels;
             for (unsigned int node = 0; node < discretization.n_owned_nodes();

@@ -6,8 +6,8 @@ namespace Voussoir
 
   namespace
   {
-    /** A case with one entry changed after the other: each mistake gives a
-     *  warning of the log, or several. */
+    /** A case with one entry after another changed: each mistake gives one or
+     *  several warnings in the log. */
     class Warnings : public Check
     {
     public:

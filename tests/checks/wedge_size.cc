@@ -13,10 +13,10 @@ namespace Voussoir
     /**
      * The log's report of a wedge of rock whose size is rounded to cells: in
      * the straight bank x = 20 + 0.8 z behind a straight dam 10 m thick, with a
-     * level bottom at z = 40, which meets the bank at x = 52, a wedge that is w
-     * wide and l long has the volume w^2 / 1.6 (l + 10). Columns are 10 m wide,
-     * but 9.6 m beyond the one shortened by the foot; 28.8 m are nearest
-     * to the 25 m given.
+     * level base plane at z = 40, which meets the bank at x = 52, a wedge that
+     * is w wide and l long has the volume w^2 / 1.6 (l + 10). Columns are 10 m
+     * wide, but 9.6 m beyond the column that the foot shortens; 28.8 m are
+     * nearest to the 25 m given.
      */
     class WedgeSize : public Check
     {

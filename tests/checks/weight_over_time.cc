@@ -9,9 +9,9 @@ namespace Voussoir
   {
     /**
      * A rod that stands on its end gets its weight at once: its top falls
-     * freely, g t^2/2, until the wave from the base is there at L/c, and goes
-     * down to g L^2/c^2 at 2 L/c, twice the static displacement. And weight
-     * over time is inertia on a base that moves the other way.
+     * freely, g t^2/2, until the wave from the base arrives at L/c, and reaches
+     * g L^2/c^2 at 2 L/c, twice the static displacement. And weight over time
+     * is inertia on a base that moves the other way.
      */
     class WeightOverTime : public Check
     {
@@ -66,7 +66,7 @@ namespace Voussoir
                       tolerance,
                       "mm");
 
-        // slowly, as a static stage would have it
+        // slowly, as in a static stage
         const auto slow =
           make_case(file.with({"Loads/weight/Time function="
                                "if(t < 1, sin(pi*t/2)^2, 1)",

@@ -8,8 +8,8 @@ namespace Voussoir
   {
     /**
      * A bar with one weak cell of 3.25 m, pulled by A sin(0.05 pi t)^2: once it
-     * has cracked all of that is the opening of the crack. At a fiftieth of the
-     * cell, 65 mm, the run warns.
+     * has cracked all of this displacement is the opening of the crack. At a
+     * fiftieth of the cell, 65 mm, the run warns.
      */
     class WideCrack : public Check
     {

@@ -8,9 +8,9 @@ namespace Voussoir
   {
     /**
      * A block on a level plane with the weight w, pushed by p, both per area
-     * and come on smoothly during T: after them its slip is a (T^2/4 - T^2/pi^2
-     * + T (t - T)/2 + (t - T)^2/2) ,  a = (p - f w) g/w . From half a cell on
-     * the run warns; with more friction the block does not slide.
+     * and applied smoothly during T. Afterwards its slip is a (T^2/4 - T^2/pi^2
+     * + T (t - T)/2 + (t - T)^2/2) , a = (p - f w) g/w . From a slip of half a
+     * cell on the run warns; with more friction the block does not slide.
      */
     class WideSlip : public Check
     {
@@ -42,7 +42,7 @@ namespace Voussoir
       }
 
     private:
-      /** That of the plane, if there is one. */
+      /** The warning of the slip of the plane, if any. */
       static std::string
       warning_of(const ParameterFile &file,
                  const double         friction,

@@ -35,8 +35,8 @@ namespace Voussoir
   }
 
 
-  /** Runs the case with this change, its files in this folder; the warnings of
-   *  its summary. */
+  /** Runs the case with this change, with its files in this folder; returns the
+   *  warnings of its summary. */
   inline nlohmann::json
   warnings_of(const ParameterFile &file,
               const std::string   &change,

@@ -91,8 +91,7 @@ namespace Voussoir
     /**
      * A bar with a weak layer of a law that reports less or more than it
      * dissipates is pulled apart: the difference is the energy-balance error.
-     * The true dissipation of the law is the work of the traction on the
-     * opening.
+     * The dissipation of the law is the work of the traction on the opening.
      */
     class WrongLaw : public Check
     {

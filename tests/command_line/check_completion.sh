@@ -1,11 +1,11 @@
 #!/bin/bash
-# What bash proposes for beginnings of command lines.
+# Proposals of bash for beginnings of command lines.
 # usage: check_completion.sh PROGRAM SCRIPT CASE.prm
 program=$1 case=$3 failed=0
 # shellcheck source=/dev/null
 source "$2"
 
-proposes() { # what is expected in this order, separated by "; ", then the words
+proposes() { # expected proposals in order, separated by "; ", then the words
   local expected=$1 found
   shift
   COMP_WORDS=("$program" "$@") COMP_CWORD=$#

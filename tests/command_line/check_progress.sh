@@ -1,5 +1,6 @@
 #!/bin/bash
-# A terminal shows a bar, which is gone in the end; a file and log.txt have plain lines.
+# A terminal shows a progress bar, which disappears at the end; a file and log.txt have
+# plain lines.
 # usage: check_progress.sh PROGRAM CASE.prm
 program=$1 case=$2 failed=0
 command -v script >/dev/null || { echo "skipped: there is no script"; exit 77; }
@@ -10,14 +11,14 @@ export TERM=xterm SHELL=/bin/bash
 
 bar='\[#*-*\] *[0-9.]* %'
 
-# the shell that starts it writes to the terminal, as that of a user does
+# the shell that starts the program writes to the terminal, as that of a user does
 run_on() { # terminal, how its output is redirected
   rm -f "$folder/terminal" "$folder/file"
   TERM=$1 script -qec "$program $case --set Output/Folder=$folder/run 'Time/End time=20' --overwrite $2; true" \
     "$folder/terminal" >/dev/null
 }
 
-# lines with a pattern, where "\r" ends one, too; nothing where there is no file
+# lines with a pattern, which "\r" ends, too; nothing if there is no file
 lines() { # pattern, file
   [ -f "$2" ] && tr '\r' '\n' <"$2" | grep -acP "$1"
 }

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Runs at the same time do not meet in Open MPI's folder for sessions: one starts
-# where that folder cannot be made, and leaves nothing behind.
+# Simultaneous runs do not share Open MPI's folder for sessions: a run starts where that
+# folder cannot be made, and leaves nothing behind.
 # usage: check_session.sh PROGRAM
 failed=0
 folder=$(mktemp -d)

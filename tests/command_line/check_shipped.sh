@@ -1,6 +1,6 @@
 #!/bin/bash
-# Cases that come with the program are found by name where there is no such file, and the
-# man page has all options of the program.
+# Cases that come with the program are found by name if there is no file of that name,
+# and the man page has all options of the program.
 # usage: check_shipped.sh PROGRAM SOURCES
 program=$1 sources=$2 failed=0
 folder=$(mktemp -d)
@@ -25,7 +25,7 @@ says "the shipped case is taken: $sources/prm/quickstart.prm" quickstart.prm --d
 says "\"../prm/quickstart.prm\" cannot be read" ../prm/quickstart.prm --defaults short
 says "\"no_such_case.prm\" cannot be read" no_such_case.prm --defaults short
 says "benchmarks/throughput.prm: " --list cases
-# a file of one's own goes before
+# a file of the user takes precedence
 sed "s/^set Title = .*/set Title = mine/" "$sources/prm/quickstart.prm" >quickstart.prm
 says "set Title = mine" quickstart.prm --defaults short
 

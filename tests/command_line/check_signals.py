@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Signals to the launcher and to its processes on two ranks: which exit code comes through mpirun, how
-soon, and that the run continues from where it was stopped to the files of an uninterrupted one.
+"""Signals to the launcher and to its processes on two ranks: the exit code that mpirun
+passes on and the delay, and that the run continues from where it was stopped to the
+files of an uninterrupted run.
 
 usage: check_signals.py LAUNCHER CASE.prm
 """
@@ -39,7 +40,7 @@ def wait_for(condition, seconds=60.):
 
 
 def ranks(folder):
-    """Processes of the program in a folder, by their number."""
+    """Processes of the program in a folder, in the order of their ids."""
     found = []
     for process in pathlib.Path("/proc").glob("[0-9]*"):
         try:
@@ -47,7 +48,7 @@ def ranks(folder):
                     and os.readlink(process / "cwd") == str(folder)):
                 found.append(int(process.name))
         except OSError:
-            pass  # it has ended, or is none of ours
+            pass  # it has ended, or belongs to another user
     return sorted(found)
 
 
@@ -72,7 +73,7 @@ def started(folder, **options):
 
 
 def ends(run, seconds=60.):
-    """Its exit code; None if it does not end, and then it is killed."""
+    """The exit code of a run; None if it does not end and has to be killed."""
     try:
         return run.wait(seconds)
     except subprocess.TimeoutExpired:
@@ -128,7 +129,7 @@ def check_errors(scratch):
         code = ends(start(folder, "Time/Edn time=3"))
         seconds.append(time.monotonic() - begin)
     is_true(f"a wrong entry: exit code {code}", code == 1)
-    # two without load, of which one to start
+    # two without load, one of them to start
     is_true(f"  after {min(seconds):.1f} s", min(seconds) < 10.)
     is_true("  reported once each time", (folder / "terminal.txt").read_text().count('Error: --set "Time/Edn time') == 3)
 
@@ -139,7 +140,7 @@ def check_kills(scratch):
     processes = ranks(folder)
     is_true("two ranks", len(processes) == 2)
     os.kill(parent(processes[0]), signal.SIGKILL)
-    # Open MPI itself gives them a second
+    # Open MPI itself grants them a second
     is_true("ranks do not outlive mpirun", wait_for(lambda: not ranks(folder), 0.7))
     code = ends(run)
     is_true(f"  exit code {code}", code == 128 + signal.SIGKILL)
@@ -158,7 +159,8 @@ def check_kills(scratch):
 
 
 def check_session_folders(scratch):
-    """A killed mpirun of Open MPI 5 leaves a folder of its process number, which comes again."""
+    """A killed mpirun of Open MPI 5 leaves a folder of its process number, and process
+    numbers recur."""
     temporary = scratch / "temporary"
     temporary.mkdir()
     last = os.getpid()
@@ -208,7 +210,7 @@ def check_terminal(scratch):
             if select.select([master], [], [], 1.)[0]:
                 try:
                     shown += os.read(master, 4096)
-                except OSError:  # no process holds the terminal
+                except OSError:  # no process has the terminal open
                     break
         return re.search(pattern, shown)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The job scripts of doc/running.md, with stand-ins for Slurm's commands: stopped by the signal, they
-put themselves into the queue again; started again, the run continues and ends.
+"""The job scripts of doc/running.md, with substitutes for Slurm's commands: after the
+signal the jobs requeue themselves; started again, the run continues and ends.
 
 usage: check_slurm.py PROGRAM running.md CASE.prm
 """

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Reads what "--defaults xml" prints as deal.II's parameter_gui does: an element whose first child
-is <value> is an entry, and has what the editor needs and nothing else; what follows would be taken
-for entries below it, and the entry be lost when the file is saved.
+"""Reads the output of "--defaults xml" as deal.II's parameter_gui does: an element
+whose first child is <value> is an entry, and has the children that the editor needs and
+no others. The editor would take further children for entries below it, and lose the
+entry when the file is saved.
 
 usage: check_xml.py PROGRAM CASE.prm
 """

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""An arch dam in another way: trilinear hexahedra assembled here, scipy's sparse
-solvers, Newmark's constant mean acceleration. Shares nothing with Voussoir but
-mesh and ground motion, which it takes from a run's fields and ground_motion.csv.
+"""An arch dam by independent code: trilinear hexahedra assembled here, scipy's sparse
+solvers, Newmark's constant average acceleration. It shares only mesh and ground motion
+with Voussoir, which it reads from a run's fields and ground_motion.csv.
 
     K   2 x 2 x 2 points      M   at the corners, as Voussoir has it (or row sums, or full)
     C = a (M + M_w) + b K, of each material its own b; a, b from the ratio at two frequencies
@@ -9,7 +9,7 @@ mesh and ground motion, which it takes from a run's fields and ground_motion.csv
            the level, of the column of faces, h that of the node
     rigid base: the forces - (M + M_w) a of all but massless rock
     boundary: springs and dashpots per area; K u + C v + sigma n of the free field,
-           which is a column of linear elements under Newmark, too
+           which is a column of linear elements, integrated by Newmark, too
 
 usage: arch_dam_newmark.py RUN [--massless] [--step DT] [--mass KIND] [--all-levels] [--write FILE]
                            [--picture FILE] [--calculix FILE]
@@ -30,9 +30,9 @@ CONCRETE, ROCK = (30e9, 0.17, 2400.0), (20e9, 0.24, 2700.0)  # modulus, Poisson'
 WATER, LEVEL = 1000.0, 280.0
 RATIO, BAND = 0.05, (1.0, 8.0)
 LIGHT = 0.01  # massless rock: share of its mass
-SOURCE = np.array([0.0, 0.0, 145.0])  # of the waves that the boundary lets out
+SOURCE = np.array([0.0, 0.0, 145.0])  # of the waves that leave through the boundary
 GRAVITY = 9.81
-# where stresses at rest are printed: corners of the dam
+# points of printed static stresses: corners of the dam
 PLACES = [(0, 0, 289), (0, -14, 289), (0, 16, 208), (0, -19, 208), (0, 21, 125), (0, -28, 125), (0, 5, 0), (0, -58, 0), (158, -39, 289), (-158, -39, 289)]
 # corners of a cell and of its faces, as VTK numbers them
 CORNERS = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]])
@@ -117,7 +117,7 @@ def moduli(material):
 
 
 def gradients(x, point):
-    """Of the shape functions in space, by cell, and the determinant."""
+    """Gradients of the shape functions in space, by cell, and the determinant."""
     one = 1 + CORNERS * point
     d = np.stack([CORNERS[:, 0] * one[:, 1] * one[:, 2], CORNERS[:, 1] * one[:, 0] * one[:, 2], CORNERS[:, 2] * one[:, 0] * one[:, 1]], axis=1) / 8
     jacobian = np.einsum("ai,cad->cid", d, x)
@@ -134,7 +134,7 @@ def strain_matrix(g):
 
 
 class Model:
-    """Matrices of all unknowns; `free` are those that can move."""
+    """Matrices of all unknowns; `free` are the unknowns that can move."""
 
     def __init__(self, mesh, light_rock, kind_of_mass="corners"):
         self.mesh, self.size = mesh, 3 * len(mesh.nodes)
@@ -173,7 +173,7 @@ class Model:
         )
 
     def blocks(self, nodes, values):
-        """Of 3 x 3 blocks at nodes."""
+        """Matrix of 3 x 3 blocks at nodes."""
         dofs = 3 * nodes[:, None] + np.arange(3)
         return self.assemble(dofs, dofs, values)
 
@@ -225,7 +225,7 @@ class Model:
         return u
 
     def stresses(self, u):
-        """At the eight corners of the dam's cells, principal [Pa]."""
+        """Principal stresses at the eight corners of the dam's cells [Pa]."""
         cells = self.mesh.cells[~self.mesh.rock]
         of_cell = u.reshape(-1, 3)[cells].reshape(-1, 24)
         at = [strain_matrix(gradients(self.mesh.nodes[cells], corner)[0]) for corner in CORNERS]
@@ -296,7 +296,8 @@ class Boundary:
         self.h = h
 
     def force(self, incident_velocity):
-        """Of the next step [N], under the incident velocities at the bottom [m/s]."""
+        """Forces of the next step [N], under the incident velocities at the bottom
+        [m/s]."""
         u, v, stress = np.zeros_like(self.nodes), np.zeros_like(self.nodes), np.zeros((len(self.h), 3))
         bottom = np.zeros(3)
         for d, column in enumerate(self.columns):
@@ -319,7 +320,7 @@ def integral(values, step):
 
 
 def response(model, motion, points, step, every, massless, all_levels):
-    """Absolute displacements of points [m], by time, every so many steps."""
+    """Absolute displacements of points [m], by time, at intervals of some steps."""
     a, b = rayleigh()
     concrete, rock = model.stiffness
     times = np.arange(0, motion[-1, 0] + step / 2, step)
@@ -335,7 +336,7 @@ def response(model, motion, points, step, every, massless, all_levels):
     else:
         boundary = Boundary(model, step, all_levels)
         damping, stiffness = damping + boundary.dashpots, stiffness + boundary.springs
-        # of outcrop motion half comes in
+        # half of the outcrop motion is incident
         velocity = integral(ground / 2, step)
         ground_displacement = 0 * ground
         force = lambda n: boundary.force(velocity[n])
@@ -359,7 +360,7 @@ def compare_modes(mesh, summary, kind_of_mass):
 
 
 def compare_static(mesh):
-    """Displacements and principal stresses of the dam at rest."""
+    """Displacements and principal stresses of the dam in the static state."""
     model = Model(mesh, True)
     model.hold()
     u = model.static_state()
@@ -381,7 +382,8 @@ def compare_static(mesh):
 
 
 def write_calculix(mesh, name):
-    """The dam under its loads at rest, and empty natural modes, for ccx."""
+    """The dam under its static loads, and natural modes with an empty reservoir, for
+    ccx."""
     model = Model(mesh, True)
     model.hold()
     force = (model.stiffness[0] + model.stiffness[1]) @ model.static_state()

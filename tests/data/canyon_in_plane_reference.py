@@ -3,15 +3,15 @@
 tests/waves/canyon_p_*.prm and canyon_sv_*.prm: by sources within the canyon.
 
 Lengths over the canyon's radius, e^(-i w t), x along the surface, z downwards. With the
-potentials phi and psi, u = (phi_x - psi_z, phi_z + psi_x). To a plane wave
-e^(i k x - i nu z) that rises the surface throws back, with g = 2 k^2 - ks^2,
-R = g^2 + 4 k^2 nu_p nu_s,
+potentials phi and psi, u = (phi_x - psi_z, phi_z + psi_x). Of a rising plane wave
+e^(i k x - i nu z) the surface reflects, with g = 2 k^2 - ks^2, R = g^2 + 4 k^2 nu_p nu_s,
     of phi: (4 k^2 nu_p nu_s - g^2) / R phi and 4 k nu_p g / R psi ,
     of psi: - 4 k nu_s g / R phi and (4 k^2 nu_p nu_s - g^2) / R psi .
 A source H_0(k_p d) or H_0(k_s d) at some depth is an integral of such waves over k, on a
-path that passes below the poles at k > 0, above those at k < 0. Strengths of sources
-within the canyon take the traction off its wall. eta is the canyon's width over the
-length of S waves, ks = pi eta; kp = ks / sqrt(3), as Poisson's ratio is 1/4.
+path that passes below the poles at k > 0, above those at k < 0. Sources within the
+canyon have the strengths that cancel the traction on its wall. eta is the canyon's
+width over the length of S waves, ks = pi eta; kp = ks / sqrt(3), as Poisson's ratio is
+1/4.
 
 usage: canyon_in_plane_reference.py              the amplitudes of the tests
        canyon_in_plane_reference.py --check      the solution against what must hold
@@ -32,11 +32,11 @@ class HalfSpace:
         self.kp = self.ks / np.sqrt(3)
 
     def nu(self, k):
-        """Wave numbers downwards of P and S."""
+        """Vertical wave numbers of P and S."""
         return np.sqrt(self.kp**2 - k**2 + 0j), np.sqrt(self.ks**2 - k**2 + 0j)
 
     def thrown_back(self, k, wave):
-        """Potentials phi and psi per unit of that of a wave that rises."""
+        """Reflected potentials phi and psi per unit potential of a rising wave."""
         p, s = self.nu(k)
         g = 2 * k**2 - self.ks**2
         r = g**2 + 4 * k**2 * p * s
@@ -56,7 +56,7 @@ class HalfSpace:
         ])
 
     def plane_waves(self, wave, angle, x, z):
-        """A wave of unit displacement and what flat ground throws back of it."""
+        """A wave of unit displacement and its reflection from flat ground."""
         own = self.kp if wave == "P" else self.ks
         k = own * np.sin(np.radians(angle))
         p, s = self.nu(k)
@@ -72,7 +72,7 @@ class HalfSpace:
     def sources(self, x, z, at):
         """Fields at points of unit sources phi, then psi, at places."""
         away, fine, coarse = 0.3, 0.05, 0.5
-        # steps that grow beyond the poles, up to where the shallowest source is none
+        # steps that grow beyond the poles, up to where the shallowest source vanishes
         wide = 2 * self.ks / fine
         s = np.arange(-1, 1 + 1e-9, 1 / np.ceil((12 / min(at[:, 1]) + 4 * wide * coarse) / coarse))
         s *= len(s) // 2
@@ -101,7 +101,7 @@ class HalfSpace:
 
 
 def derivative(number, dx, dz, i, j):
-    """Of H_0(number d) by x and z."""
+    """Derivatives of H_0(number d) by x and z."""
     d = np.hypot(dx, dz)
     first = -number * hankel1(1, number * d)
     second = -number**2 * hankel1(0, number * d) - first / d
@@ -121,13 +121,13 @@ def graded(n, first):
 
 def canyon(eta, wave, angle, x, z, n=60, deep=0.7):
     """Displacements and stresses per unit displacement of the incident wave, and the
-    traction left on the canyon, root mean square, over that of the wave."""
+    remaining traction on the canyon, root mean square, over that of the wave."""
     space = HalfSpace(eta)
     of, on = graded(n, 0.03), graded(3 * n, 0.005)
     at = (1 - deep * np.sin(of))[:, None] * np.transpose([np.cos(of), np.sin(of)])
     normal = np.cos(on), np.sin(on)
 
-    def traction(f):  # by the root of the length of which a point stands
+    def traction(f):  # weighted by the root of the length that a point represents
         n = [(c * np.sqrt(on * (np.pi - on))).reshape((-1,) + (1,) * (f.ndim - 2)) for c in normal]
         return np.concatenate([f[2] * n[0] + f[3] * n[1], f[3] * n[0] + f[4] * n[1]])
     matrix = traction(space.sources(*normal, at))
@@ -194,7 +194,7 @@ def main():
             rows = (", ".join(f"{u:.4f}" for u in of_eta[d]) for d in (0, 1) for of_eta in found)
             print(f"{wave}, {angle:g} degrees:", "; ".join(rows), sep="\n")
     for run, wave, angle in zip(options.runs, options.wave, options.angle):
-        for eta, found in zip(ETAS, amplitudes_of(run, 1, 2)):  # along the surface, upright
+        for eta, found in zip(ETAS, amplitudes_of(run, 1, 2)):  # horizontal, vertical
             exact = amplitudes(eta, wave, angle)
             print(f"{run}, {wave}, {angle:g} degrees, eta {eta}: largest difference, level and upright, over 2: "
                   + ", ".join(f"{50 * abs(f - e).max():.2f} %" for f, e in zip(found, exact)))

@@ -4,12 +4,12 @@ exact series of Trifunac (1973), for tests/waves/*canyon_sh_*.prm.
 
 Lengths over the canyon's radius, e^(-i w t); r, phi from the canyon's centre, phi from
 the horizontal direction in which the wave travels, downwards; a from there to the
-wave's own direction. The wave and the one that the surface throws back, with e_0 = 1,
+direction of the wave. The wave and its reflection from the surface, with e_0 = 1,
 e_n = 2,
     2 e^(i k r cos phi cos a) cos(k r sin phi sin a) = 2 sum e_n i^n J_n(k r) cos(n a) cos(n phi) ,
-leave no traction on the surface; to each term comes an outgoing wave that takes it off
-the canyon, - J_n'(k) / H_n'(k) H_n(k r) cos(n phi). eta is the canyon's width over the
-wavelength, k = pi eta.
+leave no traction on the surface; each term has an outgoing wave that cancels its
+traction on the canyon, - J_n'(k) / H_n'(k) H_n(k r) cos(n phi). eta is the canyon's
+width over the wavelength, k = pi eta.
 
 usage: canyon_reference.py                       the amplitudes of the tests
        canyon_reference.py --check               the series against what must hold
@@ -30,7 +30,7 @@ def plane_waves(k, a, x, y):
 
 
 def canyon(eta, angle, r, phi):
-    """Displacement per unit of the incident one; angle to the vertical [degrees]."""
+    """Displacement per unit incident displacement; angle to the vertical [degrees]."""
     k, a = np.pi * eta, np.radians(90 - angle)
     u = plane_waves(k, a, r * np.cos(phi), r * np.sin(phi))
     for n in range(60):
@@ -46,8 +46,8 @@ def along(place):
 
 
 def by_sources(eta, angle, r, phi):
-    """The same in another way: sources within the canyon, each with its mirror
-    image, whose strengths take the traction off points of the canyon."""
+    """The same by another method: sources within the canyon, each with its mirror
+    image, with the strengths that cancel the traction at points of the canyon."""
     k, a = np.pi * eta, np.radians(90 - angle)
     at, of = np.linspace(0, np.pi, 241), np.linspace(0, np.pi, 122)[1:-1]
     x, y = np.cos(at), np.sin(at)
@@ -83,8 +83,8 @@ def check():
 
 
 def amplitudes_of(run, *directions):
-    """Of these directions (0: x) at the points of PLACES [2.5, 5, 10 Hz], over that of the
-    wave."""
+    """Amplitudes of these directions (0: x) at the points of PLACES [2.5, 5, 10 Hz],
+    over that of the wave."""
     table = np.genfromtxt(f"{run}/histories.csv", delimiter=",", skip_header=1)
     motion = np.genfromtxt(f"{run}/ground_motion.csv", delimiter=",", skip_header=1)
     result = []

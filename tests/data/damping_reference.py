@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Damped modes of the column of tests/stability/modal_*.prm, found in another way:
-the roots s of s^2 + a s + w0^2 M(s) = 0, in the complex plane. Under Maxwell
-damping M = (1 + sum D s t / (1 + s t)) / S(f0), with D found by scipy from the
-definition: the ratio Im M / 2 Re M is as constant as it can be over the band.
-Prints damping ratio [%] and frequency [Hz] of the free decay.
+"""Damped modes of the column of tests/stability/modal_*.prm, by another method: the
+roots s of s^2 + a s + w0^2 M(s) = 0, in the complex plane. Under Maxwell damping
+M = (1 + sum D s t / (1 + s t)) / S(f0), with D found by scipy from the definition: the
+ratio Im M / 2 Re M is as constant as possible over the band. Prints damping ratio [%] and
+frequency [Hz] of the free decay.
 """
 import numpy as np
 from scipy.optimize import fsolve, least_squares

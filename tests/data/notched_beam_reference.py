@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Largest load, and energy lost, of the notched beam of tests/checks/notched_beam.cc, found in
-another way: the fictitious crack of Hillerborg, Modeer and Petersson (1976).
+"""Largest load and energy lost of the notched beam of tests/checks/notched_beam.cc, by
+another method: the fictitious crack of Hillerborg, Modeer and Petersson (1976).
 
-Half of the beam is elastic (plane strain, bilinear elements of the usual kind,
-scipy's sparse solver). Over the notch the nodes of the plane of symmetry are
-held up to a tip; below it they open by w/2 under the stress ft (1 - w/wc),
-wc = 2 Gf/ft. With the tip at each node in turn the pressed-down displacement is
-the one at which the stress at the tip is ft. Prints load [kN/m] and energy
-[J/m] under a press of 0.4 mm by the number of elements over the height.
+Half of the beam is elastic (plane strain, standard bilinear elements, scipy's sparse
+solver). Above the tip of the crack the nodes of the plane of symmetry are fixed;
+between notch and tip they open by w/2 under the stress ft (1 - w/wc), wc = 2 Gf/ft.
+With the tip at each node in turn, the displacement of the press is the one at which the
+stress at the tip is ft. Prints load [kN/m] and energy [J/m] under a press of 0.4 mm by
+the number of elements over the height.
 """
 import numpy as np
 import scipy.sparse
@@ -59,7 +59,7 @@ def ligament_and_load(rows):
         (np.concatenate(data), (np.concatenate(at_row), np.concatenate(at_column))), (size, size)
     )
     fixed = [2 * node(i, 0) + 1 for i in range(columns + 1) if i * h < SUPPORT + 1e-9]
-    # the press holds what it pushes along the beam, too
+    # the press also fixes its nodes along the beam
     fixed += [2 * node(i, rows) for i in range(columns) if i * h > HALF_LENGTH - HALF_LOAD - 1e-9]
     pressed = [2 * node(i, rows) + 1 for i in range(columns + 1) if i * h > HALF_LENGTH - HALF_LOAD - 1e-9]
     first = round(NOTCH / h)
@@ -111,8 +111,9 @@ def largest_load(rows):
 
 
 def energy(rows, press):
-    """Lost where the ligament opens, once the press has come down [J/m]: unloading
-    goes to the origin, so that a node of opening w has lost Gf min(w/wc, 1)."""
+    """Energy lost where the ligament opens, at this displacement of the press [J/m]:
+    unloading goes to the origin, so that a node of opening w has lost Gf min(w/wc,
+    1)."""
     load, pull, area = ligament_and_load(rows)
     opening = 2 * ENERGY / STRENGTH
     n_open, n_free = 1, 0  # from below

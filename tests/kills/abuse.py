@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Abuses the program in ways drawn at random: damaged checkpoints, full disks, and
-nonsense in entries. Each ends in time, with the files of an undisturbed run, or with one sentence and exit code 1; never by a signal, without an end, or with other
-results and exit code 0.
+"""Random damage to runs of the program: damaged checkpoints, full disks, and invalid
+values of entries. Each run ends in time, with the files of an undisturbed run, or with
+one sentence and exit code 1; it never ends by a signal, hangs, or has other results and
+exit code 0.
 
 usage: abuse.py {checkpoints,disks,nonsense} PROGRAM [--case CASE.prm] [--ranks N]
                 [--number N] [--seed N] [--first N] [--folder SCRATCH]
 
-Number N of a seed is the same whatever comes before it. Full disks are small ones of
-tmpfs, for which root is needed; else it ends with 77. Damaged results are given to the
+Number N of a seed does not depend on the numbers before it. Full disks are small disks
+of tmpfs, which need root; else the exit code is 77. Damaged results are given to the
 report by tests/report/damage_results.py.
 """
 
@@ -29,7 +30,7 @@ CRASHES = ("Segmentation", "terminate called", "Assertion", "SIGABRT", "SIGFPE",
 
 
 def start(options, folder, arguments):
-    """Exit code, negative if there is no end, and what was printed."""
+    """Exit code, negative if the program does not end, and its output."""
     program = [str(options.program)]
     if options.ranks > 1:
         program = [str(options.program.parent / "voussoir-run"), "-n", str(options.ranks)]
@@ -46,7 +47,7 @@ def start(options, folder, arguments):
 
 
 def complaint(code, text):
-    """What is wrong with how the program ended; empty if nothing is."""
+    """The fault in the end of the program; empty if there is none."""
     if code not in (0, 1):
         return f"exit code {code}"
     for crash in CRASHES:
@@ -58,7 +59,7 @@ def complaint(code, text):
 
 
 def damage(path, chance):
-    """Damages a file; says how."""
+    """Damages a file; returns a description of the damage."""
     size = path.stat().st_size
     kind = chance.choice(["byte", "bytes", "cut", "zeros", "removed", "empty", "folder", "pipe",
                           "text", "longer", "twice"])
@@ -108,14 +109,14 @@ def damaged_checkpoints(options, straight, reference, chance, folder):
     code, text = start(options, folder, ["--restart"])
     wrong = complaint(code, text)
     if code == 0 and not wrong:
-        # it reports what it found damaged, the other did not
+        # it reports the damage that it found, the other run had none
         names = [name for name in different(reference, folder) if name != "summary.json"]
         wrong = "other results: " + ", ".join(names) if names else ""
     return ", ".join(what), wrong, code
 
 
 def full_disk(options, straight, reference, chance, folder):
-    """A disk that is too small, and a restart when there is space."""
+    """A disk that is too small, and a restart once there is space."""
     folder.mkdir()
     whole = sum(path.stat().st_size for path in straight.rglob("*") if path.is_file())
     size = int(whole * chance.uniform(0.0, 1.1)) // 4096 * 4096 + 4096
@@ -164,7 +165,7 @@ def entries_of(options):
 
 
 def nonsense(options, straight, reference, chance, folder):
-    """One to three entries of the case with values that make no sense."""
+    """One to three entries of the case with invalid values."""
     if not hasattr(options, "entries"):
         options.entries = entries_of(options)
     folder.mkdir()

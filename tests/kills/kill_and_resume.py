@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Kills runs at random moments, restarts them with --restart, and compares their files with those of an uninterrupted run, bit for bit.
+"""Kills runs at random moments, restarts them with --restart, and compares their files
+with those of an uninterrupted run, bit for bit.
 
 usage: kill_and_resume.py PROGRAM [--case CASE.prm] [--ranks N] [--kills N]
                           [--seed N] [--folder SCRATCH]
@@ -49,7 +50,7 @@ def has_checkpoint(folder):
 
 
 def lasting(value):
-    """What of a summary must be the same."""
+    """The part of a summary that must be the same."""
     if not isinstance(value, dict):
         return value
     return {name: lasting(part) for name, part in value.items() if name not in VOLATILE_NUMBERS}
@@ -76,7 +77,7 @@ def contents(folder):
 
 
 def missing_observers(options):
-    """Observers that the case leaves out: each must stand a kill."""
+    """Observers that the case does not have; each must survive a kill."""
     every = subprocess.run([str(options.program), "--list", "observers"],
                            capture_output=True, text=True, check=True).stdout
     used = re.search(r"set Observers\s*=\s*(.*)", options.case.read_text()).group(1)
@@ -90,8 +91,8 @@ def fresh(folder):
 
 
 def finish(process):
-    """Exit code; everything that is left of the run is gone afterwards: mpirun, in
-    a group of its own in the session, lives on for a moment after its launcher."""
+    """Exit code; all remaining processes of the run have ended afterwards: mpirun, in a
+    group of its own in the session, lives a moment longer than its launcher."""
     code = process.wait()
     session = ["-s", str(process.pid)]
     while subprocess.run(["pkill", "-KILL"] + session).returncode == 0:
@@ -153,7 +154,7 @@ def main():
                                 dirs_exist_ok=True)
                 break
             if code != STOPPED and (disturbed / "run" / "summary.json").exists():
-                code = 0  # killed once all was done
+                code = 0  # killed after the end of the work
                 break
             restart = has_checkpoint(disturbed)
             if not restart:

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Runs hours of motion with many earthquakes in pieces, each of which is stopped
 at a random moment and continued with --restart on another number of ranks:
-neither memory nor files may grow beyond what histories explain, and in the end the
+neither memory nor files may grow by more than the histories, and in the end the
 histories are those of a run in one piece on one rank, bit for bit.
 
 usage: soak.py PROGRAM [--case CASE.prm] [--hours H] [--ranks 1,2,3] [--piece SECONDS]
                [--seed N] [--folder SCRATCH]
 
-Exit code 1 if something grows, a run does not go on, or the histories differ.
+Exit code 1 if something grows, a run does not continue, or the histories differ.
 """
 
 import argparse
@@ -56,8 +56,8 @@ def memory_of_largest(pid):
 
 
 def run(options, folder, ranks, end, restart, seconds=float("inf")):
-    """Exit code and largest memory of one of its processes [MB]; stops the run after so
-    many seconds."""
+    """Exit code of a run and largest memory of one of its processes [MB]; stops the run
+    after a number of seconds."""
     with open(folder / "terminal.txt", "ab") as terminal:
         process = subprocess.Popen(command(options, ranks, end, restart), cwd=folder,
                                    stdout=terminal, stderr=subprocess.STDOUT)
@@ -136,7 +136,7 @@ def main():
             failures.append(f"memory on {ranks} ranks grew from {first_memory[ranks]:.1f} "
                             f"to {memory:.1f} MB in piece {n_pieces}")
         first_checkpoint = first_checkpoint or checkpoint
-        # damage may spread, and a number has more or fewer digits in the header
+        # damage may spread, and numbers in the header vary in their digits
         if checkpoint > 1.5 * first_checkpoint + 10000:
             failures.append(f"the checkpoint grew from {first_checkpoint} to {checkpoint} bytes")
         steps = [name for name in found if "step-" in name]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Shows a small run in ParaView and compares what is shown with closed forms.
+"""Shows a small run in ParaView and compares the view with closed forms.
 
 usage: check_paraview.py PROGRAM voussoir_paraview.py CASE.prm
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Parts of a report against what is known of made-up results: a wall of two blocks
-with a joint that is open wider upstream, and summaries of which the verdict is plain.
+"""Parts of a report against known made-up results: a wall of two blocks with a joint
+that is open wider upstream, and summaries with evident verdicts.
 
 usage: check_parts.py FOLDER_OF_THE_REPORT
 """
@@ -78,7 +78,8 @@ SUMMARY = {"verdict": "no objection", "version": "test", "warnings": [], "time s
 
 
 def write_grid(file, corners, kind, values, names, vectors={}):
-    """Cells of their own corners (n, 4 or 8, 3), values and vectors at them, and lists of names."""
+    """Cells with separate corners (n, 4 or 8, 3), values and vectors at these, and
+    lists of names."""
     mesh, points = vtkUnstructuredGrid(), vtkPoints()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(corners.reshape(-1, 3)), deep=True))
     mesh.SetPoints(points)
@@ -139,8 +140,8 @@ def check_profiles(run):
 
 
 def check_abscissa(run):
-    """Below a face is the x of the model, and +x is on the left bank: on the
-    left as seen looking downstream."""
+    """The axis below a face is the x of the model, and +x is towards the left bank,
+    looking downstream."""
     dam = grid.dam_of(run)
     for side, sign in (("upstream", -1.), ("downstream", 1.)):
         corners = dam.grid.points[dam.side(side)]
@@ -166,7 +167,8 @@ def check_colours():
                 0.5 - scale.norm(-3.), 0.)
         compare("white is zero", scale.norm(0.), 0.5, 0.)
         compare("the bar goes as far to both sides", scale.levels[-1], -scale.levels[0], 0.)
-    # all of a face at 4.4 MPa, where half a per cent is left out above 4 MPa
+    # a whole face at 4.4 MPa, where the range leaves out half a per cent of the values
+    # above 4 MPa
     stress = np.concatenate([np.linspace(-10., 4., 2000), [4.4]])
     face = charts.Panel("", np.array([[(0., 0.), (1., 0.), (1., 1.), (0., 1.)]]), np.full((1, 4), 4.4))
     axes = charts.place(charts.Figure(), 0., 0., 4., 2.)
@@ -198,7 +200,8 @@ def line(value, met, **more):
 
 
 def check_verdicts(scratch):
-    """What must not stand under a good verdict, and what may: the program's own tables."""
+    """Results that exclude a good verdict, and results that do not: the program's own
+    tables."""
     good = {"numerical checks": {"energy-balance error": line(1e-3, True, **{"at most": 0.01})}}
     crest = {"quantity": "histories/*/largest displacement [m]", "clause": "4.2", "load case": "MCE", "source": "user's",
              "demand": 0.2, "at most": 0.15, "met": False, "of": "histories/crest/largest displacement [m]"}
@@ -247,7 +250,7 @@ def check_verdicts(scratch):
 
 
 def check_openings(scratch):
-    """Joints are compared with the depth of their own keys; a plane has none."""
+    """Joints are compared with the depth of their own keys; a plane has no keys."""
     run = make_wall(scratch / "openings", SUMMARY)
     run.parameters |= {"Interfaces/Names": "joints, planes", "Interfaces/joints/Face sets": "joint *",
                        "Interfaces/joints/Key depth": "0.2", "Interfaces/planes/Face sets": "wedge rear plane"}
@@ -260,7 +263,7 @@ def check_openings(scratch):
 
 
 def limited(folder):
-    """The study there, with a limit."""
+    """A study in this folder, with a limit."""
     found = study.Study(folder)
     found.limits = [{"of": "Ground motion/Overload factor", "values": {}, "not met at": 1.625, "met at": 1.6875,
                      "criterion": "interfaces/blocks/* wedge/slip [mm] > 100; stopped"}]
@@ -268,7 +271,7 @@ def limited(folder):
 
 
 def check_study(scratch):
-    """The acceptance table of each run stands before the numbers of the study."""
+    """The acceptance table of each run precedes the numbers of the study."""
     folder = scratch / "study"
     folder.mkdir()
     for factor, demand in ((1, 0.1), (2, 0.2)):
@@ -292,7 +295,7 @@ def check_study(scratch):
 
 
 def check_blocks(scratch):
-    """Weight of a block and what acts on it when its safety is smallest."""
+    """Weight of a block and the forces on it when its safety is smallest."""
     run = make_wall(scratch / "blocks", {**SUMMARY, "interfaces": {"surfaces": {}, "blocks": {"wedge": {
         "mass [kg]": 1e6, "safety at the start": 2., "time at safety one or below [s]": 0.,
         "forces at the smallest safety [N]": {"contact": {"bottom": [0., 4e6, 8e6]},
@@ -474,7 +477,7 @@ window.addEventListener("load", () => setTimeout(() => {
 </script>"""
 
 
-# how many tables have to be pushed aside to be read
+# number of tables that have to be scrolled sideways
 TOO_WIDE = """<script>
 document.body.dataset.tooWide = [...document.querySelectorAll(".scroll")].filter(
   (place) => place.scrollWidth > place.clientWidth).length;

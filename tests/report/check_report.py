@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Makes reports of a small run and of others that are no run, and compares the
-numbers that stand in the page with closed forms.
+"""Makes reports of a small run and of folders that are no run, and compares the numbers
+in the page with closed forms.
 
 usage: check_report.py PROGRAM FOLDER_OF_THE_REPORT CASE.prm
 """
@@ -67,7 +67,7 @@ class Page(html.parser.HTMLParser):
         raise KeyError(f"{row}, {column}")
 
     def judged(self, criterion):
-        """How the first criterion of this name is judged."""
+        """The judgement of the first criterion of this name."""
         return next(cells[1] for cells in self.rows if cells[0] == criterion)
 
     def of(self, row):
@@ -114,7 +114,8 @@ def check_wall(page):
     """The wall of 60 m, 8 m and 20 m, and its shaking."""
     compare("Arias intensity [m/s]", page.number("y, along the river", "Arias intensity [m/s]"),
             np.pi / (2. * GRAVITY) * AMPLITUDE**2 * CYCLES / FREQUENCY / 2., 0.5)
-    # a twentieth of five cycles is a quarter of one, where the oscillating part is zero
+    # a twentieth of five cycles is a quarter of a cycle, where the oscillating part is
+    # zero
     compare("significant duration [s]",
             page.number("y, along the river", "significant duration 5–95 % [s]"),
             0.9 * CYCLES / FREQUENCY, 0.3)
@@ -174,7 +175,7 @@ def check_resonance():
 
 
 def check_arch(folder):
-    """An arch of even thickness, 100 m of radius over two radians."""
+    """An arch of uniform thickness, 100 m in radius, over two radians."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
     from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, vtkUnstructuredGrid
@@ -221,7 +222,7 @@ def check_arch(folder):
 
 
 def check_refusals(scratch, wall):
-    """Whatever is no run gives one sentence and the exit code 1."""
+    """A folder that is no run gives one sentence and the exit code 1."""
     (scratch / "empty").mkdir()
     half = scratch / "half"
     half.mkdir()
@@ -259,7 +260,7 @@ def check_refusals(scratch, wall):
 
 
 def check_study(folder):
-    """Of an elastic wall under once and twice the motion."""
+    """A study of an elastic wall under the factors 1 and 2 on the motion."""
     subprocess.run([program, case, "--set", f"Output/Folder={folder}", "Time/End time=1",
                     "Study/Vary=Ground motion/Overload factor = 1, 2",
                     "Study/Quantities=histories/crest/largest displacement [m]"], check=True,
@@ -291,7 +292,7 @@ def main():
         check_refusals(scratch, wall)
         check_study(scratch / "study")
 
-        ranks = scratch / "ranks"  # whose pictures have a piece of each
+        ranks = scratch / "ranks"  # its pictures have a piece of each rank
         subprocess.run(["mpirun", "-n", "2", program, case, "--set", f"Output/Folder={ranks}"],
                        check=True, stdout=subprocess.DEVNULL)
         is_true("a report of a run on two ranks", run_report(ranks).returncode == 0)

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""Damages result folders in ways drawn at random and makes reports of them: each
-ends in time with a page and exit code 0 or with one sentence and exit code 1,
-never with a traceback, and what cannot be read is named.
+"""Damages result folders at random and makes reports of them: each report ends in time
+with a page and exit code 0, or with one sentence and exit code 1, never with a
+traceback, and unreadable files are named.
 
 usage: damage_results.py PROGRAM FOLDER_OF_THE_REPORT DAM.prm WALL.prm
                          [--damages N] [--seed N] [--first N]
 
-DAM.prm has joints and concrete that cracks, WALL.prm neither. Damage number N of a
-seed is the same whatever comes before it.
+DAM.prm has joints and concrete that cracks, WALL.prm neither. Damage number N of a seed
+does not depend on the numbers before it.
 """
 
 import argparse
@@ -44,7 +44,7 @@ from voussoir_report import __main__ as command, charts, scenes  # noqa: E402
 from voussoir_report import (damage, faces, interfaces, motions, over_stress, page, records,  # noqa: E402, F401
                              stages, structure, study, verdict)
 
-# what reports are made of, and must not be damaged without being refused
+# files that reports read: damage to them must be refused
 TABLES = ("histories.csv", "energy.csv", "ground_motion.csv", "interfaces.csv", "over_stress.csv")
 PICTURES = ("envelopes.vtu", "interface_envelopes.vtu", "over_stress.vtu")
 DOCUMENTS = ("summary.json", "study.json")
@@ -129,7 +129,7 @@ def another_document(chance, data):
 
 
 def with_another_value(chance, data):
-    """A value somewhere of another kind, or missing."""
+    """A value of another type, or a missing value, at some place."""
     value = json.loads(data)
     part = value
     while True:
@@ -188,7 +188,7 @@ PLACES = (as_folder, as_pipe, as_link_to_itself, as_link_to_zeros, pathlib.Path.
 OF_TABLES = (without_heading, ragged, with_words, without_its_end)
 OF_PICTURES = (with_another_number, with_another_length)
 OF_DOCUMENTS = (another_document, with_another_value)
-# after these a file that a report is made of cannot be read
+# after these a file that a report needs cannot be read
 UNREADABLE = {
     ".csv": (emptied, with_nul_bytes, of_nul_bytes, replaced_by_text, replaced_by_noise, *OF_TABLES),
     ".vtu": (emptied, cut, with_nul_bytes, of_nul_bytes, replaced_by_text, replaced_by_noise,
@@ -198,12 +198,12 @@ UNREADABLE = {
 
 
 def damage_one(chance, folder):
-    """Damages a file; returns its name, how, and whether it must be refused, or be named
-    at least."""
+    """Damages a file; returns its name, the damage, and whether the file must be
+    refused, or at least named."""
     files = sorted(path for path in folder.rglob("*") if path.is_file()
                    and not {"checkpoint", "static_states"} & set(path.parts)
                    and path.name not in (".lock", "report.html") and path.stat().st_size > 2)
-    # those that reports are made of more often
+    # files that reports read are chosen more often
     used = [path for path in files if path.name in TABLES + PICTURES + DOCUMENTS]
     file = chance.choice(used if chance.random() < 0.8 else files)
     kinds = list(ANY)
@@ -219,7 +219,7 @@ def damage_one(chance, folder):
 
 
 def outcome(folder):
-    """Exit code, or None where it takes too long, and what a report of the folder says."""
+    """Exit code, or None after a time-out, and the output of a report of the folder."""
     reading, writing = os.pipe()
     child = os.fork()
     if child == 0:
@@ -238,7 +238,7 @@ def outcome(folder):
             if isinstance(code, str):
                 print(code, file=sys.stderr)
                 code = 1
-        except BaseException:  # what Python would end with
+        except BaseException:  # as Python itself would end
             traceback.print_exc()
         finally:
             with contextlib.suppress(Exception):
@@ -265,7 +265,7 @@ def outcome(folder):
 
 
 def complaint(code, said, name, expected, page):
-    """What is wrong with the end of a report, or nothing."""
+    """The fault in the end of a report, or nothing."""
     if code is None:
         return "does not end"
     if code not in (0, 1):
@@ -294,7 +294,7 @@ def main():
                                          "Study/Vary=Ground motion/Overload factor = 1, 2"))):
             subprocess.run([options.program, case, "--set", f"Output/Folder={whole / folder}", *entries],
                            check=True, stdout=subprocess.DEVNULL)
-        charts.DPI = charts.FULL_DPI = 20  # drawing is not what is tested
+        charts.DPI = charts.FULL_DPI = 20  # drawing is not tested here
         scenes.open_display()
         scenes.open_display = lambda: None
         failures, refused = 0, 0

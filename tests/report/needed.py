@@ -1,4 +1,4 @@
-"""What making reports needs; a test that lacks any of it is skipped."""
+"""Packages that reports need; without one of them a test is skipped."""
 
 import shutil
 import sys

@@ -1,4 +1,4 @@
-"""What the tests of this folder say of numbers that they compare."""
+"""Output of the tests of this folder on the numbers that they compare."""
 
 import sys
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""How studies end, and what they take for a run that has been done: exit codes and
-last lines of the program, damaged notes, moved folders, two studies at once.
+"""The end of studies, and the runs that they accept as done: exit codes and last lines
+of the program, damaged notes, moved folders, two studies at once.
 
 usage: check_studies.py PROGRAM FOLDER_OF_THE_TEST_CASES
 """
@@ -99,7 +99,7 @@ def check_notes(scratch):
 
 
 def check_files(scratch):
-    """A record that lies elsewhere, and one with other numbers."""
+    """A record in another folder, and a record with other numbers."""
     wall, folder = cases.parent / "report" / "wall.prm", scratch / "shaken"
     for name in ("here", "there"):
         (scratch / name).mkdir()

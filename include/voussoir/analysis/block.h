@@ -31,7 +31,7 @@ namespace Voussoir
       return values.data() + vector * stride;
     }
 
-    /** Entries of this rank, and more, which are zero, to whole registers. */
+    /** Entries of this rank, padded with zeros to whole registers. */
     std::size_t
     padded_size() const
     {

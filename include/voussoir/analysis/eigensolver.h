@@ -10,8 +10,8 @@ namespace Voussoir
 {
   /**
    * K x = lambda M x with a positive definite stiffness K and a mass M that may
-   * be singular. All three map (result, vector), of which each rank has `size`
-   * entries, and keep constrained entries at zero.
+   * be singular. The three operators map (result, vector), of which each rank
+   * has `size` entries, and keep constrained entries at zero.
    */
   struct Eigenproblem
   {
@@ -38,10 +38,10 @@ namespace Voussoir
 
   /**
    * The lowest eigenpairs by locally optimal block preconditioned conjugate
-   * gradients (LOBPCG, Knyazev 2001). It works on M x = theta K x, theta =
-   * 1/lambda, with K as the inner product, so that entries without mass do no
-   * harm. Converged vectors get no more corrections, and linearly dependent
-   * directions are dropped.
+   * gradients (LOBPCG, Knyazev 2001). The iteration works on M x = theta K x,
+   * theta = 1/lambda, with K as the inner product, so that entries without mass
+   * do no harm. Converged vectors get no more corrections, and linearly
+   * dependent directions are dropped.
    *
    * @param start     the block to begin with, some vectors more than wanted
    * @param number    eigenpairs wanted

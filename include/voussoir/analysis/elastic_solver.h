@@ -43,7 +43,7 @@ namespace Voussoir
       Contact      *contact      = nullptr;
       const Vector *displacement = nullptr;
 
-      /** Ties that the constraints have. */
+      /** Ties that the constraints contain. */
       const TiedNodes *ties = nullptr;
     };
 

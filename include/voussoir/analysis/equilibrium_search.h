@@ -13,16 +13,16 @@ namespace Voussoir
    * interfaces, on the multigrid solver.
    *
    * Interfaces: semi-smooth Newton steps under multipliers of contact that are
-   * updated in turn (Alart and Curnier 1991). The shear limit of points that
-   * slide follows their pressure, but not in the tangent, which so stays
-   * symmetric. Materials: secant steps from the elastic stiffness; every
-   * evaluation of them starts from their internal variables before the search,
-   * so that damage found on the way is not kept.
+   * updated in turn (Alart and Curnier 1991). The shear limit of sliding points
+   * follows their pressure; the tangent omits this, and so stays symmetric.
+   * Materials: secant steps from the elastic stiffness; every evaluation of the
+   * materials starts from their internal variables before the search, so that
+   * damage of iterates is not kept.
    */
   class EquilibriumSearch
   {
   public:
-    /** What it took. */
+    /** Effort of a search. */
     struct Effort
     {
       bool         found      = false;
@@ -33,17 +33,18 @@ namespace Voussoir
       StaticContact::Change contact; // by the last update of the multipliers
     };
 
-    /** Takes the share of the search that is done and where it stands. */
+    /** Receives the share of the search that is done and a text on its state.
+     */
     using Report = std::function<void(const double, const std::string &)>;
 
     /**
      * @param solver    with the interfaces, if there are any
      * @param springs   of the absorbing boundary, or null if it is fixed
-     * @param tolerance of the equilibrium over the loads, and a tenth of that
-     *   of the forces of contact over all of them
+     * @param tolerance of the residual over the loads; that of the change of
+     *   contact forces over all of these is ten times as large
      * @param patience  number of steps in which the residual has to halve
-     * @param secants   of the searches before on the same path, kept for the
-     *   next: with such, interfaces are near their equilibrium from the start
+     * @param secants of earlier searches on the same path, kept for the next;
+     *   if there are any, interfaces are near their equilibrium from the start
      * @param report    called after each step
      */
     EquilibriumSearch(ElasticSolver       &solver,
@@ -56,7 +57,7 @@ namespace Voussoir
                       const Report        &report);
 
     /**
-     * @param displacement where to start from; the equilibrium if it was found,
+     * @param displacement start of the search; the equilibrium if it was found,
      *   else unchanged, as are contact and internal variables
      * @param memory       internal variables of the materials; null: they are
      * elastic
@@ -70,11 +71,11 @@ namespace Voussoir
     approach();
 
     /** Steps until the equilibrium under these multipliers is found to an
-     *  accuracy, but one at least unless it is found to the tolerance. */
+     *  accuracy; at least one, unless the tolerance is met already. */
     void
     balance(const double accuracy);
 
-    /** One step, to where the residual no longer works along it. */
+    /** One step, to where the residual does no more work along the step. */
     void
     step();
 
@@ -87,7 +88,7 @@ namespace Voussoir
     double
     imbalance() const;
 
-    /** Whether it has halved within the last steps. */
+    /** Whether the residual has halved within the last `patience` steps. */
     bool
     is_worth_it() const;
 
@@ -112,7 +113,7 @@ namespace Voussoir
     Effort          effort;
     double          first_imbalance = 0.;
     double          least_imbalance = std::numeric_limits<double>::max();
-    unsigned int    last_gain       = 0; // the step of it
+    unsigned int    last_gain       = 0; // the step of the least one
   };
 } // namespace Voussoir
 

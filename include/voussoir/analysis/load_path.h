@@ -11,15 +11,15 @@
 
 namespace Voussoir
 {
-  /** What grows along a static stage. */
+  /** Loads that grow along a static stage. */
   struct StaticLoads
   {
     Vector              force;       // [N]
     Vector              temperature; // change [K]
     std::vector<double> uplift;      // at the points of the interfaces [Pa]
 
-    /** Linear interpolation to another one; at a share of one without
-     *  round-off. */
+    /** Linear interpolation to other loads; without round-off at a share of
+     *  one. */
     StaticLoads
     grown_to(const StaticLoads &end, const double share) const;
   };
@@ -44,7 +44,7 @@ namespace Voussoir
     void
     set_up();
 
-    /** What a stage took. */
+    /** Effort of a stage. */
     struct Effort
     {
       unsigned int iterations   = 0; // of the linear equations
@@ -57,12 +57,12 @@ namespace Voussoir
     void
     begin_stage(const std::vector<std::string> &loads);
 
-    /** Leads the state from the equilibrium with one load to that with another;
-     *  its force becomes that of the supports. */
+    /** Moves the state from the equilibrium under some loads to that under
+     *  others; its force becomes that of the supports. */
     Effort
     follow(const StaticLoads &start, const StaticLoads &end);
 
-    /** Other parts are tied from now on. */
+    /** Sets up the equations again after a change of the ties. */
     void
     ties_have_changed();
 
@@ -87,8 +87,8 @@ namespace Voussoir
     find_path(const StaticLoads &start, const StaticLoads &end);
 
     /** Equilibrium with these loads.
-     *  @param is_trial whether it is enough to know that materials crack or
-     *    yield, where they do */
+     *  @param is_trial whether the search may end once materials are known to
+     *    crack or yield */
     void
     find_equilibrium(const StaticLoads &loads, const bool is_trial);
 
@@ -103,8 +103,8 @@ namespace Voussoir
                             const StaticLoads &end) const;
 
     /** Sums up the dissipation of the materials in an increment over several
-     *  steps of the laws: under stress in several directions the energy of a
-     *  crack is that at the end of its step.
+     *  steps of the laws: under multiaxial stress a single step would take the
+     *  energy of a crack as that at the end of the step.
      *  @param before displacement, @p memory before the increment
      *  @param begin, @p end of the increment */
     void
@@ -146,12 +146,12 @@ namespace Voussoir
     double
     dissipation(const MaterialMemory &memory) const;
 
-    /** Whether materials have dissipated more than this [J] on any rank:
-     *  whether they have cracked or yielded since. */
+    /** Whether materials have dissipated more than this [J] on any rank, that
+     *  is, have cracked or yielded since. */
     bool
     dissipated(const MaterialMemory &memory, const double before = 0.) const;
 
-    /** Says how far the search is, of which this share is done. */
+    /** Reports the progress of the search, of which this share is done. */
     void
     report_progress(const double share, const std::string &text);
 
@@ -166,18 +166,20 @@ namespace Voussoir
     const Damping                           damping; // none
     std::unique_ptr<ElasticSolver>          solver;
     std::unique_ptr<Relaxation>
-                          relaxation;     // with contact or internal variables
-    SecantSteps           secants;        // along this stage
-    std::string           stage;          // its loads
-    unsigned int          number = 0;     // of this stage
-    Vector                before;         // displacement before it [m]
-    Effort                effort;         // of this stage
-    dealii::Timer         since_start;    // of its path
-    std::array<double, 2> increment;      // of its loads
-    bool                  is_last = true; // increment
-    bool                  may_be_halved =
-      false; // the increment that relaxation solves if the search does not
-    bool is_found = true; // find its equilibrium
+                          relaxation;  // with contact or internal variables
+    SecantSteps           secants;     // along this stage
+    std::string           stage;       // its loads
+    unsigned int          number = 0;  // of this stage
+    Vector                before;      // displacement before it [m]
+    Effort                effort;      // of this stage
+    dealii::Timer         since_start; // of its path
+    std::array<double, 2> increment;   // of its loads
+    bool                  is_last       = true;  // increment
+    bool                  may_be_halved = false; // the increment
+
+    // false if the increment is to be halved, as the search has found no
+    // equilibrium
+    bool is_found = true;
   };
 } // namespace Voussoir
 

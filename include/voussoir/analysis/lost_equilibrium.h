@@ -13,7 +13,8 @@ namespace Voussoir
   public:
     /**
      * @param before displacement at the end of the stage before [m]
-     * @param moved  the one at which the search for equilibrium was given up
+     * @param moved displacement at which the search for equilibrium was given
+     *   up
      */
     LostEquilibrium(const std::string &what,
                     const Vector      &before,

@@ -23,12 +23,12 @@ namespace Voussoir
     std::vector<Amplitude> amplitudes;
   };
 
-  /** Those of the entries, "first: crest y 1, quarter y 0.6; second: ...";
-   *  refuses what is none. */
+  /** The shapes of the entries, "first: crest y 1, quarter y 0.6; second: ...";
+   *  refuses other text. */
   std::vector<MeasuredShape>
   measured_shapes(const ModeParameters &parameters);
 
-  /** What the summary says of the mode that is nearest to a shape. */
+  /** Part of the summary on the mode that is nearest to a shape. */
   nlohmann::json
   nearest_mode(const unsigned int number,
                const double       frequency,

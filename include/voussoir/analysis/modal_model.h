@@ -60,7 +60,7 @@ namespace Voussoir
     bool
     want_cells_of_water(const ReservoirParameters &reservoir) const;
 
-    /** Refuses unknown materials and a model without supports. */
+    /** Refuses unknown materials, and a model without supports. */
     void
     check(const std::vector<std::string> &materials,
           const BoundaryParameters       &boundaries) const;

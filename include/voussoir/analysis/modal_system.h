@@ -18,7 +18,7 @@ namespace Voussoir
   public:
     using Motion = std::vector<double>;
 
-    /** Called on all ranks, like all that follows. */
+    /** Called on all ranks, as all functions below. */
     ModalSystem(const ModalModel &model, const ModeParameters &parameters);
 
     /** Makes the preconditioner and all data of the products with the matrices
@@ -69,7 +69,7 @@ namespace Voussoir
     Motion
     rigid_momentum(const unsigned int direction) const;
 
-    /** M^-1 of such forces, by conjugate gradients; exact without cells of
+    /** M^-1 times such forces, by conjugate gradients; exact without cells of
      *  water. */
     Motion
     divided_by_mass(const Motion &momentum) const;
@@ -87,7 +87,7 @@ namespace Voussoir
     displacement(const Motion &motion) const;
 
   private:
-    /** Zero where nothing can move. */
+    /** Finds the mass of the structure; zero where it cannot move. */
     void
     find_structural_mass();
 

@@ -9,16 +9,16 @@ namespace Voussoir
   /**
    * Cells of water that take part in the natural modes. With the pressure
    * Laplacian H, the storage Q of a pressure, volume/(rho c^2), and the flux
-   * S^T u that the wall's displacement u makes, the pressure of a motion at
+   * S^T u that the wall's displacement u causes, the pressure of a motion at
    * omega is (1/rho H - omega^2 Q) p = omega^2 S^T u .
    *
-   * Incompressible, Q = 0, it is an added mass, M_a = rho S H^-1 S^T. With
+   * Incompressible water, Q = 0, is an added mass, M_a = rho S H^-1 S^T. With
    * H^-1, the equations of solid and compressible water are symmetric, too:
    *   | K 0 | |u|           /| M 0 |       |S|                \ |u|
    *   | 0 Q | |p| = omega^2 ( | 0 0 | + rho |Q| H^-1 (S^T  Q)  ) |p| ,
    * with the water's compression as a stiffness. Both sides are positive. The
-   * unknown in place of p is sqrt(Q/k) p, a displacement, with a stiffness k
-   * that is the same everywhere.
+   * unknown in place of p is sqrt(Q/k) p, a displacement, with a uniform
+   * stiffness k.
    *
    * Far end and bottom reflect; the surface has no pressure.
    */
@@ -51,14 +51,14 @@ namespace Voussoir
                  const Vector &motion,
                  const double *water_motion) const;
 
-    /** Flux of a floor which meets no solid and moves by one in this direction,
-     * as a rigid base moves it. */
+    /** Flux of a floor without solid below under a unit motion of a rigid base
+     * in this direction. */
     void
     add_momentum_of_floor(Vector            &momentum,
                           double            *water_momentum,
                           const unsigned int direction) const;
 
-    /** Zero where the pressure is. */
+    /** Sets entries at the surface to zero. */
     void
     clear_surface(double *water_motion) const;
 

@@ -29,11 +29,11 @@ namespace Voussoir
   {
     std::vector<Mode> list; // from the lowest frequency upwards
 
-    /** Mass that can move in each direction, with the water that pushes it: the
-     *  sum of the effective masses of all modes [kg]. */
+    /** Mass that can move in each direction, with the water that acts on it:
+     *  the sum of the effective masses of all modes [kg]. */
     dealii::Tensor<1, 3> moving_mass;
 
-    /** By the name of a measured shape, the mode that is nearest to it. */
+    /** The mode nearest to each measured shape, by the name of the shape. */
     nlohmann::json measured_shapes;
 
     /** [Hz] */

@@ -19,7 +19,7 @@ namespace Voussoir
 {
   /**
    * A multigrid cycle whose finest level is a matrix-free operator, with
-   * Chebyshev smoothing by its diagonal (Adams et al. 2003); the coarser ones
+   * Chebyshev smoothing by its diagonal (Adams et al. 2003); the coarser levels
    * are Trilinos' smoothed aggregation of a matrix that is spectrally
    * equivalent. Products with that matrix would take most of the time, so that
    * it is freed once the coarser levels are made.
@@ -32,13 +32,12 @@ namespace Voussoir
 
     /**
      * @param apply    on the finest level
-     * @param matrix   with any entries where fixed; afterwards empty, unless it
-     *   is so small that it is the only level
+     * @param matrix with arbitrary entries where fixed; afterwards empty,
+     *   unless it is so small that it is the only level
      * @param diagonal of the matrix
      * @param constrained     owned entries
      * @param n_components of a node, whose entries follow each other
-     * @param near_kernel  the motions that cost no energy where nothing is
-     * fixed
+     * @param near_kernel the motions without energy of a free body
      */
     Multigrid(const Operator                         &apply,
               dealii::TrilinosWrappers::SparseMatrix &matrix,

@@ -10,10 +10,10 @@ namespace Voussoir
 {
   /**
    * Stresses at named points in a static stage: the mean over the cells that
-   * meet there. Stresses jump between materials; where some cells are of a
-   * material with faces of the dam, the mean is that of these, with arch and
-   * cantilever directions of the nearest node of the faces, and elsewhere that
-   * of the first material of the case.
+   * meet there. As stresses jump between materials, the mean is over the cells
+   * of one: of a material with faces of the dam if there are some, with arch
+   * and cantilever directions of the nearest node of the faces, else of the
+   * first material of the case.
    */
   class PointStresses
   {

@@ -11,7 +11,7 @@ namespace Voussoir
   /**
    * Solves H p = q for the pressure Laplacian of the water, H_ij = integral of
    * grad N_i . grad N_j, with zero pressure at some nodes, by conjugate
-   * gradients with multigrid as ElasticSolver does it.
+   * gradients with multigrid as in ElasticSolver.
    */
   class PressureSolver
   {

@@ -11,9 +11,9 @@ namespace Voussoir
    * Equilibrium with contact by dynamic relaxation: the explicit steps of the
    * run, with the contact of the run and, until the motion has ceased, with
    * the critical damping of the frequency that Rayleigh's quotient of the
-   * velocity gives: high as long as many modes move, then that of the slowest
-   * (adaptive, Underwood 1983). No stiffness is assembled, so joints may open
-   * and slip without limit.
+   * velocity gives. This is high as long as many modes move, then that of the
+   * slowest mode (adaptive, Underwood 1983). No stiffness is assembled, so
+   * joints may open and slip without limit.
    */
   class Relaxation
   {
@@ -23,7 +23,7 @@ namespace Voussoir
      * @param mass        of the run; nodes that the static stage fixes get none
      * @param terms       of the run
      * @param constraints of hanging nodes and nodes that the static stage fixes
-     * @param springs     whether the absorbing boundary stands on its springs
+     * @param springs whether springs support the absorbing boundary
      */
     Relaxation(const Discretization                    &discretization,
                const InternalForce                     &internal_force,

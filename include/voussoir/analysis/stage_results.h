@@ -9,8 +9,9 @@
 
 namespace Voussoir
 {
-  /** In a list of points: with a face set "upstream face", its lowest point
-   *  under the crown, and its upper edge above that and at the quarters. */
+  /** Item of a list of points: of a face set "upstream face", the lowest point
+   *  under the crown, and the upper edge above that point and at the quarters.
+   */
   constexpr char usual_points_of_stages[] = "usual";
 
   /** Results of a static stage at named points, of the body and of its

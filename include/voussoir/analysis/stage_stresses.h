@@ -13,8 +13,8 @@ namespace Voussoir
   {
   public:
     /** Called on all ranks.
-     *  @param sets as the entry has them; if it is empty, upstream and
-     *    downstream face where the mesh has them */
+     *  @param sets as in the entry; empty: upstream and downstream face where
+     *    the mesh has them */
     StageStresses(const Discretization &discretization,
                   const std::string    &sets);
 

@@ -5,8 +5,8 @@
 
 namespace Voussoir
 {
-  /** The summary of the static state with all its names, and numbers of no
-   *  meaning, before it is found. Called on all ranks. */
+  /** The summary of the static state with all its keys, and numbers without
+   *  meaning, before that state is found. Called on all ranks. */
   nlohmann::json
   outline_of_static_state(const StaticModel      &model,
                           const StaticParameters &parameters,

@@ -55,7 +55,7 @@ namespace Voussoir
       std::string              name; // of the combination of all loads so far
       std::vector<std::string> loads;
 
-      /** Its name, or its loads if it has none. */
+      /** Name of the stage, or its loads if it has no name. */
       std::string
       title() const;
     };
@@ -91,18 +91,18 @@ namespace Voussoir
 
   /**
    * The state under the loads that act before the earthquake: stages one
-   * after the other, each with the loads it names. The run takes it by
-   * hand_over.
+   * after the other, each with the loads it names. The run takes over this
+   * state by hand_over().
    *
    * Each stage is solved at once with elastic materials first, by multigrid,
    * with interfaces in Newton steps. Where materials crack or yield under its
    * loads, these and the temperature grow in increments, as cracks and plastic
-   * flow depend on the path, and equilibrium is searched with the materials
-   * (see EquilibriumSearch). Where that fails, it is found by dynamic
-   * relaxation, which at the end of a stage also checks whether a state with
-   * interfaces is in equilibrium. An increment is halved while the return
-   * mapping of the materials differs between one step and two. An interface is
-   * grouted at the end of the stage that names its load.
+   * flow depend on the path, and equilibrium is searched for with the laws of
+   * the materials (see EquilibriumSearch). Where this search fails, equilibrium
+   * is found by dynamic relaxation, which at the end of a stage also checks
+   * whether a state with interfaces is in equilibrium. An increment is halved
+   * while the return mapping of the materials differs between one step and two.
+   * An interface is grouted at the end of the stage that names its load.
    *
    * Throws LostEquilibrium if no equilibrium is found.
    *
@@ -119,12 +119,13 @@ namespace Voussoir
    * Gives a static state the force that balances it in the dynamic model, and
    * the internal variables of the materials the moduli of that model: reactions
    * of supports that are fixed in the static stages only are part of the force,
-   * so that without an earthquake nothing moves. Forces of contact are not, as
-   * the run finds them by itself. Without static stages nothing is done.
+   * so that without an earthquake nothing moves. Forces of contact are no part
+   * of it, as the run finds them by itself. Without static stages nothing is
+   * done.
    *
    * @param internal_force that of the run
-   * @return dissipation of its laws in the static state on this rank [J]: zero,
-   * if they take over the internal variables unchanged
+   * @return dissipation of the laws in the static state on this rank [J]: zero,
+   * if these take over the internal variables unchanged
    */
   double
   hand_over(InitialState        &state,

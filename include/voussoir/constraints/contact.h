@@ -14,15 +14,15 @@ namespace Voussoir
 {
   /**
    * Contact between the two sides of all interfaces of a case: after each step
-   * no point of them has penetrated the other side, and they have opened and
-   * slipped only where their law lets them. A copy has a state of its own,
-   * which begins as that of the original.
+   * no point has penetrated the other side, and points have opened and slipped
+   * only as their law admits. A copy has a state of its own, which begins as
+   * that of the original.
    */
   class Contact : public Projection
   {
   public:
-    /** @param parameters of the interfaces of the mesh, which is split along
-     * them; must live as long as this */
+    /** @param parameters of the interfaces along which the mesh is split; must
+     * live as long as this */
     Contact(const Discretization       &discretization,
             const InterfacesParameters &parameters,
             const InterfaceSurfaces    &surfaces);
@@ -32,7 +32,7 @@ namespace Voussoir
     points_of_interfaces();
 
     /** Lets friction follow the pressure as fast as waves of this speed [m/s]
-     *  in the cells there allow (see ContactPoint::delay); returns the largest
+     *  pass the adjacent cells (see ContactPoint::delay); returns the largest
      *  delay [s]. */
     double
     set_delay(const Discretization                            &discretization,
@@ -73,9 +73,9 @@ namespace Voussoir
     void
     load(const nlohmann::json &saved);
 
-    /** Called after `start`, which finds gaps and velocities from those of the
-     *  nodes, where a run continues from a checkpoint: restores those of its
-     * last step, which differ by round-off. */
+    /** Called after `start` where a run continues from a checkpoint: restores
+     *  gaps and velocities of its last step, which differ by round-off from
+     *  those that `start` finds from the nodes. */
     void
     resume();
 
@@ -85,7 +85,7 @@ namespace Voussoir
     begin_approach();
 
     /** Removes these oscillations, which open joints that end closed, from the
-     * history: afterwards it is the history before the relaxation followed by a
+     * history, which then is that before the relaxation, followed by a
      * monotonic change to the present gap and slip. */
     void
     forget_approach();
@@ -97,7 +97,7 @@ namespace Voussoir
 
     /** Joins the interfaces that are grouted after one of these loads; returns
      *  whether there are any. Called on all ranks.
-     *  @param displacement at which their gap and slip begin */
+     *  @param displacement from which gap and slip count */
     bool
     grout(const std::vector<std::string> &loads, const Vector &displacement);
 
@@ -129,7 +129,7 @@ namespace Voussoir
     const std::vector<dealii::Point<3>> &
     positions() const;
 
-    /** Whether its sides touch, to a millionth of a cell. */
+    /** Whether the sides of a point touch, to a millionth of a cell. */
     bool
     touches(const ContactPoint &point) const;
 

@@ -46,7 +46,7 @@ namespace Voussoir
    * Areas and normals are those of the reference configuration, by nodal
    * quadrature: the areas of an interface's pairs sum up to its area, and a
    * pair's normal is the mean over its area. Where an interface ends inside the
-   * body its two sides have one node, which makes no pair.
+   * body its two sides share one node, which makes no pair.
    *
    * Throws UserError, on all ranks, if a node has no partner on the other side
    * or is a hanging node.

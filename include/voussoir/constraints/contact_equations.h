@@ -12,11 +12,11 @@ namespace Voussoir
   /**
    * The equations H(x, t) = 0 of the contact of points that share nodes (see
    * contact_homotopy.h), each point on a segment of its law's line, in stick or
-   * slip. The unknowns x are, of each point, the number z of its law's line and
-   * the trial y = F_t - stiffness g_t of the shear; the last one is t.
+   * slip. The unknowns x are, for each point, the place z on its law's line and
+   * the trial y = F_t - stiffness g_t of the shear; the last unknown is t.
    *
-   * All in units in which the largest gap without forces and the largest
-   * diagonal entry of the Delassus operator are one.
+   * Units are such that the largest gap without forces and the largest diagonal
+   * entry of the Delassus operator are one.
    */
   struct ContactEquations
   {
@@ -60,7 +60,7 @@ namespace Voussoir
     double
     limit(const unsigned int k, const Vector &x) const;
 
-    /** Gaps by the compliance of the points, to be removed. */
+    /** Gaps that the compliance of the points causes, to be removed. */
     Vector
     softening(const Vector &x) const;
 

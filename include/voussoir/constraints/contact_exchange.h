@@ -6,9 +6,8 @@
 namespace Voussoir
 {
   /**
-   * Brings the motion of nodes to the ranks that own the contact clusters these
-   * belong to, and the forces back: a message to each neighbour that shares
-   * clusters, none to others.
+   * Transfers the motion of nodes to the ranks that own their contact clusters,
+   * and the forces back, by one message to each neighbour that shares clusters.
    */
   class ContactExchange
   {
@@ -57,7 +56,7 @@ namespace Voussoir
     };
     std::vector<Place>        here;   // index among the owned nodes
     std::vector<Place>        remote; // entry of its x in the vector
-    std::vector<unsigned int> lent;   // owned nodes that are elsewhere
+    std::vector<unsigned int> lent;   // owned nodes in clusters elsewhere
 
     Vector shared; // of the nodes lent
   };

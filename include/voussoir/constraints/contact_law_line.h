@@ -7,7 +7,7 @@
 
 namespace Voussoir
 {
-  /** Part of the line of a point's law from some number z on, linear in it.
+  /** Segment of the line of a point's law from some z on, linear in z.
    */
   struct ContactSegment
   {
@@ -20,7 +20,7 @@ namespace Voussoir
   };
 
 
-  /** A point, and on which piece of its law it is. */
+  /** A point, and the segment of its law that it is on. */
   struct ContactLawPoint
   {
     /** @param delassus diagonal entry of the Delassus operator
@@ -35,7 +35,8 @@ namespace Voussoir
       return segments[segment];
     }
 
-    /** Whether its unknown is at the limit of strength in place of infinity.
+    /** Whether the unknown of the point is at the limit of strength in place of
+     *  infinity.
      */
     bool
     at_cap() const

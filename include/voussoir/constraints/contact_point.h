@@ -25,12 +25,12 @@ namespace Voussoir
     bool   locked   = false; // no slip (shear keys)
 
     // friction follows the pressure with a delay (see ContactPoint): the shear
-    // that it resists under earlier pressure [N], and the share of the present
-    // pressure that counts at once
+    // resistance by earlier pressure [N], and the share of the present pressure
+    // that counts at once
     double lasting = 0., at_once = 1.;
 
-    /** Normal force at which it opens [N]; an opened bond resists tension only
-     * across its opening. */
+    /** Normal force at which the point opens [N]; an opened bond resists
+     * tension only across its opening. */
     double
     opening_force() const
     {
@@ -65,18 +65,17 @@ namespace Voussoir
     double               area   = 0.; // [m2]
     double               uplift = 0.; // pressure inside [Pa]
 
-    // before its interface is grouted, its sides move as if the other were not
-    // there
+    // until its interface is grouted, its two sides move independently
     bool joined = true;
 
     /**
-     * Friction follows the pressure p by its mean q, dq/dt = (p - q)/T, over
-     * some times T in which waves pass a cell. Under a law without this delay
+     * Friction follows the pressure p by its mean q, dq/dt = (p - q)/T, over a
+     * few passages T of waves through a cell. Under a law without this delay
      * sliding of elastic bodies is ill-posed: waves along the interface grow
      * the faster the shorter they are (Renardy 1992; Ranjith and Rice 2001),
-     * and the shortest ones of the mesh shake the sliding body on. Zero where
-     * as many points as nodes meet: there pressure and shear are not unique,
-     * and the history must not depend on the choice.
+     * and the shortest ones of the mesh keep shaking the sliding body. Zero
+     * where as many points as nodes meet: there pressure and shear are not
+     * unique, and the history must not depend on the choice.
      */
     double delay = 0.; // T [s]
 

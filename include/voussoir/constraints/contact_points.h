@@ -20,7 +20,7 @@ namespace Voussoir
     const InterfaceLaw *law = nullptr;
 
     double key_depth = 0.;    // no slip while the opening is below [m]
-    bool   tied      = false; // once it is joined, whatever the law
+    bool   tied      = false; // once grouted, under any law
 
     // bars across the surface, elastic and perfectly plastic, per area
     double bar_stiffness = 0.; // [Pa/m]
@@ -67,7 +67,7 @@ namespace Voussoir
     const std::vector<Cluster> &
     clusters() const;
 
-    /** Sets gaps to those of a displacement; keys and bars follow them. */
+    /** Sets gaps to those of a displacement; keys and bars follow the gaps. */
     void
     find_gaps(const std::vector<dealii::Tensor<1, 3>> &displacement);
 
@@ -85,7 +85,7 @@ namespace Voussoir
     void
     catch_up_with_pressure(ContactPoint &point) const;
 
-    /** Lets the bars at a point flow that its gap has stretched beyond their
+    /** Lets the bars at a point flow if its gap has stretched them beyond their
      * yield strain. */
     void
     yield_bars(ContactPoint &point) const;

@@ -10,14 +10,14 @@ namespace Voussoir
   /**
    * Contact of clusters of coincident nodes at the end of a step: finds the
    * forces that keep the predicted motion from penetration and from any slip
-   * and opening that the laws do not admit. Exact, without penalty: a cluster
-   * of two nodes in closed form, others by their dense system if nothing slips
-   * or opens, else by projected Gauss-Seidel over their points and, where that
-   * goes slowly, Newton's iteration. Where these do not converge, by homotopy
-   * (see contact_homotopy.h).
+   * and opening that the laws do not admit. The solution is exact, without
+   * penalty: a cluster of two nodes is solved in closed form; others by their
+   * dense system if nothing slips or opens, else by projected Gauss-Seidel over
+   * their points and, where that converges slowly, Newton's iteration; where
+   * these do not converge, by homotopy (see contact_homotopy.h).
    *
-   * Keeps the Delassus operators of points and the compliances of nodes in a
-   * step, those of the last `prepare_step`.
+   * Keeps the Delassus operators of points and the compliances of nodes from
+   * the last `prepare_step`.
    */
   class ContactSolver
   {
@@ -52,8 +52,8 @@ namespace Voussoir
           std::vector<dealii::Tensor<1, 3>> &displacement,
           std::vector<dealii::Tensor<1, 3>> &force);
 
-    /** Part that the bars at a point may take of dt^2 lambda / 4, which must
-     *  stay below one for stability. */
+    /** Share of the bars at a point in dt^2 lambda / 4, which must stay below
+     *  one for stability. */
     double
     bar_share_of_stable_step(const ContactPoints &contact,
                              const unsigned int   point) const;
@@ -86,8 +86,8 @@ namespace Voussoir
       return std::sqrt(v[1] * v[1] + v[2] * v[2]);
     }
 
-    /** Finds the contact force of a point from the gap without it; there is
-     *  none before its interface is grouted. */
+    /** Finds the contact force of a point from the gap without this force;
+     *  before its interface is grouted the force is zero. */
     void
     solve_point(ContactPoint               &point,
                 const unsigned int          number,
@@ -147,8 +147,8 @@ namespace Voussoir
                 const double   size,
                 Effort        &effort);
 
-    /** The same after Newton's iteration, which is undone if the sweep then
-     *  changes more than the one @p before. */
+    /** A sweep after Newton's iteration, which is undone if this sweep changes
+     *  more than the one @p before. */
     Sweep
     sweep_after_jump(Points        &points,
                      const Cluster &cluster,
@@ -169,8 +169,8 @@ namespace Voussoir
     dealii::Tensor<1, 3>
     motion(const unsigned int node, const dealii::Tensor<1, 3> &force) const;
 
-    /** One step of it; returns the largest change of a component, or zero if
-     *  the linear system is singular [N]. */
+    /** One step of Newton's iteration; returns the largest change of a
+     *  component, or zero if the linear system is singular [N]. */
     double
     newton_step(Points &points, const Cluster &cluster);
 

@@ -24,14 +24,15 @@ namespace Voussoir
   };
 
   /**
-   * The strength of an interface (joint, slip plane, dam-rock contact). Closed,
-   * it resists any pressure p, tension up to `tension`, and shear up to
+   * The strength of an interface (joint, slip plane, dam-rock contact). A
+   * closed interface resists any pressure p, tension up to `tension`, and shear
+   * up to
    *   bond + cohesion + friction <p> ;
-   * open, tension up to `tension` and shear up to `bond`. An opened bond
+   * an open one, tension up to `tension` and shear up to `bond`. An opened bond
    * unloads along the secant to zero opening.
    *
    * A law is a class with its entries and this function; one file and one line
-   * of registration add one.
+   * of registration add a law.
    */
   class InterfaceLaw
   {
@@ -41,7 +42,7 @@ namespace Voussoir
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 
-    /** Refuses entries that do not fit each other; @p place names their
+    /** Refuses entries that contradict each other; @p place names their
      *  section. */
     virtual void
     check(const std::string &) const

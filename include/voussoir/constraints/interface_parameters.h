@@ -59,7 +59,7 @@ namespace Voussoir
   {
     std::vector<std::vector<std::string>> of_interface;
 
-    /** All of them, in order. */
+    /** The face sets of all interfaces, in order. */
     std::vector<std::string>
     names() const;
   };
@@ -69,7 +69,7 @@ namespace Voussoir
   {
     std::vector<InterfaceParameters> list;
 
-    /** Those with `set Active = false`: the mesh is not split there. */
+    /** Interfaces with `set Active = false`: the mesh is not split there. */
     std::vector<InterfaceParameters> inactive;
 
     void

@@ -18,8 +18,8 @@ namespace Voussoir
   class InterfacePoints : public ContactPoints
   {
   public:
-    /** @param interfaces of the mesh, which is split along them; must live
-     *  as long as this */
+    /** @param interfaces along which the mesh is split; must live as long as
+     *  this */
     InterfacePoints(const Discretization       &discretization,
                     const InterfacesParameters &interfaces,
                     const InterfaceSurfaces    &surfaces);
@@ -36,12 +36,12 @@ namespace Voussoir
 
     /** Joins the interfaces that are grouted after one of these loads; returns
      *  whether there are any. Called on all ranks.
-     *  @param displacement at which their gap and slip begin */
+     *  @param displacement from which gap and slip count */
     bool
     grout(const std::vector<std::string> &loads, const Vector &displacement);
 
-    /** Joins all interfaces, which have been grouted where the points have been
-     *  read from a file: bars and uplift act.
+    /** Joins all interfaces, as after a read of points whose interfaces had
+     *  been grouted: bars and uplift act.
      *  @param water see `has_water` */
     void
     join_all(const std::vector<bool> &water);
@@ -88,7 +88,7 @@ namespace Voussoir
     set_uplift(const unsigned int interface);
 
     /** Grouts an interface: its sides are in contact from now on; gap and slip
-     * begin at this displacement of the nodes of the clusters. */
+     * count from this displacement of the nodes of the clusters. */
     void
     join(const unsigned int                       interface,
          const std::vector<dealii::Tensor<1, 3>> &displacement);

@@ -11,7 +11,7 @@ namespace Voussoir
   /**
    * A constraint that corrects the predicted motion at the end of each step
    * (contact, prescribed motion): it gets the displacement and velocity
-   * predicted without it and returns its impulse and work.
+   * predicted without the constraint and returns its impulse and work.
    */
   class Projection
   {
@@ -26,11 +26,11 @@ namespace Voussoir
       /** Work done on the body in this step [J]. */
       Sum work;
 
-      /** How far the constraint is violated after the correction [m]. */
+      /** Violation of the constraint after the correction [m]. */
       double violation = 0.;
     };
 
-    /** The entries of a registered class, and how it takes them. */
+    /** Declares the entries of a registered class; `prepare` takes them. */
     virtual void
     declare_parameters(dealii::ParameterHandler &)
     {}
@@ -59,20 +59,21 @@ namespace Voussoir
     start(const State &)
     {}
 
-    /** Owned nodes whose motion it may change, in ascending order. */
+    /** Owned nodes whose motion the constraint may change, in ascending order.
+     */
     virtual const std::vector<unsigned int> &
     nodes() const = 0;
 
-    /** The components x, y, z in which its nodes follow it whatever else acts
-     * on them. */
+    /** The components x, y, z of the nodes that the constraint alone
+     * determines. */
     virtual std::array<bool, 3>
     prescribed_components() const
     {
       return {{false, false, false}};
     }
 
-    /** Corrects @p state at the end of a step of length @p time_step [s]; its
-     *  time is already that end. The result is of this rank. */
+    /** Corrects @p state at the end of a step of length @p time_step [s]; the
+     *  time of the state is already that end. The result is of this rank. */
     virtual Result
     project(State &state, const double time_step) = 0;
   };

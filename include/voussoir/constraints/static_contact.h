@@ -9,8 +9,8 @@ namespace Voussoir
    * The interfaces in static equilibrium, by the augmented Lagrangian of Alart
    * and Curnier (1991): the force of a point is the projection of F - r g to
    * the admissible forces of its law , with the gap g, a spring r and the
-   * multiplier F. Once F equals that force, the law holds exactly, whatever r
-   * is. Slip counts from the last stick, as in a step of the run.
+   * multiplier F. Once F equals that force, the law holds exactly, for any r.
+   * Slip counts from the last stick, as in a step of the run.
    */
   class StaticContact
   {
@@ -31,14 +31,14 @@ namespace Voussoir
     respond(Vector &force, const Vector &displacement);
 
     /**
-     * Moves the tangent by a share towards the one where all points stick; 1:
-     * all the way. Under such a tangent no block is detached, and no step goes
-     * too far.
+     * Moves the tangent by a share towards that of sticking points; 1: all the
+     * way. With that tangent no block is detached, and no step goes too far.
      */
     void
     stiffen(const double share);
 
-    /** From now on closed points, taken as sticking, make the tangent. */
+    /** From now on the tangent is that of the closed points, taken as sticking.
+     */
     void
     tie(const Vector &displacement);
 
@@ -55,7 +55,7 @@ namespace Voussoir
       std::array<bool, 3>             first_fixed, second_fixed;
     };
 
-    /** The pairs of this rank, whose nodes may be those of others. */
+    /** The pairs of this rank, whose nodes may be owned by others. */
     std::vector<Pair>
     pairs() const;
 
@@ -67,13 +67,13 @@ namespace Voussoir
       unsigned int open = 0, slide = 0, all = 0; // points
     };
 
-    /** The forces last evaluated become the multipliers, and the history of the
-     * points takes in their opening and slip. */
+    /** The forces last evaluated become the multipliers; the history of the
+     * points is updated by their opening and slip. */
     Change
     update();
 
-    /** The history of the points takes in opening and slip of this stage, and
-     * the slip of the next one counts from here. */
+    /** Updates the history of the points by opening and slip of this stage; the
+     * slip of the next stage counts from here. */
     void
     finish_stage();
 

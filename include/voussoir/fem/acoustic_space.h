@@ -9,8 +9,8 @@
 namespace Voussoir
 {
   /**
-   * The pressure space of the water: a mesh, a partition and one unknown per
-   * node of its own, of the degree of the displacement.
+   * The pressure space of the water, with its own mesh and partition: one
+   * unknown per node, elements of the same degree as for the displacement.
    */
   class AcousticSpace
   {
@@ -47,7 +47,7 @@ namespace Voussoir
       std::function<bool(const Grid::Cell &, const unsigned int)>;
 
     /** Gauss-Lobatto weight times Jacobian at each node [m2], on the outer
-     *  faces that are wanted. */
+     *  faces that @p wanted accepts. */
     Vector
     areas(const FacePredicate &wanted) const;
 
@@ -61,7 +61,7 @@ namespace Voussoir
           const InternalForce::RangeWork &before,
           const InternalForce::RangeWork &after) const;
 
-    /** A number of each owned node that does not depend on the ranks. */
+    /** A number of each owned node that does not depend on the partition. */
     std::vector<std::uint64_t>
     node_keys() const;
   };

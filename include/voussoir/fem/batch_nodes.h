@@ -8,8 +8,9 @@
 namespace Voussoir
 {
   /** Values at the nodes of the cells of a batch, component by component: of
-   *  trilinear cells entry 8 d + v is of node v. Everybody reads the nodes by
-   *  it, as the library has no entries of most trilinear cells. */
+   *  trilinear cells entry 8 d + v is of node v. All cell loops read nodes
+   *  through this class, as deal.II keeps no entries of most trilinear cells.
+   */
   class BatchNodes
   {
   public:

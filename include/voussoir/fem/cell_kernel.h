@@ -17,14 +17,14 @@ namespace Voussoir
     bool                              one_point;          // of integration
     double                            stress_factor;      // k of this stage [1]
     bool                              exact_sums = false; // of energies
-    Rounding *rounding = nullptr; // of forces; null: they stay as they are
-    bool      single_precision = false; // of forces, where it can be
+    Rounding *rounding         = nullptr; // of forces; null: none
+    bool      single_precision = false;   // of forces, where it can be
   };
 
   /** A time step, as passed to laws with internal variables. */
   struct PointStep
   {
-    // [s]; unless given, laws have no viscosity
+    // [s]; by default laws have no viscosity
     double length            = std::numeric_limits<double>::max();
     double closing_viscosity = 0.; // c of DampedResponse [s]
     double branches          = 0.; // sum of the D_i of Maxwell damping [1]
@@ -32,12 +32,12 @@ namespace Voussoir
   };
 
 
-  /** Bounds of the forces of cells in a stable step: with the force
-   *  K_e u_e of a cell, K_e <= K <= 4 M / dt^2 . */
+  /** Bounds of the forces K_e u_e of cells under a stable time step, from K_e
+   *  <= K <= 4 M / dt^2 . */
   struct MotionBound
   {
-    /** Vectors with factors [m]: no entry of the displacement or, with s = 1,
-     *  of x + s w of SweepInput is above the sum of their largest ones. */
+    /** Vectors with factors [m]. The sum of their largest entries bounds every
+     *  entry of the displacement and, with s = 1, of x + s w of SweepInput. */
     std::vector<std::pair<const Vector *, double>> parts;
 
     const Vector &mass;      // M [kg]
@@ -46,20 +46,19 @@ namespace Voussoir
 
 
   /**
-   * Input of a sweep over the cells. With the damping memory w, which are
-   * filters of the displacement u, the strain of elastic points is B (x + s w)
-   * , where x is u plus the part of damping that is the same in all materials.
-   * A law with internal variables needs B u as well: damping does not act in
-   * cracks.
+   * Input of a sweep over the cells. With the damping memory w (filters of the
+   * displacement u), the strain of elastic points is B (x + s w) , where x is u
+   * plus the part of damping that is the same in all materials. A law with
+   * internal variables needs B u as well: damping does not act in cracks.
    */
   struct SweepInput
   {
-    /** Where the damping memory is. */
+    /** How damping memory enters the strain. */
     enum class Damping
     {
-      none,       // there is none, and x is u
-      common,     // in x, with the factor s that all materials have
-      by_material // in w, and each material has its own s
+      none,       // not at all: x is u
+      common,     // within x, with the factor s of all materials
+      by_material // by w, with the factor s of each material
     };
 
     const Vector      &displacement; // u [m]
@@ -70,7 +69,7 @@ namespace Voussoir
     const MotionBound *bound          = nullptr; // null: none is known
     bool single_precision = false; // of forces, where cells are trilinear
 
-    /** Strain of the displacement alone, which laws follow at once. */
+    /** Input without damping: laws get the strain of the displacement alone. */
     static SweepInput
     undamped(const Vector &displacement)
     {
@@ -80,9 +79,9 @@ namespace Voussoir
 
 
   /**
-   * Input of the energy of a damped motion, after the step from the
-   * velocity v- to v+ : the displacement u since the static state, and the
-   * damping memory w that the step had.
+   * Input of the energy of a damped motion, after the step from the velocity v-
+   * to v+ : the displacement u since the static state, and the damping memory w
+   * during the step.
    */
   struct DampedMotion
   {
@@ -100,19 +99,19 @@ namespace Voussoir
   struct InelasticMotion
   {
     const Vector       &displacement;        // u [m]
-    bool                has_static_state;    // before it
-    const Vector       &static_displacement; // u_s [m], if it has
-    const PointHistory *static_history;      // null: elastic till then
+    bool                has_static_state;    // before the motion
+    const Vector       &static_displacement; // u_s [m], if any
+    const PointHistory *static_history;      // of that state; null: elastic
     double              branches; // sum of the D_i of Maxwell damping [1]
   };
 
 
   /**
-   * Energy of the elastic points, half a step before the displacement [J]. The
-   * step does on branch i, with w_i+ = a w_i + b v+, the work
+   * Energy of the elastic points, half a step before the displacement [J]. With
+   * w_i+ = a w_i + b v+ the step does on branch i the work
    *   dt s w_i^T K (v- + v+)/2 ,
-   * which with the energy E_i = dt s w_i^T K w_i+ / (2 b) of its spring loses
-   * exactly
+   * of which, with the energy E_i = dt s w_i^T K w_i+ / (2 b) of its spring,
+   * the branch dissipates exactly
    *   dt s (1 - a) w_i^T K (w_i + w_i-) / (2 b) .
    */
   struct ElasticEnergy
@@ -128,8 +127,8 @@ namespace Voussoir
 
     Sum strain;    // u^T K (u - dt v+) / 2
     Sum memory;    // in the springs of the branches
-    Sum next_loss; // of the branches in the step that comes
-    Sum last_loss; // by viscosity in the step that was
+    Sum next_loss; // of the branches in the next step
+    Sum last_loss; // by viscosity in the last step
 
     ElasticEnergy &
     operator+=(const ElasticEnergy &other)
@@ -154,7 +153,7 @@ namespace Voussoir
     {}
 
     Sum stored;  // half a step before the displacement
-    Sum damping; // of the work on damping, the stored part
+    Sum damping; // stored part of the work on damping
 
     InelasticEnergy &
     operator+=(const InelasticEnergy &other)
@@ -190,9 +189,9 @@ namespace Voussoir
     n_history() const = 0;
 
     /**
-     * Like add_force, but by the law with its internal variables, which advance
-     * by one step; see DampedResponse. While the law is elastic, this is
-     * add_force.
+     * As add_force, but with the stress of the law with internal variables,
+     * which advance by one step; see DampedResponse. For an elastic law the two
+     * agree.
      */
     virtual void
     add_response(const CellRange  &cells,
@@ -207,17 +206,17 @@ namespace Voussoir
                        PointHistory    &history,
                        const Vector    &temperature) const = 0;
 
-    /** Takes the points that have left the elastic range over from the material
-     *  of the static state; see LawDefaults::hand_over. */
+    /** Takes over the points beyond the elastic range from the material of the
+     *  static state; see LawDefaults::hand_over. */
     virtual void
     hand_over(const CellRange &cells, PointHistory &history) const = 0;
 
     /**
      * Sets the strain offset e_0 and the elastic strain e_s of the history for
      * the static displacement u_s [m] and the temperature T [K] of each node.
-     * With e_0 an elastic point has the strain a (B u_s - alpha T I) for the
-     * static factor a of the material, any other point the strain of
-     * `hand_over`; see DampedResponse.
+     * With e_0 the strain of an elastic point is a (B u_s - alpha T I), with
+     * the static factor a of the material; that of any other point is the
+     * strain of `hand_over`. See DampedResponse.
      */
     virtual void
     set_static_state(const CellRange &cells,
@@ -225,8 +224,8 @@ namespace Voussoir
                      const Vector    &displacement,
                      const Vector    &temperature) const = 0;
 
-    /** Energy of the points that are elastic; by @p history, which stores their
-     *  imbalance; null: all. */
+    /** Energy of the elastic points of @p history, which stores their
+     *  imbalance; null: all points are elastic. */
     virtual ElasticEnergy
     elastic_energy(const CellRange    &cells,
                    const DampedMotion &motion,

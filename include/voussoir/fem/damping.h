@@ -43,7 +43,7 @@ namespace Voussoir
     void
     declare(dealii::ParameterHandler &prm);
 
-    /** @p n_modes: how many modes the case computes */
+    /** @p n_modes: number of modes that the case computes */
     void
     check(const unsigned int n_modes) const;
 
@@ -68,9 +68,9 @@ namespace Voussoir
   {
   public:
     /**
-     * @param natural_frequencies at those of the two modes that the parameters
-     *   name Rayleigh damping has its ratio, and the first is the reference of
-     *   Maxwell damping, if the parameters ask for it [Hz]
+     * @param natural_frequencies [Hz]: Rayleigh damping has its ratio at those
+     *   of the two modes that the parameters name; the first one is the
+     *   reference of Maxwell damping, if the parameters ask for it
      */
     explicit Damping(const DampingParameters   &parameters,
                      const std::vector<double> &natural_frequencies = {});
@@ -100,8 +100,8 @@ namespace Voussoir
     double stiffness_coefficient = 0.;
 
     /** Viscosity for frequencies above those that the mesh carries [s]: it acts
-     *  on the velocity as the stiffness-proportional coefficient, whatever the
-     *  material's factor, and under every model. See
+     *  on the velocity as the stiffness-proportional coefficient, for any
+     *  factor of the material and under every model. See
      *  DampingParameters::mesh_viscosity. */
     double mesh_viscosity = 0.;
 
@@ -117,8 +117,8 @@ namespace Voussoir
     n_branches() const;
 
     /**
-     * gamma(dt) of the stable step: the cells act as if stiffer by
-     * 1 + s gamma.
+     * gamma(dt) of the stable step: damping makes the cells stiffer by the
+     * factor 1 + s gamma.
      */
     double
     stiffening(const double dt) const;
@@ -132,8 +132,9 @@ namespace Voussoir
     modulus_ratio(const double frequency, const double factor = 1.) const;
 
     /** Factor on the stiffness that makes the given moduli hold at the
-     *  reference frequency: as storage modulus or, if this is that of a mode,
-     *  so that the free vibration in the mode has it. */
+     *  reference frequency: as storage modulus or, if this frequency is that of
+     *  a mode, so that the free vibration in the mode has the given frequency.
+     */
     double
     stiffness_scale(const double factor) const;
 

@@ -92,9 +92,9 @@ namespace Voussoir
     relative_cost(const bool has_memory) const;
   };
 
-  /** A face set on which displacement components are fixed at zero: all, the
-   *  one at right angles to the face (roller, plane of symmetry), or the two in
-   *  it (plane of antisymmetry). */
+  /** A face set on which displacement components are fixed at zero: all three,
+   *  the normal one (roller, plane of symmetry), or the two tangential ones
+   *  (plane of antisymmetry). */
   struct Support
   {
     enum class Fixed
@@ -114,8 +114,8 @@ namespace Voussoir
    * The three displacement components of a node have consecutive numbers that
    * start at a multiple of three, so "node i" of a rank means entries 3i, 3i+1,
    * 3i+2 of its vectors, and a global node index is a global degree of freedom
-   * divided by three. Nodes are numbered in the order in which the cells meet
-   * them, which keeps the cell loop in the cache.
+   * divided by three. Nodes are numbered in the order in which the cell loop
+   * meets them, which keeps them in the cache.
    */
   class Discretization
   {
@@ -132,16 +132,17 @@ namespace Voussoir
        *  by component. */
       using SingleCorners = dealii::AlignedVector<std::array<HalfSingles, 24>>;
 
-      /** What Discretization::single_corners() has given, while it is held. */
+      /** Result of Discretization::single_corners(), as long as a caller holds
+       *  it. */
       mutable std::weak_ptr<const SingleCorners> single_corners;
 
       /** Integration points of cells that have more than one. */
       dealii::Quadrature<3> quadrature;
 
-      /** Of each batch of trilinear cells the first vector entry of each node
-       *  in each lane, if the nodes can be read and written whole, four entries
-       *  of the vector at once; else null. That takes a third of the time that
-       *  the library needs entry by entry. */
+      /** For each batch of trilinear cells, the first vector entry of each node
+       *  in each lane, if nodes can be read and written as a whole; else null.
+       *  Four vector entries at once take a third of the time that deal.II
+       *  needs entry by entry. */
       std::vector<const unsigned int *> node_entries;
 
       std::vector<unsigned int> entries; // to which node_entries point
@@ -163,17 +164,17 @@ namespace Voussoir
     /** Whether the time loop computes internal forces in single precision where
      *  it can; the smoother of the static solver always does. */
     const bool single_precision;
-    /** Of all cells, where results are reproducible [m]. */
+    /** Of all cells, if results are reproducible [m]. */
     double longest_edge = 0.;
-    /** Share of the width of a cell that one crack takes. */
+    /** Share of the width of a cell that a crack takes. */
     double                            crack_share;
     const dealii::FESystem<3>         fe;
     const dealii::MappingQ1<3>        mapping;
     dealii::DoFHandler<3>             dof_handler;
     dealii::AffineConstraints<double> hanging_nodes;
-    /** Hanging nodes and supports. The matrix-free data know the hanging nodes
-     *  only: at a fixed node the internal force is the reaction, and the mass
-     *  is zero. */
+    /** Hanging nodes and supports. The matrix-free data contain the hanging
+     *  nodes only: at a fixed node the internal force is the reaction, and the
+     *  mass is zero. */
     dealii::AffineConstraints<double> constraints;
     dealii::IndexSet                  owned_dofs, relevant_dofs;
     MatrixFree                        matrix_free;
@@ -204,17 +205,17 @@ namespace Voussoir
     points(const unsigned int material) const;
 
     /**
-     * Corners of trilinear cells in single precision; forces can be computed
-     * in single precision as long as somebody holds them. Null if they cannot:
-     * cells of higher degree, reproducible sums.
+     * Corners of trilinear cells in single precision; forces can be computed in
+     * single precision as long as a caller holds them. Null for cells of higher
+     * degree and reproducible sums, which are in double precision.
      */
     std::shared_ptr<const MatrixFree::SingleCorners>
     single_corners() const;
 
     /**
-     * Hanging nodes, these supports, and all nodes of the cells of the
-     * materials that are true in @p fixed_materials, if it is not empty. The
-     * supports of the case are not among them unless they are given.
+     * Constraints of hanging nodes, of these supports, and of all nodes of the
+     * cells of the materials that are true in @p fixed_materials, if this is
+     * not empty. Supports of the case are included only if given.
      */
     dealii::AffineConstraints<double>
     make_constraints(const std::vector<Support> &supports,
@@ -234,7 +235,7 @@ namespace Voussoir
     unsigned int
     owned_node(const dealii::types::global_dof_index global_node) const;
 
-    /** Nodes shared with other ranks (largest over the ranks). */
+    /** Number of nodes shared with other ranks (largest over the ranks). */
     unsigned int
     largest_interface() const;
 
@@ -255,15 +256,15 @@ namespace Voussoir
     std::vector<dealii::types::global_dof_index>
     cell_nodes(const Cell &cell) const;
 
-    /** A cell of the triangulation as seen by the degrees of freedom. */
+    /** A cell of the triangulation as one of the DoF handler. */
     Cell
     dof_cell(const dealii::Triangulation<3>::active_cell_iterator &cell) const;
 
     /**
      * Sends records to the ranks that own their nodes; records that arrive have
-     * the local node. Their order does not depend on timing, nor, if sums are
-     * reproducible, that of the records of each node on the partition. @p
-     * Record must be trivially copyable.
+     * the local node. Their order does not depend on timing; if sums are
+     * reproducible, the order of the records of each node does not depend on
+     * the partition either. @p Record must be trivially copyable.
      */
     template <typename Record>
     std::vector<std::pair<unsigned int, Record>>
@@ -279,13 +280,12 @@ namespace Voussoir
     void
     number_by_nodes();
 
-    /** Keeps the corners of the cells, and frees the geometry that the library
-     *  has computed for them. */
+    /** Keeps the corners of the cells, and frees the geometry that deal.II has
+     *  computed for the cells. */
     void
     keep_corners_only();
 
-    /** Sets MatrixFree::node_entries, and frees what the library has in their
-     *  place. */
+    /** Sets MatrixFree::node_entries, and frees deal.II's own entries. */
     void
     find_node_entries();
 
@@ -320,7 +320,7 @@ namespace Voussoir
     for (const auto &[node, record] : records)
       {
         Item item{node, record};
-        __builtin_clear_padding(&item); // records are ordered by their bytes
+        __builtin_clear_padding(&item); // records are sorted by their bytes
         auto      &buffer = outgoing[owner(node)];
         const auto bytes  = reinterpret_cast<const char *>(&item);
         buffer.insert(buffer.end(), bytes, bytes + sizeof(Item));
@@ -334,7 +334,7 @@ namespace Voussoir
     for (const auto &buffer : incoming)
       for (std::size_t i = 0; i < buffer.second.size(); i += sizeof(Item))
         items.push_back(buffer.second.data() + i);
-    // the records of one node by themselves
+    // sorted, so that the order of the records of a node is reproducible
     if (reproducible)
       std::sort(items.begin(), items.end(), [](const char *a, const char *b) {
         return std::memcmp(a, b, sizeof(Item)) < 0;

@@ -14,7 +14,7 @@ namespace Voussoir
    * With the edges a_k = dx/dxi_k at a point and their cofactors
    * c_k = a_l x a_m the gradient is G = sum_k du/dxi_k (x) c_k / det , and
    * sigma c_k is the force on du/dxi_k . Derivatives along xi_k are the same at
-   * the two points that lie behind each other in this direction.
+   * two points that differ in this coordinate only.
    */
   template <typename Number>
   class EightPointShape
@@ -25,20 +25,21 @@ namespace Voussoir
       : coordinate(2. * matrix_free.quadrature.point(7)[0] - 1.)
     {}
 
-    /** Components one by one, in the order of the nodes: of node v entry
-     *  8 d + v. */
+    /** Component by component, in the order of the nodes: component d of node v
+     *  is entry 8 d + v. */
     using Values = std::array<Number, 24>;
 
-    /** Finds the shape of the cells with these corners [m], which are spoilt.
+    /** Finds the shape of the cells with these corners [m], which are
+     *  overwritten.
      */
     void
     reinit(Values &corners);
 
-    /** Evaluates the gradients of these values, which are spoilt. */
+    /** Evaluates the gradients of these values, which are overwritten. */
     void
     evaluate_gradients(Number *values);
 
-    /** Evaluates values at the points, and spoils those of the nodes. */
+    /** Evaluates values at the points, and overwrites those of the nodes. */
     void
     evaluate_values(Number *values);
 
@@ -94,8 +95,8 @@ namespace Voussoir
   private:
     using Vector3 = dealii::Tensor<1, 3, Number>;
 
-    /** Derivatives along each xi_k of a function, at the pairs of points behind
-     *  each other. */
+    /** Derivatives along each xi_k of a function, at the pairs of points that
+     *  differ in this coordinate only. */
     using Derivatives = std::array<std::array<Vector3, 4>, 3>;
 
     /** The pair of point q along xi_k: bits of the two other coordinates. */

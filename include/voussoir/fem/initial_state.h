@@ -16,8 +16,8 @@ namespace Voussoir
     /** Displacement of the static stage [m]; zero without one. */
     Vector displacement;
 
-    /** Displacement when the last interfaces were grouted [m]; empty: none
-     *  was. */
+    /** Displacement when the last interfaces were grouted [m]; empty if none
+     *  were. */
     Vector grouted_displacement;
 
     /** Displacement after each static stage, by the names of its loads [m]. */
@@ -31,7 +31,7 @@ namespace Voussoir
      *  nodes are free. */
     Vector reaction;
 
-    /** Loads and reactions of the static stage, which stay as they are, by the
+    /** Loads and reactions of the static stage, which stay constant, by the
      *  moduli of the run [N]; see hand_over. */
     Vector force;
 

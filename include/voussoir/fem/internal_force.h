@@ -11,10 +11,10 @@ namespace Voussoir
   /**
    * The internal force of all materials, with the moduli of one stage, in one
    * matrix-free sweep, with vector updates fused into it: the hot loop. A
-   * factor k on the stress of each material makes these moduli: under damping
-   * the given ones hold with it at the reference frequency, in the static state
-   * it is the static factor. It has no state: internal variables are arguments
-   * of the functions that read or advance them.
+   * factor k on the stress of each material makes these moduli: under damping,
+   * the given moduli hold with this factor at the reference frequency; in the
+   * static state it is the static factor. The class has no state: internal
+   * variables are arguments of the functions that read or advance them.
    */
   class InternalForce
   {
@@ -57,16 +57,16 @@ namespace Voussoir
       std::function<void(const unsigned int, const unsigned int)>;
 
     /**
-     * force = f(x + s w), with the symbols of SweepInput, by the materials'
-     * laws, whose internal variables @p memory advance by one step (if it is
-     * empty, with the elastic moduli), with @p before and @p after called once
-     * for every owned entry: before it is first read, after its last
-     * contribution has arrived (on one rank; across ranks the library orders
-     * the exchange accordingly).
+     * force = f(x + s w), with the symbols of SweepInput, by the laws of the
+     * materials, whose internal variables @p memory advance by one step; with
+     * empty @p memory, by the elastic moduli. For every owned entry, @p before
+     * is called once before the entry is first read, and @p after once after
+     * its last contribution has arrived (on one rank; across ranks deal.II
+     * orders the exchange accordingly).
      * @p before may still change the vectors of the input.
      *
-     * @return whether sums are exact and so reproducible: not if a strain of a
-     * cell of this rank exceeds all bounds
+     * @return whether sums are exact and so reproducible: false if the strain
+     * of a cell of this rank exceeds the bounds
      */
     bool
     sweep(Vector           &force,
@@ -129,7 +129,8 @@ namespace Voussoir
      * Integral of k D epsilon(u) : epsilon(v) over all points that are elastic
      * [J].
      *
-     * @param by_damping_factor whether each material counts by that
+     * @param by_damping_factor whether each material is weighted by its damping
+     *   factor
      */
     double
     elastic_work(const Vector         &u,
@@ -144,13 +145,14 @@ namespace Voussoir
                         const dealii::AlignedVector<Lanes> &masses) const;
 
   private:
-    /** Upper bound of the force of a cell on a node at a relative displacement
-     *  within the cell of this share of its longest edge [N]. */
+    /** Upper bound of the force of a cell on a node [N], if relative
+     *  displacements within the cell are at most this share of its longest
+     *  edge. */
     double
     limit_of_forces(const double strain) const;
 
-    /** The same for a sweep [N]. It depends on the motion alone, not on the
-     *  ranks. */
+    /** The same bound for a sweep [N]. It depends on the motion alone, not on
+     *  the partition. */
     double
     limit_of_sweep(const SweepInput &input) const;
 

@@ -10,15 +10,15 @@ namespace Voussoir
   /**
    * A step of central differences in leap-frog form,
    *   m (v+ - v-)/dt + c v = F ,   u_(n+1) = u_n + dt v+ ,
-   * in which diagonal damping c acts on v = (v+ + v-)/2 or, not central, as in
-   * the paper's scheme, on v = v- .
+   * in which diagonal damping c acts on v = (v+ + v-)/2 if `central`, else, as
+   * in TimeScheme::paper, on v = v- .
    */
   struct LeapFrog
   {
     double time_step; // dt [s]
     bool   central = true;
 
-    /** The part of dt c that joins the mass on the left-hand side. */
+    /** The part of dt c that is added to the mass on the left-hand side. */
     double
     implicit_share() const
     {

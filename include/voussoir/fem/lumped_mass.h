@@ -9,7 +9,7 @@ namespace Voussoir
 {
   /**
    * The diagonal mass matrix by quadrature at the Gauss-Lobatto nodes; the mass
-   * at a hanging node goes to the nodes it hangs on.
+   * at a hanging node is distributed to the nodes that it hangs on.
    */
   class LumpedMass
   {
@@ -37,7 +37,7 @@ namespace Voussoir
     }
 
   private:
-    Vector part; // that is driven, where it is not all
+    Vector part; // that is driven, unless all of it is
 
   public:
     /** Mass of each material [kg]. */

@@ -40,15 +40,15 @@ namespace Voussoir
                 const std::function<void(const Discretization::Cell &)> &visit);
 
   /** Global nodes on the faces of this rank in these face sets, which are
-   *  refused as by for_each_face(). */
+   *  checked as by for_each_face(). */
   std::set<dealii::types::global_dof_index>
   nodes_of_faces(const Discretization           &discretization,
                  const std::vector<std::string> &sets,
                  const std::string              &place);
 
   /**
-   * The owned nodes, in ascending order, that carry the values at the nodes
-   * that any rank names. Called on all ranks.
+   * The owned nodes, in ascending order, that carry the values at the @p nodes
+   * of all ranks. Called on all ranks.
    *
    * @param nodes global nodes, hanging ones too
    */

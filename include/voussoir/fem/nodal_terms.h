@@ -11,7 +11,7 @@
 
 namespace Voussoir
 {
-  /** Contribution of a boundary, water or a load to an owned node. */
+  /** Contribution of a boundary, of water or of a load to an owned node. */
   struct NodalTerm
   {
     using Matrix = dealii::SymmetricTensor<2, 3>;
@@ -22,10 +22,9 @@ namespace Voussoir
   };
 
   /**
-   * Terms of the equation of motion at a few nodes only, besides the cells:
-   * springs and dashpots of the absorbing boundary, water that moves with the
-   * dam, the points where loads act. All of owned nodes; `slot` numbers those
-   * that have any.
+   * Terms of the equation of motion that act at a few nodes only: springs and
+   * dashpots of the absorbing boundary, added mass, forces of loads. All nodes
+   * are owned ones; `slot` numbers those that have any term.
    */
   class NodalTerms
   {
@@ -83,7 +82,7 @@ namespace Voussoir
   class NodalForces
   {
   public:
-    /** Zero. @param terms must live as long as this */
+    /** Forces of zero. @param terms must live as long as this */
     explicit NodalForces(const NodalTerms &terms);
 
     void

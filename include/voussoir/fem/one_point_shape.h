@@ -14,10 +14,11 @@ namespace Voussoir
    *
    * where l and m are the directions beside k. The strain at the point is that
    * of the mean gradient G over the cell, exact in cells of any shape, so that
-   * the patch test is passed (Flanagan and Belytschko 1981). Of the rest, the
-   * hourglass motion without its part in G, q_k = v_k - G x_k with the like
-   * parts x_k of the cell's shape, the strain that cells of one layer need to
-   * bend is kept (Belytschko and Bindeman 1993, Puso 2000):
+   * the patch test is passed (Flanagan and Belytschko 1981). The rest is the
+   * hourglass motion without its part in G, q_k = v_k - G x_k, with the
+   * corresponding parts x_k of the cell's shape. Of its strain, the part that a
+   * single layer of cells needs in bending is kept (Belytschko and Bindeman
+   * 1993, Puso 2000):
    *
    * - In the plane of the edges l and m, the strain that varies along xi_k,
    *   with the stress of a plate, which is zero across the plane. That is the
@@ -30,11 +31,11 @@ namespace Voussoir
    * in parallelepipeds they are orthogonal to each other and to the mean
    * strain.
    *
-   * Their stiffness is that of an isotropic elastic material, always. So it
-   * makes or loses no energy, and a cracked cell keeps its shape, but its own
-   * resistance to bending as well: 1/n^2 of that of a wall of n cells. A wall
-   * of one cell, whose point lies where bending makes no strain, cannot crack
-   * in bending anyway.
+   * Their stiffness is always that of an isotropic elastic material. So the
+   * stabilisation neither generates nor dissipates energy, and a cracked cell
+   * keeps its shape; but it also keeps its own resistance to bending, 1/n^2 of
+   * that of a wall of n cells. A wall of one cell cannot crack in bending
+   * anyway, as bending causes no strain at its point.
    */
   template <typename Number>
   class OnePointShape
@@ -43,20 +44,22 @@ namespace Voussoir
     explicit OnePointShape(const Discretization::MatrixFree &)
     {}
 
-    /** Components one by one, in the order of the nodes: of node v entry
-     *  8 d + v. */
+    /** Component by component, in the order of the nodes: component d of node v
+     *  is entry 8 d + v. */
     using Values = std::array<Number, 24>;
 
-    /** Finds the shape of the cells with these corners [m], which are spoilt.
+    /** Finds the shape of the cells with these corners [m], which are
+     *  overwritten.
      */
     void
     reinit(Values &corners);
 
-    /** Evaluates the gradient of these values, which are spoilt. */
+    /** Evaluates the gradient of these values, which are overwritten. */
     void
     evaluate_gradients(Number *values);
 
-    /** Evaluates the values in the centre, and spoils those of the nodes. */
+    /** Evaluates the values in the centre, and overwrites those of the nodes.
+     */
     void
     evaluate_values(Number *values);
 
@@ -96,8 +99,8 @@ namespace Voussoir
     submit_stabilisation(const double young_modulus,
                          const double poisson_ratio);
 
-    /** Puts the thermal strain of the temperature, whose values have been
-     *  evaluated, into the place of the stabilised strain. */
+    /** Replaces the stabilised strain by the thermal strain of the temperature,
+     *  whose values must have been evaluated. */
     void
     expand(const double expansion);
 

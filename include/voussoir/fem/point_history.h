@@ -13,7 +13,7 @@ namespace Voussoir
   /**
    * State of an integration point that has left the elastic range, beside the
    * internal variables of its law: its crack, and its last step, to which the
-   * energy of the next one refers. See DampedResponse.
+   * energy of the next step refers. See DampedResponse.
    */
   struct ActivePoint
   {
@@ -44,8 +44,8 @@ namespace Voussoir
 
 
   /** Energy that has been lost at the points since the start, of this rank [J]:
-   *  by the law in cracks and plastic flow, by cracks that close, and the work
-   *  on damping, which is stored in part, at points beyond the elastic range.
+   *  by the law in cracks and plastic flow, by closing cracks, and the work on
+   *  damping at points beyond the elastic range, of which a part is stored.
    */
   struct PointLosses
   {
@@ -107,8 +107,9 @@ namespace Voussoir
       return points->per_cell;
     }
 
-    /** The numbers of point @p q of the cells of a batch. Those of a point that
-     *  is elastic are zero; if they are changed, it must be activated. */
+    /** Internal variables of point @p q of the cells of a batch. They are zero
+     *  at an elastic point; if they are changed, the point must be activated.
+     */
     Lanes *
     values(const unsigned int batch, const unsigned int q)
     {
@@ -142,7 +143,8 @@ namespace Voussoir
       return active_points[active[index(batch, q)] - 1];
     }
 
-    /** The point has left the elastic range, with its present numbers. */
+    /** Marks a point as beyond the elastic range, with its present internal
+     *  variables. */
     void
     activate(const unsigned int batch,
              const unsigned int q,
@@ -183,14 +185,15 @@ namespace Voussoir
       return static_strains->elastic[index(batch, q)];
     }
 
-    /** Whether there has been a static state; without, both are zero. */
+    /** Whether there has been a static state; without one, e_0 and e_s are
+     *  zero. */
     bool
     has_static_strains() const
     {
       return static_strains != nullptr;
     }
 
-    /** Sets both to zero, of this history alone and not of its copies. */
+    /** Sets e_0 and e_s to zero, in this history and not in its copies. */
     void
     make_static_strains();
 
@@ -198,9 +201,9 @@ namespace Voussoir
     const std::vector<std::pair<Discretization::Cell, Place>> &
     cells() const;
 
-    /** Energy of the Maxwell branches above the least for their sum [J/m3],
-     *  which the energy balance stores at elastic points until they leave the
-     *  elastic range; zero before the first one. */
+    /** Imbalance of the Maxwell branches [J/m3], see DampedResponse, which the
+     *  energy balance stores at elastic points until they leave the elastic
+     *  range; zero before the first balance. */
     Lanes &
     imbalance(const unsigned int batch, const unsigned int q)
     {
@@ -219,15 +222,15 @@ namespace Voussoir
     dealii::SymmetricTensor<2, 3>
     stress(const Place &place, const unsigned int q) const;
 
-    /** Strain e passed to the law of such a point [1], less the elastic one
-     *  of its stress, C^-1 : sigma. */
+    /** Strain e passed to the law at such a point [1], less the elastic strain
+     *  C^-1 : sigma of its stress. */
     dealii::SymmetricTensor<2, 3>
     inelastic_strain(const Place       &place,
                      const unsigned int q,
                      const double       young_modulus,
                      const double       poisson_ratio) const;
 
-    /** The numbers of one point of one cell. */
+    /** Internal variables of one point of one cell. */
     std::vector<double>
     read(const Place &place, const unsigned int q) const;
 
@@ -235,7 +238,7 @@ namespace Voussoir
     KeyedValues
     checkpoint_values();
 
-    /** Since the start. */
+    /** Losses since the start. */
     PointLosses losses;
 
   private:
@@ -274,7 +277,7 @@ namespace Voussoir
       numbers; // of elastic points, then of the others
     dealii::AlignedVector<Lanes> imbalances;
 
-    // place among the points that have left the elastic range, from one; or 0
+    // place among the points beyond the elastic range, from one; 0: elastic
     std::vector<unsigned int>          active;
     dealii::AlignedVector<ActivePoint> active_points;
   };
@@ -289,7 +292,8 @@ namespace Voussoir
   public:
     MaterialMemory() = default;
 
-    /** @param widths numbers of a point of each material; points begin at zero
+    /** @param widths internal variables of a point of each material, zero at
+     *  first
      */
     MaterialMemory(const Discretization            &discretization,
                    const std::vector<unsigned int> &widths);

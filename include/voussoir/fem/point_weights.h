@@ -18,17 +18,18 @@ namespace Voussoir
   std::vector<NamedPoint>
   parse_points(const std::string &text, const std::string &place);
 
-  /** Place of a point in the reference cell, where it is in or on this cell. */
+  /** Place of a point in the reference cell, if the point is in or on this
+   *  cell. */
   std::optional<dealii::Point<3>>
   unit_place(const Discretization       &discretization,
              const Discretization::Cell &cell,
              const dealii::Point<3>     &point);
 
   /**
-   * Interpolation weights at points of the mesh. Every rank holds those of its
-   * own nodes; the sum over the ranks is the value at the point. Where results
-   * are reproducible, each node has a part of its own, so that the parts of a
-   * point, summed last and in turn, are the same on any partition.
+   * Interpolation weights at points of the mesh. Every rank has the weights of
+   * its own nodes; the sum over the ranks is the value at the point. If results
+   * are reproducible, each node has a part of its own: the parts of a point are
+   * the same on any partition, and are summed last and in order.
    */
   class PointWeights
   {

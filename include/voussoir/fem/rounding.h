@@ -11,7 +11,8 @@ namespace Voussoir
    * Makes sums over cells independent of their order, bit for bit: each part is
    * rounded to a multiple of one quantum beforehand, so that sums of less than
    * 2^53 quanta are exact (the pre-rounding of Demmel and Nguyen 2013). Parts
-   * take up to 47 bits, which leaves six for as many as meet in a node.
+   * take up to 47 bits, which leaves six for the number of parts that meet in a
+   * node.
    */
   class Rounding
   {
@@ -28,7 +29,7 @@ namespace Voussoir
     void
     operator()(Lanes *parts, const unsigned int n)
     {
-      // in registers: for all that the compiler knows, parts may be members
+      // kept in registers: the compiler cannot exclude that parts are members
       const Lanes by   = shift;
       Lanes       most = largest;
       for (unsigned int i = 0; i < n; ++i)

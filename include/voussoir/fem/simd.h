@@ -12,8 +12,8 @@ namespace Voussoir
   /** The SIMD type of all cell work: one cell per lane. */
   using Lanes = dealii::VectorizedArray<double>;
 
-  /** Two batches of cells at a time in single precision, unless a batch is one
-   *  cell. */
+  /** Whether single precision takes two batches of cells at a time: unless a
+   *  batch is one cell. */
   constexpr bool has_singles = Lanes::size() > 1;
   using Singles =
     std::conditional_t<has_singles,
@@ -96,8 +96,8 @@ namespace Voussoir
     return tensor;
   }
 
-  /** SIMD lanes of a number type, and access to one of them: where a law must
-   *  be evaluated point by point. */
+  /** SIMD lanes of a number type, and access to one of them, for laws that are
+   *  evaluated point by point. */
   template <typename Number>
   constexpr unsigned int
   n_lanes()

@@ -25,11 +25,11 @@ namespace Voussoir
       , corners(matrix_free.single_corners.lock())
     {}
 
-    /** Components one by one: of node v entry 8 d + v. */
+    /** Component by component: component d of node v is entry 8 d + v. */
     using Values = std::array<Singles, 24>;
 
-    /** The nodes of @p n batches from @p batch on; of one, both halves of the
-     *  values are the same. */
+    /** The nodes of @p n batches from @p batch on; with one batch, both halves
+     *  of the values are the same. */
     void
     reinit(const unsigned int batch, const unsigned int n);
 

@@ -40,7 +40,7 @@ namespace Voussoir
               const LumpedMass     &mass,
               const StepLimits     &limits);
 
-  /** The undamped limit of each cell by itself, and the cell that governs. */
+  /** The undamped limit of each cell by itself, and the governing cell. */
   class ElementSteps
   {
   public:
@@ -48,7 +48,7 @@ namespace Voussoir
                  const InternalForce       &force,
                  const std::vector<double> &density);
 
-    /** Prints the histogram and the cell that governs, on the first rank. */
+    /** Prints the histogram and the governing cell, on the first rank. */
     void
     print(std::ostream &out) const;
 

@@ -8,8 +8,8 @@ namespace Voussoir
 {
   /**
    * Energy that nodal vectors have supplied and dissipated since the start, of
-   * this rank [J]. Energy that the cells take is in the internal variables of
-   * their points and in the energy balance.
+   * this rank [J]. Energy of the cells is in the internal variables of their
+   * points and in the energy balance.
    */
   struct EnergyAccounts
   {
@@ -30,7 +30,8 @@ namespace Voussoir
     Sum loss_by_mass;        // mass-proportional damping
   };
 
-  /** All that changes with time; a checkpoint holds these and nothing else. */
+  /** All quantities that change with time, which are the contents of a
+   *  checkpoint. */
   struct State
   {
     /** Displacement u_n at `time` [m]. */

@@ -9,7 +9,7 @@
 
 namespace Voussoir
 {
-  /** Trilinear cells of a batch, in the place of FEEvaluation. */
+  /** Trilinear cells of a batch, in place of FEEvaluation. */
   template <template <typename> class Shape>
   class TrilinearCells : public Shape<Lanes>
   {

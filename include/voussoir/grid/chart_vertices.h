@@ -21,8 +21,8 @@ namespace Voussoir
   positions(const dealii::Triangulation<3> &triangulation,
             const CoarseMesh::Chart        &chart);
 
-  /** Moves vertices from the coordinates of the chart into space. No refinement
-   *  must follow. */
+  /** Moves vertices from the coordinates of the chart into space. The
+   *  triangulation must not be refined afterwards. */
   void
   place_vertices(
     const CoarseMesh::Chart                           &chart,

@@ -18,8 +18,8 @@ namespace Voussoir
                const std::string              &place);
 
   /**
-   * Distance of points to the faces of some face sets, on all ranks: each holds
-   * all faces, in a search tree.
+   * Distance of points to the faces of some face sets. Every rank holds all
+   * faces, in a search tree.
    */
   class FaceDistance
   {

@@ -26,11 +26,11 @@ namespace Voussoir
   /**
    * The distributed triangulation with its materials and named sets.
    *
-   * They are those of the coarse mesh; refined cells and faces belong to the
-   * material and the sets of the coarse cell or face they lie in. deal.II's
-   * material_id of a cell is the number of its tag: there is one tag for each
-   * combination of material and sets that occurs. Set names are checked when
-   * they are looked up, with the known names in the message.
+   * Materials and sets are those of the coarse mesh; refined cells and faces
+   * belong to the material and the sets of the coarse cell or face they lie in.
+   * deal.II's material_id of a cell is the number of its tag: there is one tag
+   * for each combination of material and sets that occurs. Set names are
+   * checked when they are looked up, with the known names in the message.
    *
    * Cells of a mesh with a chart are refined in its coordinates, and then all
    * vertices are moved to their places in space; hanging ones to the middle of
@@ -53,13 +53,13 @@ namespace Voussoir
     };
 
     /** With METIS only the first rank of each machine needs the cells of the
-     *  mesh, the others the names of its sets and their faces. */
+     *  mesh; the others need the names of its sets and their faces. */
     Grid(const CoarseMesh     &mesh,
          const GridParameters &parameters,
          const Materials      &materials,
          const MPI_Comm        communicator);
 
-    /** Of one material. */
+    /** A grid of one material. */
     Grid(const CoarseMesh     &mesh,
          const GridParameters &parameters,
          const MPI_Comm        communicator);
@@ -88,7 +88,7 @@ namespace Voussoir
     std::vector<bool>
     tags_in(const std::vector<std::string> &cell_sets) const;
 
-    /** A face of a cell of this rank, or of one beside those. */
+    /** A face of a cell of this rank, or of a neighbouring cell. */
     struct Face
     {
       ActiveCell   cell;
@@ -112,8 +112,8 @@ namespace Voussoir
                   const std::function<void(const ActiveCell &,
                                            const unsigned int)> &visit) const;
 
-    /** Number of a locally owned active cell among those, from zero, in their
-     *  order. */
+    /** Number of an active cell among the locally owned ones, from zero, in
+     *  their order. */
     unsigned int
     owned_cell(const Cell &cell) const;
 
@@ -123,11 +123,11 @@ namespace Voussoir
     const std::vector<std::string> &
     face_set_names() const;
 
-    /** Refuses a name that is no cell set; @p place names where it was read. */
+    /** Refuses a name that is no cell set; @p place names the entry. */
     void
     check_cell_set(const std::string &name, const std::string &place) const;
 
-    /** Refuses a name that is no face set; @p place names where it was read. */
+    /** Refuses a name that is no face set; @p place names the entry. */
     void
     check_face_set(const std::string &name, const std::string &place) const;
 
@@ -154,7 +154,8 @@ namespace Voussoir
                  const GridParameters                          &parameters,
                  const Materials                               &materials);
 
-    /** From the first rank, since not all need have the coarse cells. */
+    /** Sends the tags from the first rank, since others may lack the coarse
+     *  cells. */
     void
     share_tags();
 
@@ -167,7 +168,8 @@ namespace Voussoir
     void
     find_faces(const CoarseMesh &coarse);
 
-    /** In the coordinates of the chart, if the mesh has one. */
+    /** Makes the coarse triangulation, in the coordinates of the chart if the
+     *  mesh has one. */
     void
     create_coarse(const CoarseMesh                              &coarse,
                   const std::vector<dealii::types::material_id> &tags,

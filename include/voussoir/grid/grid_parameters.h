@@ -33,8 +33,8 @@ namespace Voussoir
   };
 
 
-  /** The entries of the section "Mesh" that do not depend on where it comes
-   *  from. */
+  /** The entries of the section "Mesh" that do not depend on the source of the
+   *  mesh. */
   struct GridParameters
   {
     unsigned int global_refinement = 0;
@@ -42,7 +42,7 @@ namespace Voussoir
     Partition    partition = Partition::p4est;
 
     /** Nodes per length of the S waves of this frequency [Hz], down to which
-     *  cells are refined; none are if it is zero. */
+     *  cells are refined; zero: no refinement. */
     double nodes_per_wavelength = 0., highest_frequency = 10.;
 
     /** Numbers of ranks for which a partition is counted, see
@@ -52,7 +52,7 @@ namespace Voussoir
     void
     declare(dealii::ParameterHandler &prm);
 
-    /** The items of `local_refinement`; throws UserError if they are none. */
+    /** The items of `local_refinement`; throws UserError for other text. */
     std::vector<LocalRefinement>
     local_refinements() const;
 

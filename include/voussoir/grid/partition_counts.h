@@ -6,7 +6,7 @@
 namespace Voussoir
 {
   /** Size of the exchange between ranks if a mesh were distributed to a given
-   *  number of them. */
+   *  number of ranks. */
   struct PartitionCounts
   {
     unsigned int ranks;
@@ -26,9 +26,9 @@ namespace Voussoir
 
   /**
    * Distributes the cells as p4est does, in the order of its trees and by their
-   * cost, and counts the nodes that ranks share, without running them. Nodes
-   * are those of degree 1; each belongs to the first rank at it, and the others
-   * exchange it with that one. All ranks must call this together.
+   * cost, and counts the nodes that ranks share, without starting these ranks.
+   * Nodes are those of degree 1; each belongs to the first rank at it, and the
+   * others exchange it with that one. All ranks must call this together.
    *
    * @param cost of a cell, as for the balance of ranks
    */

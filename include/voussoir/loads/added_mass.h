@@ -49,10 +49,10 @@ namespace Voussoir
    * level, where the water is H deep in the same section across the valley, a
    * facet with normal n and area A carries
    *   M_a = 7/8 rho sqrt(H h) A n n^T .
-   * By nodal quadrature, so that all parts are positive. It stands for
-   * incompressible water, which is good below c/4H. The direction of the river
-   * is that of the resultant of the water pressure: horizontal, along the sum
-   * of -n A.
+   * Nodal quadrature makes all parts positive. The added mass stands for
+   * incompressible water, a valid model at frequencies below c/4H. The
+   * direction of the river is that of the resultant of the water pressure:
+   * horizontal, along the sum of -n A.
    *
    * @param density of the water [kg/m3]
    */

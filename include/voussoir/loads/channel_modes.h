@@ -7,7 +7,7 @@
 
 namespace Voussoir
 {
-  /** Modes across a channel: above the cut-off frequency of one its wave
+  /** Modes across a channel: above the cut-off frequency of a mode its wave
    *  travels along the channel. */
   struct ChannelModes
   {
@@ -29,7 +29,7 @@ namespace Voussoir
    * @param in_surface nodes of the free surface, with s = 0
    * @param speed     c [m/s]
    * @param number    of modes, at most
-   * @return without decay; the same on every rank
+   * @return modes without decay, the same on every rank
    */
   ChannelModes
   find_channel_modes(const dealii::SparseMatrix<double> &stiffness,

@@ -8,8 +8,8 @@ namespace Voussoir
 {
   /**
    * The layers of the side faces of a model, on its levels. Levels are left out
-   * where the elements between them would not be stable at the time step (such
-   * levels belong to no regular side mesh).
+   * where the elements between them would not be stable at the time step (a
+   * regular side mesh has no such levels).
    */
   std::vector<WaveColumn::Layer>
   layers_of_sides(const std::vector<SideFace>         &faces,
@@ -55,7 +55,7 @@ namespace Voussoir
    * The wave that must enter at the base for the surface of the column to move
    * as @p surface does, by Fourier transform of the column's response to a
    * pulse. Frequencies above @p maximum_frequency [Hz] are removed. Responses
-   * without end are followed up to the time @p longest [s]. Throws UserError if
+   * without end are computed up to the time @p longest [s]. Throws UserError if
    * the column's response does not die out.
    */
   GroundMotionSignals

@@ -11,18 +11,18 @@ namespace Voussoir
 {
   /**
    * The flux through the radiating end of the water, in steps like those of
-   * WaterMotion. The motion of the walls at the end makes a pressure p_f that
-   * does not change along the far reservoir (with vertical motion that of a
+   * WaterMotion. The motion of the walls at the end causes a pressure p_f that
+   * is constant along the far reservoir (under vertical motion, that of a
    * column of water),
    *   1/(rho c^2) V dp_f/dt + C p_f = -V/(rho M) K I_f - flux ,
    *   dI_f/dt = p_f ,
    * with the flux of the walls and the symbols of ReservoirEnd. Only the
-   * pressure scattered by the dam, p - p_f, travels along the channel: in its
-   * mode of frequency omega and decay b the water flows out with sqrt(s^2 + 2 b
-   * s + omega^2) / (rho c s) M (p - p_f) in terms of the Laplace variable s,
-   * which below omega is no dashpot but a spring. Above 1/(rho c) it is a
-   * convolution of the impulse with exp(-b t) J_1(w t) w / t, w^2 = omega^2 -
-   * b^2, here a sum of exponentials (Alpert, Greengard and Hagstrom 2002,
+   * pressure scattered by the dam, p - p_f, travels along the channel: in a
+   * channel mode of frequency omega and decay b the outflow is sqrt(s^2 + 2 b s
+   * + omega^2) / (rho c s) M (p - p_f) with the Laplace variable s, below omega
+   * a spring instead of a dashpot. The part beyond 1/(rho c) is a convolution
+   * of the impulse with exp(-b t) J_1(w t) w / t, w^2 = omega^2 - b^2, here a
+   * sum of exponentials (Alpert, Greengard and Hagstrom 2002,
    * doi:10.1006/jcph.2002.7093).
    */
   class EndMotion
@@ -35,9 +35,9 @@ namespace Voussoir
     /**
      * Advances to p_(n+1) of the free field.
      * @param pressure of the water at the beginning of the step [Pa]
-     * @param flux     of the walls at the half step [m3/s]; at the nodes of the
-     * end the flux through the end is added, except M p / (rho c) at the middle
-     * of the step
+     * @param flux of the walls at the half step [m3/s]; gets, at the nodes of
+     * the end, the flux through the end, except M p / (rho c) at the middle of
+     * the step
      */
     void
     advance(const Vector &pressure, Vector &flux);
@@ -53,7 +53,8 @@ namespace Voussoir
     load(const nlohmann::json &saved);
 
   private:
-    /** [m/s] for each mode; @p size is the integral of M (p - p_f) with it. */
+    /** Sets the response of each mode [m/s]; @p size is the integral of M (p -
+     *  p_f) times the shape of each mode. */
     void
     advance_modes(const double *size);
 

@@ -23,8 +23,8 @@ namespace Voussoir
    * The nodal forces of a traction on faces, integrated by Gauss points.
    *
    * @param sets  face sets, at least one; @p place names the entry in messages
-   * @param kink  elevation at which the traction begins or ends [m]; the
-   *   parts of a face above and below are integrated by themselves
+   * @param kink elevation at which the traction begins or ends [m]; the parts
+   *   of a face above and below are integrated separately
    */
   std::vector<NodalForce>
   face_forces(const Discretization           &discretization,
@@ -44,8 +44,8 @@ namespace Voussoir
                         const double                    level,
                         const double                    gradient);
 
-  /** The resultant of such a pressure by areas and depths of small parts of the
-   *  faces, which are bilinear between their corners [N]. */
+  /** The resultant of the same pressure by areas and depths of small parts of
+   *  the faces, which are bilinear between their corners [N]. */
   dealii::Tensor<1, 3>
   depth_pressure_resultant(const Discretization           &discretization,
                            const std::vector<std::string> &sets,

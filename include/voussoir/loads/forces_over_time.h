@@ -6,8 +6,8 @@
 
 namespace Voussoir
 {
-  /** Common part of loads with forces on nodes that a factor over time
-   *  multiplies. */
+  /** Common part of loads whose nodal forces are multiplied by a factor over
+   *  time. */
   class ForcesOverTime : public Load
   {
   public:
@@ -18,7 +18,8 @@ namespace Voussoir
     add_forces(const double time, NodalForces &forces) const override;
 
   protected:
-    /** @param expression default of the factor; empty: there need be none */
+    /** @param expression default of the factor; empty: the factor is optional
+     */
     explicit ForcesOverTime(const std::string &expression = "1");
 
     TimeFactor factor;

@@ -57,7 +57,7 @@ namespace Voussoir
     virtual void
     advance(const double time) = 0;
 
-    /** Numbers from which the next step continues, the same on all ranks. */
+    /** State from which the next step continues, the same on all ranks. */
     virtual std::vector<double>
     save() const
     {

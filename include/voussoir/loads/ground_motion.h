@@ -17,7 +17,7 @@
 
 namespace Voussoir
 {
-  /** Components in x, y, z; null where the ground does not move. */
+  /** Components in x, y, z; null for a component without motion. */
   using GroundMotionSignals = std::array<std::unique_ptr<Signal>, 3>;
 
   enum class GroundMotionType
@@ -79,7 +79,7 @@ namespace Voussoir
   {
     GroundMotionType type = GroundMotionType::none;
 
-    /** Not used by the program; see its entry. */
+    /** Place of the given motion. */
     MotionPlace given_at = MotionPlace::outcrop;
 
     /** The entries "Peak acceleration x", y and z. */
@@ -87,7 +87,8 @@ namespace Voussoir
       {as_recorded, as_recorded, as_recorded}};
 
     /** Largest acceleration of a component before the overload factor [g]; none
-     *  for an unscaled record, with which other types have no motion. */
+     *  for "as recorded", which with other types than a record means no motion.
+     */
     std::optional<double>
     peak_acceleration(const unsigned int component) const;
 
@@ -95,11 +96,11 @@ namespace Voussoir
     bool
     has_record(const unsigned int component) const;
 
-    std::string reversed; // components whose sign is turned
+    std::string reversed; // components of reversed sign
 
     double overload_factor = 1.;
 
-    /** As entries and messages have them. */
+    /** Names in entries and messages. */
     static inline const std::array<std::string, 3> axis_names{{"x", "y", "z"}};
     static inline const std::array<std::string, 3> axis_meanings{
       {"across the valley", "along the river", "vertical"}};
@@ -169,9 +170,9 @@ namespace Voussoir
     warnings() const;
 
     /**
-     * The motion in SI units, all factors included; nothing but null pointers
-     * for the type none. Paths of records are relative to @p folder, the one
-     * of the parameter file. Throws UserError on unreadable records.
+     * The motion in SI units, all factors included; for the type none, all
+     * pointers are null. Paths of records are relative to @p folder, that of
+     * the parameter file. Throws UserError on unreadable records.
      *
      * @param fits if not null, gets the misfit of records to the spectrum that
      * they are matched to
@@ -193,11 +194,11 @@ namespace Voussoir
     bool
     moves(const unsigned int component) const;
 
-    /** 1, or -1 if it is reversed. */
+    /** 1, or -1 if the component is reversed. */
     double
     sign(const unsigned int component) const;
 
-    /** From records that are matched to a spectrum. */
+    /** The motion of records that are matched to a spectrum. */
     GroundMotionSignals
     build_matched(const std::string        &folder,
                   std::vector<SpectrumFit> *fits) const;

@@ -15,9 +15,9 @@
 namespace Voussoir
 {
   /**
-   * A load of a case: a named section of the parameter file. It belongs to the
-   * static stage that names it and stays as it is afterwards, or else acts from
-   * the beginning of the earthquake.
+   * A load of a case: a named section of the parameter file. It is applied in
+   * the static stage that names it and constant afterwards; a load that no
+   * stage names acts from the beginning of the earthquake.
    */
   class Load
   {
@@ -27,8 +27,8 @@ namespace Voussoir
     virtual void
     declare_parameters(dealii::ParameterHandler &prm) = 0;
 
-    /** Finds the nodes it acts on; @p place is the path of its section in the
-     *  file. */
+    /** Finds the nodes that the load acts on; @p place is the path of its
+     *  section in the file. */
     virtual void
     prepare(const Solid         &solid,
             const ParameterFile &file,
@@ -47,16 +47,16 @@ namespace Voussoir
     add_forces(const double, NodalForces &) const
     {}
 
-    /** Whether it only makes sense in a static stage, because it would be an
-     *  impact if it were applied at once. */
+    /** Whether the load is for static stages only, because its sudden
+     *  application would be an impact. */
     virtual bool
     steady() const
     {
       return false;
     }
 
-    /** Whether it only makes sense outside of the static stages, because it
-     *  changes with time. */
+    /** Whether the load cannot belong to a static stage, because it changes
+     *  with time. */
     virtual bool
     over_time() const
     {
@@ -69,7 +69,7 @@ namespace Voussoir
     {}
 
     /** Resultant by volumes and areas of the mesh alone, to compare with that
-     *  of its steady forces [N]; none if it has none. */
+     *  of the steady forces [N]; none if the load has no such resultant. */
     virtual std::optional<dealii::Tensor<1, 3>>
     resultant_of_geometry() const
     {

@@ -8,7 +8,7 @@ namespace Voussoir
 {
   /**
    * Forces on nodes during the motion: a load, the free field at the absorbing
-   * boundary, water. The time step goes through a list of them.
+   * boundary, water. The time step iterates over a list of them.
    */
   class NodalLoad
   {
@@ -21,8 +21,8 @@ namespace Voussoir
     add_forces(const double, NodalForces &)
     {}
 
-    /** Called with the state at the end of each step, for parts that move
-     *  beside the solid. */
+    /** Called with the state at the end of each step, for parts with a motion
+     *  of their own. */
     virtual void
     end_step(const State &)
     {}

@@ -15,15 +15,16 @@ namespace Voussoir
    * coefficients and its coupling to the solid. Its equation, with the pressure
    * impulse I = integral of p dt, 1/(rho c^2) M dp/dt + C p = -1/rho K I - sum
    * A.v ,  dI/dt = p, with the wall's velocity v and the nodal area vectors A
-   * out of the water; C holds the radiating end, 1/(rho c) per area, and the
+   * out of the water; C contains the radiating end, 1/(rho c) per area, and the
    * absorbing bottom; the end acts on the pressure less its free field
-   * (EndMotion). The forces on the solid are A p. WaterMotion marches it.
+   * (EndMotion). The forces on the solid are A p. WaterMotion integrates the
+   * equation in time.
    */
   class Reservoir
   {
   public:
     /**
-     * @param water  as split_off_reservoir() makes it
+     * @param water result of split_off_reservoir()
      *
      * Throws UserError if face sets are missing or nodes do not coincide.
      */
@@ -60,11 +61,11 @@ namespace Voussoir
     };
     std::vector<WallNode> wall_nodes;
 
-    /** The same for the floor of the water where it meets no solid; it moves
+    /** The same for the floor of the water without solid below, which moves
      *  with a rigid base. */
     std::vector<WallNode> floor_nodes;
 
-    /** Owned unknowns that lose energy. */
+    /** Owned unknowns with dashpots. */
     std::vector<unsigned int> lossy_nodes;
 
     /** The radiating end, or null. */
@@ -78,7 +79,8 @@ namespace Voussoir
     Vector
     create_wall_vector() const;
 
-    /** wall += A v of all wet nodes, on the ranks that own the water's. */
+    /** wall += A v of all wet nodes, on the ranks that own the unknowns of the
+     *  water. */
     void
     gather_flux(Vector &wall, const Vector &velocity) const;
 

@@ -10,12 +10,12 @@ namespace Voussoir
   /**
    * The section of the reservoir at its radiating end, behind which the far
    * reservoir continues as a channel of this section. All ranks hold the whole
-   * section: its free field and its modes are marched by EndMotion.
+   * section. EndMotion integrates its free field and its modes in time.
    */
   class ReservoirEnd
   {
   public:
-    /** The water that ends here. */
+    /** Data of the water that ends at the section. */
     struct Water
     {
       double        density, speed;  // rho [kg/m3], c [m/s]

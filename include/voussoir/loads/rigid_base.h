@@ -7,8 +7,8 @@ namespace Voussoir
 {
   /**
    * The base of a model on rigid ground, to which the motion of the model is
-   * relative. Without an earthquake that enters through it, it stays where it
-   * is and the motion is absolute.
+   * relative. If no earthquake enters through the base, it is at rest and the
+   * motion is absolute.
    */
   class RigidBase
   {

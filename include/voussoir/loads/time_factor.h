@@ -13,12 +13,12 @@ namespace Voussoir
   class TimeFactor
   {
   public:
-    /** @param expression default; empty: there need be none */
+    /** @param expression default; empty: the factor is optional */
     explicit TimeFactor(const std::string &expression = "1")
       : expression(expression)
     {}
 
-    /** Whether there is one. */
+    /** Whether there is a factor. */
     bool
     given() const
     {

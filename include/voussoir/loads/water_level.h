@@ -8,7 +8,8 @@ namespace Voussoir
 {
   /**
    * Refuses a level below all faces that should be wet, and warns of a level
-   * above them, unless they are level, as the bed of a reservoir.
+   * above all of them, unless the faces are horizontal, as the bed of a
+   * reservoir.
    *
    * @param sets    face sets; @p place names their entry in messages
    * @param level   elevation of the surface [m], given by @p entry

@@ -12,9 +12,9 @@ namespace Voussoir
 {
   /**
    * Compressible water in motion with the dam, by explicit steps that alternate
-   * with those of the solid. Pressures stand at the steps, the impulse and the
-   * velocity of the solid half way between them, so that the exchange with the
-   * solid is central on both sides and loses no energy:
+   * with those of the solid. Pressures are known at the steps, the impulse and
+   * the velocity of the solid half way between them, so that the exchange with
+   * the solid is central on both sides and loses no energy:
    *   I+ = I- + dt p_n
    *   1/(rho c^2) M (p_(n+1) - p_n)/dt + C (p_(n+1) + p_n)/2
    *     = -1/rho K I+ - sum A.v+ ,
@@ -61,12 +61,13 @@ namespace Voussoir
     advance(const Vector &velocity, const dealii::Tensor<1, 3> &base_velocity);
 
     /** Energy in the water at a step, of all ranks [J]. In a motion that starts
-     *  from rest it is minus the sum of losses and work. */
+     *  from rest this energy is minus the sum of losses and work. */
     double
     stored_energy() const;
 
     /** Difference between the work on the solid and the work of the forces on
-     *  it, by their times, dt/2 p_(n+1).A v+, of all ranks [J]. */
+     *  it, as these are half a step apart, dt/2 p_(n+1).A v+, of all ranks [J].
+     */
     double
     work_ahead(const Vector &velocity) const;
 

@@ -13,12 +13,12 @@ namespace Voussoir
 {
   /**
    * Vertically travelling S waves (x, y) and P wave (z) in horizontal layers: a
-   * column of one-dimensional elements marched with the scheme, the degree, the
-   * quadrature, the damping and the time step of the model, on the levels of
-   * its side faces. A model whose sides are regular then follows it to
+   * column of one-dimensional elements, integrated with the scheme, the degree,
+   * the quadrature, the damping and the time step of the model, on the levels
+   * of its side faces. A model with regular sides then follows the column to
    * round-off.
    *
-   * At the base, rho c (2 v_incident - v) enters; the top is free.
+   * The traction on the base is rho c (2 v_incident - v); the top is free.
    */
   class WaveColumn
   {
@@ -48,7 +48,7 @@ namespace Voussoir
     void
     load(const std::vector<double> &numbers);
 
-    /** Where a level lies: interpolation weights of the nodes around it. */
+    /** Place of a level: interpolation weights of the nodes around it. */
     struct Interpolation
     {
       unsigned int        first_node;

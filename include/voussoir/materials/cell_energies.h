@@ -9,7 +9,7 @@ namespace Voussoir
   /** The loops of CellKernel that sum up energies. */
   namespace CellKernels
   {
-    /** Zero where the point is not elastic. */
+    /** The value where the point is elastic, else zero. */
     inline Lanes
     where_elastic(const PointHistory *history,
                   const unsigned int  batch,
@@ -23,7 +23,7 @@ namespace Voussoir
     }
 
 
-    /** Cells of two batches have no internal variables. */
+    /** Cells in single precision have no internal variables. */
     inline Singles
     where_elastic(const PointHistory *,
                   const unsigned int,
@@ -89,7 +89,7 @@ namespace Voussoir
       /**
        * Adds the energy of a batch, or of two in single precision.
        *
-       * @param cell,moving of the batch; for u, and for v+
+       * @param cell,moving of the batch, for u and for v+
        * @param read   reads a vector into a cell and evaluates its gradients
        * @param reduce makes a number of one number per cell
        */

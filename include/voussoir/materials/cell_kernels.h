@@ -8,8 +8,8 @@ namespace Voussoir
 {
   /**
    * The loops over the cells of a material with a given stress law: the
-   * operations of CellKernel, with the same symbols; those that sum up energies
-   * are in cell_energies.h.
+   * operations of CellKernel, with the same symbols; operations that sum up
+   * energies are in cell_energies.h.
    */
   namespace CellKernels
   {
@@ -185,9 +185,10 @@ namespace Voussoir
             return;
           }
 
-        // What a cell does must not depend on the others of its batch: cells
-        // that are elastic, and not at their limit but for round-off, are so
-        // in single precision beside others that are not.
+        // The response of a cell must not depend on the other cells of its
+        // batch: cells that are elastic, and not within round-off of their
+        // limit, are evaluated in single precision even beside others that are
+        // not elastic.
         const Lanes                 limit = 1. - 1e-5;
         SingleCells<decltype(cell)> two(matrix_free);
         for (unsigned int batch = cells.begin; batch < cells.end; batch += 2)
@@ -332,8 +333,8 @@ namespace Voussoir
     }
 
 
-    /** CellKernel::element_eigenvalues, by power iteration, which 30 products
-     *  bring within one or two per cent. */
+    /** CellKernel::element_eigenvalues, by power iteration; after 30 products
+     *  within one or two per cent. */
     template <typename Law>
     Lanes
     element_eigenvalues(const Law                          &law,

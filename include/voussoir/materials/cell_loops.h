@@ -6,7 +6,7 @@
 
 namespace Voussoir
 {
-  /** What the loops over the cells of a material have in common. */
+  /** Common parts of the loops over the cells of a material. */
   namespace CellKernels
   {
     // degree and number of points are known at run time only: as fast as with
@@ -25,7 +25,7 @@ namespace Voussoir
                          SingleTrilinearCells<OnePointShape>,
                          SingleTrilinearCells<EightPointShape>>;
 
-    /** Calls work(cell) with the kind of these cells. */
+    /** Calls work(cell) with the class of cells that suits these. */
     template <typename Work>
     void
     with_cells(const CellRange &cells, const Work &work)
@@ -38,7 +38,8 @@ namespace Voussoir
         work(Evaluation(cells.matrix_free));
     }
 
-    /** Full integration needs no more than the stress at its points. */
+    /** Stabilises cells with one point; full integration needs no
+     *  stabilisation. */
     template <typename Cell, typename Law>
     void
     stabilise(Cell &cell, const Law &law, const double stress_factor)

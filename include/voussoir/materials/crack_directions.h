@@ -5,7 +5,8 @@
 
 namespace Voussoir
 {
-  /** How a crack would open, or concrete be crushed, under a stress. */
+  /** Direction in which a crack would open, or concrete be crushed, under a
+   *  stress. */
   template <typename Number>
   struct CrackDirections
   {
@@ -16,8 +17,9 @@ namespace Voussoir
     dealii::Tensor<1, 3, Number> tension, compression;
 
     /** Share of `tension` against `compression` in the width of the band: zero
-     *  or one unless both are about as severe. The width must be continuous,
-     *  since otherwise the stress is not, and the search for equilibrium fails.
+     *  or one unless both are about equally severe. The width must be
+     *  continuous; otherwise the stress is not, and the search for equilibrium
+     *  fails.
      */
     Number share_of_tension;
   };

@@ -13,60 +13,63 @@ namespace Voussoir
    * Response of a point of a law with internal variables under a damping
    * model. With
    * - u: displacement [m], B u its strain [1],
-   * - w: damping memory [m], which are filters that follow u, times the damping
-   *   factor, and the mesh viscosity,
+   * - w: damping memory [m]: filters of u, times the damping factor, and the
+   *   mesh viscosity,
    * - D: elastic stiffness of the law [Pa],
    * - k: factor on the stress that makes the moduli hold at the reference
    *   frequency,
    * - e_0: strain offset [1] by static factor and temperature,
-   * - e_s: elastic strain of the static state [1], which damping leaves out,
+   * - e_s: elastic strain of the static state [1], on which damping does not
+   *   act,
    * - e_p: plastic strain of the law [1],
    * - r: share of the stiffness that damage has left before this step [1],
    *
-   * the law gets the strain of which the elastic stress is the total stress of
-   * an elastic point,
+   * the strain passed to the law is the one whose elastic stress is the total
+   * stress of an elastic point,
    *
    *   e = B u + e_0 + (k_r - 1) (B u - e_p - e_s) + r^4 k_r B w ,
    *   1/k_r = 1 - r + r/k ,
    *
-   * so that it fails at its strength at any rate, and the stress is
+   * so that the law fails at its strength at any strain rate. The stress is
    *
    *   sigma(e) - D : (e_0 - (k - 1) e_s) + s n n ,
    *
-   * which as long as the law is elastic, and r = 1, is k D : B (u + w). The
-   * modulus k D instead of D is that of a spring in series with the law, whose
-   * compliance (1/k - 1) D^-1 does not change with damage: it returns its
-   * stored energy as a crack relieves it, and the law dissipates its own
-   * energy, no more or less. Damping must not transmit tension across a crack,
-   * hence the power of r.
+   * or k D : B (u + w) as long as the law is elastic and r = 1. The modulus k D
+   * instead of D is that of a spring in series with the law, whose compliance
+   * (1/k - 1) D^-1 does not change with damage: the spring returns its stored
+   * energy as a crack relieves it, and the law dissipates exactly its own
+   * energy. Damping must not transmit tension across a crack, hence the power
+   * of r.
    *
-   * A crack that closes is an impact: oscillations between the two stiffnesses
-   * of a unilateral crack gain energy, at any time step. While it is closed, is
-   * about to close or has just opened by the traction of its effective stress
-   * across the crack, a viscosity c acts on that traction, s = c d(n . D : B u
-   * . n)/dt , never in a crack that stays open.
+   * The closing of a crack is an impact: oscillations between the two
+   * stiffnesses of a unilateral crack gain energy, at any time step. Therefore
+   * a viscosity c acts on the traction of the effective stress across the
+   * crack, s = c d(n . D : B u . n)/dt , while by this traction the crack is
+   * closed, about to close or just opened; it never acts in a crack that stays
+   * open.
    *
    * Central differences integrate the stress by the trapezoidal rule, so that
    * in a step from a to b there are three kinds of work, each with its own sum:
-   * - (sigma_a + sigma_b) : de/2 on the law. Of it, with the stored energy
-   *   sigma : e_e / 2 of the elastic strain e_e, it loses exactly
+   * - (sigma_a + sigma_b) : de/2 on the law. Of this work, with the stored
+   *   energy sigma : e_e / 2 of the elastic strain e_e, the law dissipates
+   *   exactly
    *     (sigma_a : e_e,b - sigma_b : e_e,a)/2 + (sigma_a + sigma_b) : de_p/2 .
-   *   The loss that the law itself reports goes into the balance instead, so
-   *   that the balance shows a law that reports less or more. Where no internal
+   *   The balance uses the loss that the law itself reports instead, so that it
+   *   reveals a law that reports too little or too much. Where no internal
    *   variable has changed the law is elastic and loses nothing: the remainder
-   *   is then the error of the rule where cracks open and close, which is added
-   *   to the loss of closing.
+   *   is then the error of the trapezoidal rule where cracks open and close,
+   *   and is added to the loss of closing.
    * - (s_a + s_b) n . B du . n / 2 on the viscosity of closing, all of it lost.
    * - (sigma_a + sigma_b) : (B du - de)/2 on damping. Of this work, summed up
    *   since the static state, damping stores
    *     (1/k_r - 1) sigma : e_e / 2
    *     + r^4 [ k (1 + 1/(s sum D_i)) w : D : w / 2 - sigma : w + j ] .
    *   Here j is the imbalance of the branches, the energy that they store above
-   *   the least one for their sum w, k w : D : w / (2 s sum D_i): with that of
-   *   the last energy balance a point leaves the elastic range, and it relaxes
-   *   like the slowest branch. As long as the law is elastic, this and its own
-   *   energy are those of the springs of an elastic point: nothing jumps where
-   *   it leaves the elastic range.
+   *   the least one for their sum w, k w : D : w / (2 s sum D_i). A point
+   *   leaves the elastic range with the j of the last energy balance; from then
+   *   on j relaxes like the slowest branch. As long as the law is elastic, this
+   *   energy and that of the law are those of the springs of an elastic point:
+   *   nothing jumps when a point leaves the elastic range.
    */
   template <typename Law>
   class DampedResponse
@@ -83,7 +86,8 @@ namespace Voussoir
       , memory_factor(k + (branches > 0. ? k / branches : 0.))
     {}
 
-    /** Strain by which the law's elastic stress is above the stress. */
+    /** Strain whose elastic stress is the constant difference between the
+     *  stress of the law and the stress of the equation of motion. */
     SymmetricTensor3<Lanes>
     elastic_offset(const unsigned int  batch,
                    const unsigned int  q,
@@ -98,7 +102,7 @@ namespace Voussoir
      * one step, and sums up the losses.
      *
      * @param elastic    stress if the law is elastic
-     * @param level      of the law, which is elastic where it is not above one
+     * @param level yield ratio: the law is elastic where it is at most one
      * @param filtered   B (u + w)
      * @param own_strain B u
      * @param n_cells    of the batch; further lanes hold copies
@@ -169,7 +173,7 @@ namespace Voussoir
           const Lanes largest_energy =
             std::abs(now.stress * response.elastic_strain) +
             std::numeric_limits<double>::min();
-          // less the known loss, however small
+          // less the loss that the law reports, however small
           const Lanes switched =
             0.5 * (last.stress * response.elastic_strain -
                    now.stress * (last.law_strain - last.plastic)) -
@@ -227,8 +231,8 @@ namespace Voussoir
     }
 
     /**
-     * Converts a point from the law of the static state: its stress stays, and
-     * `law_strain` becomes the strain at which this law has this stress.
+     * Converts a point from the law of the static state: it keeps its stress,
+     * and `law_strain` becomes the strain at which this law has that stress.
      */
     void
     hand_over(const Law         &static_law,
@@ -266,7 +270,8 @@ namespace Voussoir
     }
 
     /**
-     * Sets e_0 and e_s of a point, with the static factor a of an elastic one,
+     * Sets e_0 and e_s of a point; for an elastic one, with the static factor
+     * a,
      *   e_0 = (a - 1) B u_s - a alpha T I ,   e_s = B u_s - e_p .
      *
      * @param strain      B u_s
@@ -413,8 +418,9 @@ namespace Voussoir
               stress * filter + imbalance);
     }
 
-    /** 1 in cells whose law leaves the elastic range in this step, else 0; the
-     *  internal variables stay zero and @p now has no band while it is elastic.
+    /** 1 in cells whose law leaves the elastic range in this step, else 0;
+     *  while a cell is elastic its internal variables stay zero and @p now has
+     *  no band.
      */
     static Lanes
     find_beginning(const ActivePoint &last,
@@ -427,7 +433,7 @@ namespace Voussoir
       for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
         if (last.band[lane] == 0.)
           {
-            // by itself, this cell would not have been evaluated
+            // alone, this cell would not have been evaluated
             if (lanes_are_alone && !(level[lane] > 1.))
               for (unsigned int i = 0; i < Law::n_history; ++i)
                 values[i][lane] = 0.;
@@ -472,7 +478,7 @@ namespace Voussoir
              std::sqrt(of_flow);
     }
 
-    /** Bands, of any normal where the point is elastic. */
+    /** Widths of bands; of elastic points, the width for any normal. */
     static Lanes
     band_of(const ActivePoint  &point,
             const PointHistory &history,
@@ -482,7 +488,7 @@ namespace Voussoir
         point.band, Lanes(0.), history.bands(batch).widest, point.band);
     }
 
-    /** Where there is no band yet, that of the crack that would open now. */
+    /** Sets a missing band to that of the crack that would open now. */
     void
     find_bands(const CrackBands &bands, ActivePoint &point) const
     {
@@ -506,7 +512,7 @@ namespace Voussoir
         compare_and_apply_mask<Comparison::equal>(known, zero, band, known);
     }
 
-    /** s of a crack that closes [Pa]; both stresses effective. */
+    /** s of a closing crack [Pa], from effective stresses. */
     static Lanes
     impact(const SymmetricTensor3<Lanes> &change,
            const SymmetricTensor3<Lanes> &stress,

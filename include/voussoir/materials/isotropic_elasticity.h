@@ -6,8 +6,8 @@
 namespace Voussoir
 {
   /**
-   * Damage at the modulus E with the stress and inelastic strain that a damage
-   * d has at the modulus a E of the static state: the effective strain is
+   * Damage at the modulus E that has the stress and the inelastic strain of a
+   * damage d at the modulus a E of the static state: the effective strain is
    * multiplied by a (1 - d + d/a) , and the damage d' = (d/a) / (1 - d + d/a) .
    */
   struct DamageHandedOver

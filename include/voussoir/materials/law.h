@@ -14,18 +14,18 @@ namespace Voussoir
   struct PointResponse;
 
   /**
-   * The contract of a stress law, for whoever adds one. A law is a struct
+   * The contract of a stress law, for those who add one. A law is a struct
    * without mesh, clock and ranks, in one file of its own with the line
    *
    *   const Registry<Material>::Add<MaterialOf<Law>>
    *     registered_name("name", "One sentence.");
    *
-   * and doc/new_material.md makes one step by step. Its functions are templates
-   * in the type of numbers: `double` for one point by itself, `Lanes` for a
-   * point of as many cells at once. Tension is positive; tensors have their
-   * true components (no doubled shear strains).
+   * See doc/new_material.md for the steps. The functions of a law are templates
+   * in the type of numbers: `double` for a single point, `Lanes` for one point
+   * of each cell of a batch. Tension is positive; tensors have their true
+   * components (no doubled shear strains).
    *
-   * Every law has, most of them from IsotropicElasticity,
+   * Every law has the following, most laws by IsotropicElasticity:
    *
    *     double young_modulus;  // E [Pa]
    *     double poisson_ratio;  // nu [1]
@@ -34,10 +34,10 @@ namespace Voussoir
    *     SymmetricTensor3<Number>
    *     stress(const SymmetricTensor3<Number> &strain) const; // elastic [Pa]
    *
-   * where E and nu are those that waves, boundaries and one-point cells go by.
+   * where E and nu are those of waves, boundaries and one-point cells.
    *
    * A law with internal variables has n_history > 0 of them at each point,
-   * which begin at zero and stay there while it is elastic, and
+   * which begin at zero and stay there while the point is elastic, and
    *
    *     template <typename Number>
    *     PointResponse<Number>
@@ -45,17 +45,17 @@ namespace Voussoir
    *             Number                         *history,
    *             const PointSituation<Number>   &situation) const;
    *
-   * which is the response to the strain e [1] of the point, and updates its
-   * history by one step. Where the response is elastic, it must be `stress`.
-   * It also has, most of them from IsotropicElasticity,
+   * which returns the response to the strain e [1] of the point, and updates
+   * its history by one step. Where the response is elastic, it must be
+   * `stress`. It also has, most laws by IsotropicElasticity,
    *
    *     void set_static(const double factor);
    *
-   * which makes it, once checked, the law of the static state: with its modulus
-   * times the static factor, and strengths without the increase for an
+   * which turns the law, once checked, into that of the static state: its
+   * modulus times the static factor, strengths without the increase for an
    * earthquake.
    *
-   * A law need not have the members that LawDefaults has.
+   * Members that LawDefaults has are optional.
    */
   struct LawDefaults
   {
@@ -72,9 +72,10 @@ namespace Voussoir
     {}
 
     /**
-     * A cheap bound: above one at the elastic limit or before. A point that has
-     * been elastic so far stays elastic without a call of `respond` as long as
-     * this is not above one. By default `respond` is called for every point.
+     * A cheap upper bound of the yield ratio, above one at the elastic limit or
+     * before. As long as it is at most one, a point that has been elastic so
+     * far stays elastic without a call of `respond`. By default `respond` is
+     * called for every point.
      *
      * @param elastic_stress [Pa]
      * @param element_length as in PointSituation [m]
@@ -91,8 +92,8 @@ namespace Voussoir
      * Converts a point from the law of the static state, under which it has
      * left the elastic range: changes the internal variables where they depend
      * on the modulus, and returns the strain e at which this law has the same
-     * stress with them. By default plastic strains stay, and the elastic one
-     * follows the modulus.
+     * stress. By default plastic strains stay, and the elastic strain follows
+     * the modulus.
      *
      * @param strain         e of the law of the static state [1]
      * @param response       of that law
@@ -106,8 +107,8 @@ namespace Voussoir
               const double /*element_length*/,
               const double static_factor) const;
 
-    /** Names of the results from the history, with units; a name that several
-     *  laws share is one field of the pictures. */
+    /** Names of the results from the history, with units; laws that share a
+     *  name share one field of the pictures. */
     static std::vector<std::string>
     output_names()
     {
@@ -122,8 +123,8 @@ namespace Voussoir
       return {};
     }
 
-    /** A sentence for the log if cells as long as this [m] do not suit the
-     *  law; else empty. */
+    /** A sentence for the log if cells of this length [m] do not suit the law;
+     *  else empty. */
     std::string
     remark(const double /*element_length*/) const
     {
@@ -151,8 +152,8 @@ namespace Voussoir
     /** sigma [Pa]. */
     SymmetricTensor3<Number> stress;
 
-    /** e_e [1], of which sigma : e_e / 2 is the stored energy; all of the
-     *  strain unless there is plastic strain. */
+    /** e_e [1], so that sigma : e_e / 2 is the stored energy; all of the strain
+     *  unless there is plastic strain. */
     SymmetricTensor3<Number> elastic_strain;
 
     /** Energy lost in this step to cracks and plastic flow [J/m3], without the

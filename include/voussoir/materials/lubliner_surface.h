@@ -6,8 +6,8 @@
 namespace Voussoir
 {
   /**
-   * Surface of Lubliner et al. (1989), by the uniaxial compression that is as
-   * severe as a stress with the largest principal value s_max:
+   * Surface of Lubliner et al. (1989), by the equivalent uniaxial compression
+   * of a stress with the largest principal value s_max,
    *   [alpha I1 + sqrt(3 J2) + beta <s_max> - gamma <-s_max>] / (1 - alpha) .
    */
   struct LublinerSurface

@@ -40,10 +40,10 @@ namespace Voussoir
 
   /**
    * A material of a case: a named section of the parameter file, the cell sets
-   * it fills, a stress law, and the cell kernel that this law makes. The kernel
-   * gets cells, factors on the moduli and internal variables as arguments; the
-   * law evaluates single points. MaterialOf makes classes of materials from
-   * laws, see law.h.
+   * it fills, a stress law, and the cell kernel of this law. The kernel gets
+   * cells, factors on the moduli and internal variables as arguments; the law
+   * evaluates single points. MaterialOf makes classes of materials from laws,
+   * see law.h.
    */
   class Material : public CellKernel
   {
@@ -71,7 +71,7 @@ namespace Voussoir
 
     /** The material of the static state: with its modulus times the static
      *  factor and its strengths without the increase for an earthquake, if the
-     *  law has internal variables; else itself. */
+     *  law has internal variables; else this material. */
     virtual const Material &
     at_rest() const = 0;
 
@@ -106,7 +106,7 @@ namespace Voussoir
      *   e = k (B (u + s w) - e_i) + a (e_i - alpha T I) .
      *
      * @param filtered       B (u + s w), see CellKernel::add_force
-     * @param initial_strain e_i, which was there before the earthquake
+     * @param initial_strain e_i, from before the earthquake
      * @param temperature    T, its change before the earthquake [K]
      * @param stress_factor  k, see InternalForce
      */
@@ -128,8 +128,8 @@ namespace Voussoir
     virtual std::vector<double>
     outputs(const double *history, const double element_length) const = 0;
 
-    /** A sentence for the log if cells as long as this [m] do not suit the
-     *  law; else empty. */
+    /** A sentence for the log if cells of this length [m] do not suit the law;
+     *  else empty. */
     virtual std::string
     remark(const double element_length) const = 0;
 

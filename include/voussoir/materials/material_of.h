@@ -7,7 +7,7 @@
 
 namespace Voussoir
 {
-  /** The material that a stress law makes; see law.h for what a law is. */
+  /** The material of a stress law; law.h defines a law. */
   template <typename Law>
   class MaterialOf : public Material
   {

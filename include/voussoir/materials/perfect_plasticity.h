@@ -7,9 +7,9 @@
 namespace Voussoir
 {
   /**
-   * Common part of laws of rock with friction and cohesion, which yield without
-   * hardening or softening. Their internal variables are the plastic strain and
-   * the equivalent plastic strain, the sum of sqrt(2/3 de : de).
+   * Common part of the laws of rock with friction and cohesion, which yield
+   * without hardening or softening. Their internal variables are the plastic
+   * strain and the equivalent plastic strain, the sum of sqrt(2/3 de : de).
    */
   struct PerfectPlasticity : IsotropicElasticity, CohesionAndFriction
   {

@@ -27,13 +27,13 @@ namespace Voussoir
     static const std::array<std::string, 6> &
     component_names();
 
-    /** @param element_length of the cell the point stands for [m] */
+    /** @param element_length of the cell that the point represents [m] */
     PointTest(const Material &material,
               const double    element_length,
               const double    time_step);
 
-    /** One step. Throws UserError where no strain gives the wanted stresses, as
-     *  beyond the strength under given stress. */
+    /** One step. Throws UserError if no strain gives the prescribed stresses,
+     *  as beyond the strength. */
     void
     advance(const Controls &controls);
 
@@ -43,10 +43,10 @@ namespace Voussoir
 
     SymmetricTensor3<double> strain, stress;
 
-    /** Work done and lost since the start [J/m3]. */
+    /** Work done and dissipated since the start [J/m3]. */
     double work = 0., dissipated = 0.;
 
-    /** Stored now [J/m3]. */
+    /** Energy stored now [J/m3]. */
     double stored = 0.;
 
   private:

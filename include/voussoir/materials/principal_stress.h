@@ -17,10 +17,10 @@ namespace Voussoir
    * Largest and smallest eigenvalue, without branches, so that it runs at the
    * full SIMD width.
    *
-   * With cos(phi) = J3/2 (3/J2)^(3/2) they are m + 2 sqrt(J2/3) cos(phi/3) and
-   * the same of the negative tensor. As a function of cos(phi/2), cos(phi/3) is
-   * smooth all over [0, 1]; the polynomial interpolates it at Chebyshev's
-   * points, to 2e-12.
+   * With cos(phi) = J3/2 (3/J2)^(3/2) and the mean m, the largest is m + 2
+   * sqrt(J2/3) cos(phi/3); the smallest follows from the negative tensor. As a
+   * function of cos(phi/2), cos(phi/3) is smooth all over [0, 1]; the
+   * polynomial interpolates it at Chebyshev's points, to 2e-12.
    */
   template <typename Number>
   std::pair<Number, Number>

@@ -15,13 +15,13 @@ namespace Voussoir
     std::vector<double> lengths{20., 20., 20.}; // of correlation [m]
     unsigned int        seed = 1, n_classes = 16;
 
-    /** The class that a material is of, from one; 0: of all. */
+    /** The class of a material, counted from one; 0: all classes. */
     unsigned int part = 0;
 
     void
     declare(dealii::ParameterHandler &prm);
 
-    /** Whether a material is to be parted into classes. */
+    /** Whether a material is to be divided into classes. */
     bool
     wanted() const;
   };
@@ -33,7 +33,7 @@ namespace Voussoir
    * It is a sum of cosines whose wave vectors are drawn from the spectral
    * density of that correlation (Shinozuka and Deodatis 1991, with random wave
    * vectors), and so a function of the point alone: neither the mesh nor its
-   * partition matter.
+   * partition matters.
    */
   class RandomField
   {
@@ -53,14 +53,14 @@ namespace Voussoir
     std::vector<Wave> waves;
   };
 
-  /** The class of a value of the field, from zero: all classes are as
-   *  likely. */
+  /** The class of a value of the field, counted from zero; all classes are
+   *  equally likely. */
   unsigned int
   random_class(const double value, const unsigned int n_classes);
 
   /**
-   * Mean in a class of a lognormal factor of mean 1, which is the exponential
-   * of the field. So the mean over all classes is 1.
+   * Mean over a class of a lognormal factor, the exponential of the scaled
+   * field. The mean over all classes is 1.
    *
    * @param variation coefficient of variation of the factor
    */

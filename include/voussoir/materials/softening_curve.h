@@ -14,7 +14,7 @@ namespace Voussoir
    *  is elastic. */
   struct CurveMemory
   {
-    double largest;  // effective strain so far, from which damage grows
+    double largest;  // largest effective strain so far; beyond it damage grows
     double position; // effective strain up to which the curve has been followed
     double last;     // effective elastic strain of the last step
     double damage;
@@ -43,10 +43,10 @@ namespace Voussoir
 
   /**
    * Stress over strain in a uniaxial test beyond the elastic limit, in straight
-   * pieces. The inelastic strain of a node is a strain of the material itself
-   * and a displacement that is smeared over a band, as wide as the element: the
-   * crack band of Bazant and Oh (1983), which makes the energy of a crack the
-   * same on all meshes.
+   * pieces. The inelastic strain of a node is the sum of a strain of the
+   * material itself and of a displacement that is smeared over a band as wide
+   * as the element: the crack band of Bazant and Oh (1983), which makes the
+   * energy of a crack the same on all meshes.
    */
   class SofteningCurve
   {
@@ -91,7 +91,7 @@ namespace Voussoir
      * The curve of the static state, with the same traction over the opening
      * except for the increase of strength in an earthquake. Its points follow
      * the curve exactly instead of by the rule of `go_on`, since a load
-     * increment is no time step: one increment leads to where ten do.
+     * increment is no time step: one increment leads to the same state as ten.
      *
      * @param static_modulus [Pa]
      * @param strength_increase factor that the stresses have in an earthquake
@@ -102,11 +102,11 @@ namespace Voussoir
 
     /**
      * Converts the internal variables of a point from another curve to this
-     * one: at the same damage, so that stress and opening stay as they are
-     * whatever the strength of this curve is.
+     * one: at the same damage, so that stress and opening stay the same for any
+     * strength of this curve.
      *
      * @param damage of the point, with the modulus of this curve
-     * @param elastic_strain effective, of now [1]
+     * @param elastic_strain effective, at present [1]
      */
     void
     hand_over(const double damage,
@@ -114,8 +114,8 @@ namespace Voussoir
               const double band,
               CurveMemory &memory) const;
 
-    /** At an effective strain s/E [1] in a band of this width [m]; elastic
-     *  below the limit. */
+    /** State at an effective strain s/E [1] in a band of this width [m];
+     *  elastic below the limit. */
     Point
     at(const double strain, const double band) const;
 
@@ -124,8 +124,8 @@ namespace Voussoir
      * the corners of the curve; it advances along the curve until the released
      * energy is that of the trapezoidal rule of the time step, (s_a e_b - s_b
      * e_a)/2 + (s_a + s_b) (p_b - p_a)/2 , with the elastic strain e and the
-     * irreversible p: then a crack takes its energy with any time step, and
-     * gains none. In the static state it goes to the strain itself.
+     * irreversible p: so a crack takes its energy with any time step, and gains
+     * none. In the static state damage advances to the strain itself.
      *
      * @param equivalent_stress effective stress of a uniaxial test [Pa]
      * @param band width of the band [m]
@@ -146,9 +146,9 @@ namespace Voussoir
 
     /**
      * Factor on the stresses, and its inverse on the displacements, which keeps
-     * the energy. It is below one where the band is so wide that a crack that
-     * opens along a straight line releases more elastic energy around it than
-     * it takes (snap-back).
+     * the energy. The factor is below one where the band is so wide that a
+     * crack that opens along a straight line releases more elastic energy
+     * around it than it takes (snap-back).
      */
     template <typename Number>
     Number
@@ -158,9 +158,9 @@ namespace Voussoir
     }
 
     /**
-     * A uniaxial stress [Pa] over the elastic limit, or a little more where the
-     * strength factor is below one: a bound without its root, by
-     * sqrt(x) <= (1 + x)/2.
+     * Ratio of a uniaxial stress [Pa] to the elastic limit. Where the strength
+     * factor is below one, this is an upper bound without its root, by sqrt(x)
+     * <= (1 + x)/2.
      */
     template <typename Number>
     Number
@@ -191,16 +191,15 @@ namespace Voussoir
     static std::vector<Node>
     exponential(const double strength, const double energy);
 
-    /** A sentence about cells of this length [m] if a failure, named @p what,
-     *  of the energy and beginning at @p strength snaps back in them; else
-     *  empty. */
+    /** A sentence for the log if the failure @p what, which begins at @p
+     *  strength, snaps back in cells of this length [m]; else empty. */
     std::string
     remark(const double       element_length,
            const std::string &what     = "a crack",
            const std::string &strength = "tensile strength") const;
 
-    /** From "strain or displacement: stress, ...", beginning at 0, for a
-     *  message named by @p place. */
+    /** Parses "strain or displacement: stress, ...", beginning at 0; @p place
+     *  names the entry. */
     static std::vector<std::pair<double, double>>
     parse(const std::string &table, const std::string &place);
 
@@ -211,8 +210,8 @@ namespace Voussoir
       const SofteningCurve &curve;
       double                band, factor, share;
 
-      /** The node that ends the straight piece at this strain; one beyond the
-       *  last node where the stress stays. */
+      /** The node that ends the straight piece at this strain; beyond the last
+       *  node, where the stress is constant, the number of nodes. */
       unsigned int
       piece_at(const double strain) const;
 
@@ -220,7 +219,7 @@ namespace Voussoir
       double
       strain(const unsigned int node) const;
 
-      /** At this strain on the straight piece before a node. */
+      /** The point at this strain on the straight piece before a node. */
       Point
       on_piece(const unsigned int node, const double strain) const;
 

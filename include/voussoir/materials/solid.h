@@ -7,8 +7,8 @@
 
 namespace Voussoir
 {
-  /** Dam and foundation: unknowns, materials, mass and internal force. Nothing
-   *  that is computed with it changes it. */
+  /** Dam and foundation: unknowns, materials, mass and internal force. No
+   *  computation changes it. */
   class Solid
   {
   public:
@@ -22,7 +22,7 @@ namespace Voussoir
     const Discretization                discretization;
     const LumpedMass                    mass;
 
-    /** With the moduli as given; a run and the static stages take it with their
+    /** With the moduli as given; a run and the static stages use it with their
      *  own factors. */
     const InternalForce internal_force;
 

@@ -31,10 +31,11 @@ namespace Voussoir
 
 
   /**
-   * The principal value furthest from the other two in closed form, the others
-   * in the plane across its direction (Scherzinger and Dohrmann 2008): to
-   * round-off, without branches, so that it runs at the full SIMD width, and
-   * stable for equal values. The order of the values is left open.
+   * Finds the principal value furthest from the other two in closed form, and
+   * the others in the plane across its direction (Scherzinger and Dohrmann
+   * 2008). The result is exact to round-off, also for equal values; without
+   * branches the function runs at the full SIMD width. The values are in no
+   * particular order.
    */
   template <typename Number>
   Spectrum<Number>
@@ -51,7 +52,7 @@ namespace Voussoir
     SymmetricTensor3<Number> b    = tensor;
     for (unsigned int d = 0; d < 3; ++d)
       b[d][d] -= mean;
-    // of a pressure to round-off, the deviator is round-off and not traceless
+    // under equal pressure the deviator is round-off and not traceless
     const Number rest = (1. / 3.) * trace(b);
     for (unsigned int d = 0; d < 3; ++d)
       b[d][d] -= rest;

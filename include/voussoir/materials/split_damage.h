@@ -7,7 +7,7 @@
 
 namespace Voussoir
 {
-  /** What a crack does as the strain turns after it has begun. */
+  /** Direction of a crack while the principal strains rotate. */
   enum class CrackDirection
   {
     rotating,
@@ -26,12 +26,12 @@ namespace Voussoir
    * Common part of laws with two scalar damages of the effective stress s = C :
    * e_e , which is split into tension and compression (see split_tension):
    *   sigma = (1 - d+) s+ + (1 - d-) s- .
-   * Each damage follows a uniaxial curve by the equivalent stress of its own,
-   * so that a step needs no iteration, and a crack that closes has its
-   * stiffness back.
+   * Each damage follows a uniaxial curve by its own equivalent stress, so that
+   * a step needs no iteration, and a closing crack regains its stiffness.
    *
-   * Cracks turn with the principal strains, or keep the plane in which they
-   * began: then the compressed part is that of stress_beside_crack.
+   * Cracks rotate with the principal strains, or keep the plane in which they
+   * began: in the latter case the compressed part is that of
+   * stress_beside_crack.
    *
    * The history begins with the internal variables of the two curves
    * and the normal of the crack.
@@ -58,14 +58,15 @@ namespace Voussoir
         prm,
         "Crack direction",
         crack_direction,
-        "Whether cracks turn with the principal strains, or are fixed "
-        "in the plane in which they began. A fixed crack that runs at "
-        "an angle to the rows of cells does not lock; across it, shear "
-        "and opening go by \"Crack friction\".");
+        "Whether cracks rotate with the principal strains, or are fixed in the "
+        "plane in which they began. A fixed crack that runs at an angle to the "
+        "rows of cells does not lock; its shear and opening follow from "
+        "\"Crack friction\".");
       prm.add_parameter("Crack friction",
                         crack_friction,
-                        "Of a fixed crack: shear over pressure where its rough "
-                        "faces slide on each other, and opening over slip.",
+                        "Friction of a fixed crack: ratio of shear to pressure "
+                        "where its rough faces slide on each other, and of "
+                        "opening to slip.",
                         dealii::Patterns::Double(0.2, 2.));
     }
 
@@ -78,7 +79,7 @@ namespace Voussoir
         compression.of_static_state(young_modulus, strength_increase);
     }
 
-    /** Stress and inelastic strain e - C^-1 : sigma stay, and so do the
+    /** Stress and inelastic strain e - C^-1 : sigma are kept, and so are the
      *  openings of cracks. */
     SymmetricTensor3<double>
     hand_over(const SymmetricTensor3<double> &strain,
@@ -117,7 +118,7 @@ namespace Voussoir
       return in_tension + (in_tension.empty() ? "" : " ") + in_compression;
     }
 
-    /** Numbers of one curve and of both. */
+    /** Internal variables of one curve and of both. */
     static constexpr unsigned int n_of_curve      = CurveMemory::n_numbers,
                                   normal_at       = 2 * n_of_curve,
                                   n_split_numbers = normal_at + 3;
@@ -129,11 +130,11 @@ namespace Voussoir
     }
 
     /**
-     * Advances one damage where it grows, or may grow: only there the curve is
-     * evaluated.
+     * Advances one damage. The curve is evaluated only where the damage may
+     * grow.
      *
      * @param equivalent effective stress of a uniaxial test [Pa]
-     * @param memory     the numbers of a CurveMemory
+     * @param memory internal variables as of CurveMemory
      * @param followed   see SofteningCurve::go_on
      * @param flows      whether a share of the strain is irreversible
      */
@@ -192,7 +193,8 @@ namespace Voussoir
     using OfBoth = std::array<T, 2>;
 
     /**
-     * The effective stresses s+ and s- after the damage in tension has gone on.
+     * The effective stresses s+ and s- after the damage in tension has
+     * advanced.
      *
      * @param split of the elastic stress
      */

@@ -52,7 +52,8 @@ namespace Voussoir
    * material: a >= 0 is the strain of the cracks, n : a = 0 (Del Piero 1989).
    * The two parts are orthogonal in the energy, so that damage of either has a
    * potential and no closed path of strains gains energy. A split by the signs
-   * of principal stresses alone has none unless Poisson's ratio is zero.
+   * of principal stresses alone has no potential unless Poisson's ratio is
+   * zero.
    *
    * @param stress principal values and directions, in any order
    */
@@ -121,20 +122,19 @@ namespace Voussoir
   }
 
   /**
-   * What is left of the stress C : e by a rough crack in a plane, which may lie
-   * at any angle to the strain's own directions, and by cracks across it: the
-   * stress n of
+   * The stress n that remains of C : e with a rough crack in a plane, at any
+   * angle to the principal strains, and with cracks across this plane:
    *   C : e = n + C : a ,   n : a = 0 ,   a = sym(n_c c) + b ,
    * with the jump c across the plane of normal n_c, c . n_c >= f |c_t|, and a
-   * positive strain b in the plane. The jump may be oblique, as it is where
-   * rows of cells stand at an angle to the crack they carry: the strain of such
-   * a crack has a negative principal value, which split_tension takes for
-   * compression. A closed crack carries shear up to f times its pressure, and
-   * rides up as it slides: this keeps the parts orthogonal in the energy, so
-   * that they have a potential and no closed path of strains makes energy.
+   * positive strain b in the plane. The jump may be oblique, as where rows of
+   * cells are at an angle to their crack: the strain of such a crack has a
+   * negative principal value, which split_tension takes for compression. A
+   * closed crack carries shear up to f times its pressure, and dilates as it
+   * slides: this keeps the parts orthogonal in the energy, so that they have a
+   * potential and no closed path of strains gains energy.
    *
-   * The plane is open, sliding or stuck; of these convex problems exactly one
-   * has a solution that fits.
+   * The plane is open, sliding or stuck; exactly one of these convex problems
+   * has an admissible solution.
    *
    * @param normal   of length one
    * @param friction f > 0

@@ -26,7 +26,7 @@ namespace Voussoir
 
   /**
    * Baseline correction of an acceleration, so that the motion starts and ends
-   * at rest in its first position; the method none leaves it as it is. The
+   * at rest in its first position; the method none changes nothing. The
    * equations are in baseline.cc.
    */
   struct BaselineCorrection

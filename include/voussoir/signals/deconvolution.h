@@ -14,7 +14,7 @@ namespace Voussoir
    *
    * - The excitation must contain all frequencies up to
    *   @p maximum_frequency [Hz] and the response must have died out at its end.
-   * - Frequencies above are removed, with a cosine taper from 0.8 times
+   * - Higher frequencies are removed, with a cosine taper from 0.8 times
    *   @p maximum_frequency on; a maximum above the Nyquist frequency removes
    *   nothing.
    * - Where |H| falls below a thousandth of its maximum (a frequency the system

@@ -33,7 +33,7 @@ namespace Voussoir
   {
     SpectrumShape shape = SpectrumShape::hydropower_code;
 
-    /** Of the code's shape: plateau [-], its end [s], exponent behind it. */
+    /** Of the code's shape: plateau [-], its end [s], exponent of the decay. */
     double maximum_amplification = 2.5;
     double characteristic_period = 0.2;
     double decay_exponent        = 0.6;
@@ -42,8 +42,8 @@ namespace Voussoir
     std::vector<double> periods        = {0., 0.1, 0.2, 2.};
     std::vector<double> amplifications = {1., 2.5, 2.5, 0.63};
 
-    /** With the shape as it is by default; only where that is as the horizontal
-     *  one, it can be so. */
+    /** Declares the entries, with the present shape as default. Only if that is
+     *  `as_horizontal` is this shape an option. */
     void
     declare(dealii::ParameterHandler &prm);
 

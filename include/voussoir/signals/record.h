@@ -25,12 +25,12 @@ namespace Voussoir
   }
 
 
-  /** Properties of an accelerogram that its file does not have. */
+  /** Properties of an accelerogram that its file does not contain. */
   struct RecordFormat
   {
     AccelerationUnit unit = AccelerationUnit::g;
 
-    /** Of a file with a single column [s]; 0 for all others. */
+    /** Time step of a file with a single column [s]; 0 for all other files. */
     double time_step = 0;
 
     /** The column to take, counted from 1 without the time column. */
@@ -38,8 +38,8 @@ namespace Voussoir
   };
 
   /**
-   * Read an accelerogram and return it in m/s2. Two kinds of file are told
-   * apart by their content:
+   * Read an accelerogram and return it in m/s2. Two kinds of file are
+   * distinguished by their content:
    * - AT2 (PEER): header lines that give NPTS and DT in any of the usual
    *   spellings, then NPTS numbers, any number per line;
    * - columns: times and one or more accelerations, separated by blanks,

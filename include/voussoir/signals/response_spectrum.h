@@ -19,13 +19,14 @@ namespace Voussoir
   };
 
   /** The largest displacement relative to the ground, with its sign [m], and
-   *  when [s]. */
+   *  its time [s]. */
   struct PeakResponse
   {
     double displacement = 0., time = 0.;
   };
 
-  /** Of the oscillator of a natural period [s], as response_spectrum(). */
+  /** Peak response of the oscillator of a natural period [s], computed as by
+   *  response_spectrum(). */
   PeakResponse
   peak_response(const TimeSeries &acceleration,
                 const double      period,

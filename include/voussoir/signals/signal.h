@@ -9,7 +9,7 @@ namespace Voussoir
   /**
    * One component of a ground motion as a function of time: displacement [m],
    * velocity [m/s] and acceleration [m/s2], each the exact derivative of the
-   * one before. Any time may be asked for; the ground is at rest at the start.
+   * one before. Any time is admitted; the ground is at rest at the start.
    */
   class Signal
   {
@@ -91,9 +91,9 @@ namespace Voussoir
    * With @p ramp_cycles = 0 the acceleration is A sin(w t) from rest, so that
    * the velocity is A/w (1 - cos(w t)) and the ground moves away at the mean
    * velocity A/w. With @p ramp_cycles >= 1 the displacement -A/w^2 sin(w t) is
-   * faded in and, before the end, out over so many cycles; the ground comes
-   * back to where it was. While it fades, the acceleration exceeds A by up to
-   * 15 % for one cycle, 2 % for two, 0.5 % for three.
+   * faded in and, before the end, out over this number of cycles; the ground
+   * returns to where it started. During fading the acceleration exceeds A by up
+   * to 15 % for one cycle, 2 % for two, 0.5 % for three.
    */
   class Sine : public Signal
   {
@@ -116,7 +116,8 @@ namespace Voussoir
     end() const override;
 
   private:
-    /** Fading factor of the displacement: its derivative of that order. */
+    /** The derivative of that order of the fading factor of the displacement.
+     */
     double
     fade(const unsigned int order, const double time) const;
 

@@ -74,7 +74,7 @@ namespace Voussoir
     double
     mean_misfit() const;
 
-    /** The largest one, and at which period [s]. */
+    /** The largest |after / target - 1|, and at which period [s]. */
     std::pair<double, double>
     largest_misfit() const;
 

@@ -18,7 +18,7 @@ namespace Voussoir
   {
     DesignSpectrum spectrum, vertical{SpectrumShape::as_horizontal};
 
-    /** That of a component. */
+    /** The design spectrum of a component. */
     const DesignSpectrum &
     target(const unsigned int component) const;
 

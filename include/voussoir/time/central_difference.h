@@ -13,7 +13,7 @@
 namespace Voussoir
 {
   /**
-   * What is marched:
+   * The equation that is integrated in time:
    *   M a + C v + f(u) + K_b u = F_0 + F(t) - M_driven a_base
    * and the constraints. All members must live as long as the scheme.
    */

@@ -13,7 +13,7 @@ namespace Voussoir
    * mass or forces. The sweep over the cells advances these nodes without such
    * terms; then they are corrected to (M + M_a + dt/2 C) v+ = M v* + M_a (v- -
    * dt a_base) + dt (F - K u) - dt/2 C v- , with the matrices of NodalTerms, C
-   * with alpha M_a (the paper's scheme: dt C v- on the right alone).
+   * with alpha M_a (TimeScheme::paper: dt C v- on the right alone).
    */
   class NodalUpdate
   {

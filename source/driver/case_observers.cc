@@ -68,7 +68,7 @@ namespace Voussoir
     prm.add_parameter(
       "Energy limit",
       energy_limit,
-      "Energy-balance error, relative to the energy that came in, at which "
+      "Energy-balance error, relative to the energy input, at which "
       "the run stops; the run warns from 0.01 on.",
       Patterns::Double(0., 1.));
     prm.add_parameter(

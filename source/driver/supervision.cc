@@ -44,8 +44,7 @@ namespace Voussoir
         std::ostringstream text;
         text << std::setprecision(3) << "from t = " << state.time
              << " s on the energy-balance error is large: "
-             << 100. * energy.relative_error()
-             << " % of the energy that came in, "
+             << 100. * energy.relative_error() << " % of the energy input, "
              << 100. * energy.error_of_losses()
              << " % of the losses by damping, cracks, friction and impacts";
         warned_of_energy = true;

@@ -353,12 +353,12 @@ namespace Voussoir
     // fall
     if (std::max(terms_now.kinetic, terms_now.stored()) >
         100. * (came_in + static_work + 1e-9))
-      return "the motion has grown to a hundred times all energy that came in";
+      return "the motion has grown to a hundred times the energy input";
     if (relative_error() > limit)
       {
         std::ostringstream text;
         text << std::setprecision(3) << "the energy-balance error is "
-             << 100. * relative_error() << " % of the energy that came in ("
+             << 100. * relative_error() << " % of the energy input ("
              << terms_now.error(initial) << " J residual, "
              << given_back(terms_now, most_damping)
              << " J of negative loss by damping, " << made_by_closing(terms_now)

@@ -119,7 +119,7 @@ namespace Voussoir
     double
     made() const;
 
-    /** The error over the largest energy so far that came in and did not leave
+    /** The error over the largest energy input so far that did not leave
      *  through the boundary at once. */
     double
     relative_error() const;
@@ -130,7 +130,7 @@ namespace Voussoir
     error_of_losses() const;
 
     /** Reason why the run must stop: motion that is not finite or grows without
-     *  bound, or an error above this share of the energy that came in; else an
+     *  bound, or an error above this share of the energy input; else an
      *  empty text. */
     std::string
     alarm(const double limit) const;

@@ -110,7 +110,7 @@ namespace Voussoir
     }
 
 
-    /** Number of a file in its file system; 0 if there is none. */
+    /** Inode number of a file; 0 if there is no file. */
     std::uint64_t
     serial_number_of(const std::string &name)
     {
@@ -342,7 +342,7 @@ namespace Voussoir
     if (!S_ISREG(now.st_mode)) // devices keep nothing
       return "";
     const auto size = static_cast<std::uintmax_t>(now.st_size);
-    // some network file systems change the number of a file
+    // some network file systems change the inode number of a file
     if (now.st_ino != serial_number && size != written)
       return "another file was put in its place while the run went on";
     return size < written ? "it was cut off while the run went on" : "";

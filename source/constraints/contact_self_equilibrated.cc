@@ -20,7 +20,7 @@ namespace Voussoir
     // Part of the largest force by which a limit may be exceeded.
     constexpr double tolerated = 1e-11;
 
-    // Rows of a linear system of unit vectors that are combinations of others.
+    // Norm of a row, orthogonal to the others, below which it depends on them.
     constexpr double dependent = 1e-10;
 
     // Part of the sum of F^2 / A that self-equilibrated forces may have. Below

@@ -26,7 +26,7 @@ namespace Voussoir
     }
 
 
-    /** The comment at the head of a file, up to an empty line of it. */
+    /** The comment at the head of a file, up to its first empty line. */
     std::string
     title(const fs::path &file)
     {

@@ -48,8 +48,8 @@ namespace Voussoir
                       Patterns::Double(1e-3));
     prm.add_parameter("Branches",
                       branches,
-                      "Number of Maxwell branches; 3 hold the ratio within "
-                      "about 5 % of itself over a band of 1 to 20.",
+                      "Number of Maxwell branches; with 3 the damping ratio "
+                      "varies by about 5 % over a band of 1 to 20 Hz.",
                       Patterns::Integer(1, 6));
     prm.add_parameter(
       "Reference frequency",

@@ -24,7 +24,7 @@ namespace Voussoir
     }
 
 
-    // Places of the cells' entries in a buffer of four for each cell.
+    // Places of the cells' entries in a buffer with four entries per cell.
     constexpr std::array<unsigned int, 2 * width>
     places_in_buffer()
     {

@@ -35,7 +35,7 @@ namespace Voussoir
 
     // Whether the face, run through counterclockwise as seen from outside its
     // cell, goes from its lowest vertex to the smaller of the two neighbours.
-    // The cells on the two sides of a face see opposite senses.
+    // The face has opposite orientations in the two cells that share it.
     bool
     turns_to_smaller_neighbour(const CoarseMesh       &mesh,
                                const CoarseMesh::Face &face)

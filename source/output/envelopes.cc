@@ -202,8 +202,8 @@ namespace Voussoir
           }
       }
 
-      /** Warns of tension that exceeds any concrete and rock in a material
-       *  whose law has no strength. */
+      /** Warns of tension above the strength of any concrete or rock in a
+       *  material whose law has no strength. */
       void
       check_tension(const unsigned int material, const nlohmann::json &found)
       {

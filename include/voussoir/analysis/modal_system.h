@@ -57,8 +57,8 @@ namespace Voussoir
     precondition(double *motion, const double *force) const;
 
     /**
-     * Motions under forces that vary in waves of arbitrary direction over the
-     * mass: smooth, without symmetry, the same on any number of ranks.
+     * Motions under forces that are sine waves of arbitrary direction in space:
+     * smooth, without symmetry, the same on any number of ranks.
      */
     std::vector<Motion>
     start(const unsigned int number) const;

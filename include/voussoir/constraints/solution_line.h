@@ -28,7 +28,7 @@ namespace Voussoir
     struct Line
     {
       Vector nearest;   // to zero
-      Vector direction; // the determinant with it as last row is positive
+      Vector direction; // as last row it makes the determinant positive
     };
 
     /** The line of n equations, by elimination with complete pivoting. */

@@ -8,7 +8,7 @@
 namespace Voussoir
 {
   /** Values at the nodes of the cells of a batch, component by component: of
-   *  trilinear cells entry 8 d + v is of node v. All cell loops read nodes
+   *  trilinear cells entry 8 d + v is that of node v. All cell loops read nodes
    *  through this class, as deal.II keeps no entries of most trilinear cells.
    */
   class BatchNodes

@@ -79,7 +79,7 @@ namespace Voussoir
 
 
   /**
-   * Input of the energy of a damped motion, after the step from the velocity v-
+   * Data for the energy of a damped motion, after the step from the velocity v-
    * to v+ : the displacement u since the static state, and the damping memory w
    * during the step.
    */
@@ -94,7 +94,7 @@ namespace Voussoir
   };
 
 
-  /** Input of the energy of points that have left the elastic range.
+  /** Data for the energy of points that have left the elastic range.
    */
   struct InelasticMotion
   {

@@ -15,8 +15,8 @@ namespace Voussoir
    * Vertically travelling S waves (x, y) and P wave (z) in horizontal layers: a
    * column of one-dimensional elements, integrated with the scheme, the degree,
    * the quadrature, the damping and the time step of the model, on the levels
-   * of its side faces. A model with regular sides then follows the column to
-   * round-off.
+   * of its side faces. A model with regular sides then moves as the column,
+   * to round-off.
    *
    * The traction on the base is rho c (2 v_incident - v); the top is free.
    */

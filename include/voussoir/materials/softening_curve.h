@@ -64,7 +64,7 @@ namespace Voussoir
       double stress;       // [Pa]
       double inelastic;    // strain of a uniaxial test
       double irreversible; // part of it that stays on unloading
-      double elastic;      // effective, without that part
+      double elastic;      // effective less irreversible strain
 
       /** Loss of stiffness. */
       double

@@ -70,8 +70,8 @@ namespace Voussoir
     const Number lone =
       compare_and_apply_mask<less>(half, zero, Number(-2. * x), Number(2. * x));
 
-    // its direction is each column of the adjugate of b - lone I; the one of
-    // the largest diagonal entry is the longest
+    // its direction is each column of the adjugate of b - lone I; the column
+    // with the largest diagonal entry is the longest
     SymmetricTensor3<Number> c = b;
     for (unsigned int d = 0; d < 3; ++d)
       c[d][d] -= lone;

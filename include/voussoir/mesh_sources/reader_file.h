@@ -63,7 +63,7 @@ namespace Voussoir
     std::size_t
     count(const std::string &expected);
 
-    /** Returns @p n, the number of things that follow; fails if the file cannot
+    /** Returns @p n, the number of items that follow; fails if the file cannot
      *  hold as many. */
     std::size_t
     check_count(const std::int64_t n, const std::string &expected) const;

@@ -97,7 +97,7 @@ namespace Voussoir
     std::vector<CrackedCell>     cells;
     std::map<Edge, unsigned int> number_of_edge;
 
-    // by their numbers; `nowhere` for edges that no other rank can have
+    // by number; the direction is `nowhere` if no other rank can have the edge
     std::vector<Edge> shared_edges;
   };
 } // namespace Voussoir

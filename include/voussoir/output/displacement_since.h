@@ -11,8 +11,8 @@ namespace Voussoir
                              "displacement since static state",
                            since_grouting = "displacement since grouting";
 
-  /** Displacement of the state that such a quantity counts from [m]; null:
-   *  none, so that it is the total. */
+  /** Displacement of the state from which this quantity counts [m]; null for
+   *  the total displacement. */
   const Vector *
   origin_of(const std::string &quantity, const InitialState &initial);
 

@@ -154,8 +154,8 @@ namespace Voussoir
     double
     least_scale(const unsigned long long step) const;
 
-    /** Losses of the elastic cells until now, and those in the next step and in
-     *  the last one [J]. */
+    /** Sum of the losses of the elastic cells up to this step, from those in the
+     *  next and in the last step [J]. */
     double
     loss_in_cells(const unsigned long long step,
                   const double             next_loss,
@@ -176,8 +176,8 @@ namespace Voussoir
     Vector      velocity_before; // v- of the step after `kept_step`
     TimeTable   table;
 
-    // loss of the elastic cells until an evaluation that was due, and in the
-    // steps beside it; see ElasticEnergy [J]
+    // loss of the elastic cells up to the last evaluation, and in the steps
+    // after and before it; see ElasticEnergy [J]
     double             known_loss = 0., next_loss = 0., last_loss = 0.;
     unsigned int       steps_between = 1; // to the next one
     unsigned long long loss_step = 0, due_step = 0, kept_step = 0;

@@ -104,7 +104,7 @@ namespace Voussoir
      * @param values @p fields.size() numbers for each node
      * @param name   of the file in the output folder, without extension
      * @param time   [s]
-     * @param texts  further ones for the file
+     * @param texts  further texts for the file
      * @return its name in the output folder; empty if it cannot be written
      */
     std::string

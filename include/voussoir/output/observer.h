@@ -28,7 +28,7 @@ namespace Voussoir
     const Contact   *interfaces; // before any load acts; or null
     const Reservoir *reservoir;  // of compressible water; or null
 
-    /** Constraints of the case, interfaces not among them. */
+    /** Constraints of the case, without its interfaces. */
     const std::vector<std::pair<std::string, std::unique_ptr<Projection>>>
       &constraints;
 

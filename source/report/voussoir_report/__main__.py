@@ -56,7 +56,7 @@ def section_of(make, *arguments):
 def main():
     options = arguments()
     try:
-        # these imports take a second, which --help need not
+        # these imports take a second; --help does not need them
         from . import (case, damage, faces, interfaces, motions, over_stress, page, records, scenes,
                        stages, structure, study)
         from .files import ReportError

@@ -315,9 +315,9 @@ def conclusions_section(runs):
     return Section("Conclusions", [
         *(Verdicts(run.label if len(runs) > 1 else "", verdict.verdicts_of(run),
                    run.notes) for run in runs),
-        "The acceptance table has the criteria of the case; numerical checks whether the equations were solved "
-        "correctly; engineering results the response of the dam by the program's own criteria. Results without a "
-        "limit are to be judged. None of the tables shows that the model is right."])
+        "The acceptance table judges the criteria of the case, the numerical checks judge the solution of the "
+        "equations, and the engineering results judge the response of the dam by the program's own criteria. Results "
+        "without a limit are to be judged by the reader. None of the tables shows that the model is right."])
 
 
 def input_entries_section(runs):

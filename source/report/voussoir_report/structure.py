@@ -162,7 +162,7 @@ def modes_section(runs):
                          damping_at(run, mode["frequency [Hz]"]),
                          *(of_mass(share) for share in mode["effective mass [-]"]),
                          *(of_mass(share) for share in mode["cumulative effective mass [-]"])])
-        masses = [f"{of} {d} [%]" for of in ("effective mass", "sum up to here") for d in "xyz"]
+        masses = [f"{of} {d} [%]" for of in ("effective mass", "cumulative") for d in "xyz"]
         parts.append(Table(["mode", "frequency [Hz]", "period [s]", "damping achieved [%]", *masses], rows,
                            run.label if len(runs) > 1 else ""))
         if run.has("modes.vtu"):

@@ -48,7 +48,7 @@ namespace Voussoir
     }
 
 
-    /** Waves of arbitrary direction over bodies of some position and extent. */
+    /** Sine waves of arbitrary direction, scaled to the extent of a body. */
     class Waves
     {
     public:

@@ -37,8 +37,8 @@ namespace Voussoir
     std::sort(owned.begin(), owned.end());
     owned.erase(std::unique(owned.begin(), owned.end()), owned.end());
 
-    // a vector of the nodes lent alone, with one entry more, since deal.II
-    // admits no vector without entries
+    // a vector of the nodes that other ranks use, with one entry more, since
+    // deal.II admits no vector without entries
     const types::global_dof_index n_entries = 3 * nodes_lent.size() + 1;
     types::global_dof_index       first     = 0;
     MPI_Exscan(

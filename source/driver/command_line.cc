@@ -82,7 +82,7 @@ namespace Voussoir
                       const ParameterHandler::OutputStyle style)
     {
       Case all;
-      // they have the variables of the entries; a case has only one mesh source
+      // one for each type of mesh, where a case has only one generator
       std::vector<std::unique_ptr<MeshGenerator>> generators;
       all.prm.enter_subsection("Mesh");
       for (const auto &[name, entry] : Registry<MeshGenerator>::entries())

@@ -280,7 +280,7 @@ namespace Voussoir
                        *model.solid.materials[face.material]))
               {
                 const auto &names = model.parameters.materials.objects;
-                log.warn("the sides of the model are at the same height of \"",
+                log.warn("the sides of the model consist at the same height of \"",
                          names[m].first,
                          "\", at (",
                          highest[m]->middle,

@@ -60,7 +60,7 @@ namespace Voussoir
     }
 
 
-    /** The value beside a number that has one of two names, or null. */
+    /** The value beside a number, under one of two names, or null. */
     nlohmann::json
     beside(const nlohmann::json &around,
            const std::string    &own_name,

@@ -143,8 +143,7 @@ namespace Voussoir
           }
       }
 
-      /** Direction in which x . (C : (d x)) is largest for a unit vector x; the
-       *  value, too. */
+      /** Largest x . (C : (d x)) of all unit vectors x, and its direction x. */
       std::pair<double, Tensor<1, 3>>
       stiffest(const Tensor<1, 3> &direction) const
       {

@@ -82,7 +82,7 @@ namespace Voussoir
              std::vector<std::pair<unsigned int, unsigned int>> &result,
              std::vector<unsigned int>                          &front) const
       {
-        // where the surface ends the way around the edge leads to the other
+        // where the surface ends, the way around its edge leads to the other
         // side
         if (faces_at_edge.at(edge).size() == 1)
           return;

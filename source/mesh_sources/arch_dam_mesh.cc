@@ -313,7 +313,8 @@ namespace Voussoir
 
       CoarseMesh mesh;
 
-      // By line of the sweep and point; by quadrilateral and layer.
+      // Numbers of vertices by line of the sweep and point on the line, and of
+      // cells by quadrilateral and layer.
       std::vector<unsigned int> vertex_number, cell_number;
     };
   } // namespace

@@ -142,7 +142,7 @@ namespace Voussoir
     const std::size_t n = record.weights->n_parts * record.points.size();
     if (n == 0 || values.size() % (3 * n) != 0)
       return;
-    // the first rank has all of them
+    // the first rank has the velocities of all points
     const bool mine = Utilities::MPI::this_mpi_process(
                         record.run->solid.grid().communicator()) == 0;
     record.velocities.assign(values.size() / (3 * n),

@@ -67,7 +67,8 @@ def names_of(source, field):
 
 
 def dam_materials(names):
-    """Numbers of the materials whose names say so, and not rock, or else of the first material."""
+    """Numbers of the materials with dam, block or concrete, and without rock, in their names,
+    or else of the first material."""
     def is_called(name, *words):
         return any(word in name.lower() for word in words)
 

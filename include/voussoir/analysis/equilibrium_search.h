@@ -113,7 +113,7 @@ namespace Voussoir
     Effort          effort;
     double          first_imbalance = 0.;
     double          least_imbalance = std::numeric_limits<double>::max();
-    unsigned int    last_gain       = 0; // the step of the least one
+    unsigned int    last_gain       = 0; // step of the least imbalance
   };
 } // namespace Voussoir
 

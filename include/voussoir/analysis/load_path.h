@@ -103,8 +103,8 @@ namespace Voussoir
                             const StaticLoads &end) const;
 
     /** Sums up the dissipation of the materials in an increment over several
-     *  steps of the laws: under multiaxial stress a single step would take the
-     *  energy of a crack as that at the end of the step.
+     *  steps of the laws: under multiaxial stress a single step would evaluate
+     *  the energy of a crack at the end of the step only.
      *  @param before displacement, @p memory before the increment
      *  @param begin, @p end of the increment */
     void

@@ -10,10 +10,10 @@ namespace Voussoir
 {
   /**
    * Stresses at named points in a static stage: the mean over the cells that
-   * meet there. As stresses jump between materials, the mean is over the cells
-   * of one: of a material with faces of the dam if there are some, with arch
-   * and cantilever directions of the nearest node of the faces, else of the
-   * first material of the case.
+   * meet there. As stresses jump between materials, it is over the cells of one
+   * material: one with faces of the dam if there is any, with the arch and
+   * cantilever directions of the nearest node of the faces; else the first of
+   * the case.
    */
   class PointStresses
   {
@@ -36,7 +36,7 @@ namespace Voussoir
     find_places(const Discretization         &discretization,
                 const std::set<unsigned int> &materials_of_faces);
 
-    /** Directions at the points that have some. */
+    /** Arch and cantilever directions at points that have them. */
     void
     find_directions(const std::vector<const FaceMesh *> &faces);
 

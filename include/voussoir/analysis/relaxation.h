@@ -11,7 +11,7 @@ namespace Voussoir
    * Equilibrium with contact by dynamic relaxation: the explicit steps of the
    * run, with the contact of the run and, until the motion has ceased, with
    * the critical damping of the frequency that Rayleigh's quotient of the
-   * velocity gives. This is high as long as many modes move, then that of the
+   * velocity gives. It is high as long as many modes move, then that of the
    * slowest mode (adaptive, Underwood 1983). No stiffness is assembled, so
    * joints may open and slip without limit.
    */

@@ -94,8 +94,8 @@ namespace Voussoir
    * after the other, each with the loads it names. The run takes over this
    * state by hand_over().
    *
-   * Each stage is solved at once with elastic materials first, by multigrid,
-   * with interfaces in Newton steps. Where materials crack or yield under its
+   * Each stage is first solved in one increment with elastic materials, by
+   * multigrid, with interfaces in Newton steps. Where materials crack or yield under its
    * loads, these and the temperature grow in increments, as cracks and plastic
    * flow depend on the path, and equilibrium is searched for with the laws of
    * the materials (see EquilibriumSearch). Where this search fails, equilibrium
@@ -116,12 +116,12 @@ namespace Voussoir
                     nlohmann::json         &summary);
 
   /**
-   * Gives a static state the force that balances it in the dynamic model, and
-   * the internal variables of the materials the moduli of that model: reactions
-   * of supports that are fixed in the static stages only are part of the force,
-   * so that without an earthquake nothing moves. Forces of contact are no part
-   * of it, as the run finds them by itself. Without static stages nothing is
-   * done.
+   * Prepares a static state for the dynamic model: finds the force that balances
+   * it there, and converts the internal variables of the materials to the moduli
+   * of that model. Reactions of supports that are fixed in the static stages only
+   * are part of the force, so that without an earthquake nothing moves. Forces of
+   * contact are no part of it, as the run finds them by itself. Without static
+   * stages nothing is done.
    *
    * @param internal_force that of the run
    * @return dissipation of the laws in the static state on this rank [J]: zero,

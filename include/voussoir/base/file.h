@@ -99,7 +99,7 @@ namespace Voussoir
 
     std::string    file_name, waiting;
     std::uintmax_t written       = 0; // bytes
-    std::uint64_t  serial_number = 0; // of the file in its file system
+    std::uint64_t  serial_number = 0; // inode number of the file
   };
 } // namespace Voussoir
 

@@ -65,7 +65,7 @@ namespace Voussoir
         throw UserError("Two classes register as \"" + name +
                         "\", described \"" + place->second.description +
                         "\" and \"" + entry.description +
-                        "\"; give one another name.");
+                        "\"; rename one of the two.");
     }
 
     /** All classes by name, in alphabetical order. */

@@ -6,8 +6,8 @@
 
 namespace Voussoir
 {
-  /** Refuses a list of names of sections that has one twice, has a name with
-   *  "/", or is too long; @p place is where the list stands. */
+  /** Refuses a list of names of sections that is too long, has a name twice or
+   *  has a name with "/"; @p place is where the list stands. */
   void
   check_section_names(const std::vector<std::string> &names,
                       const std::string              &place);

@@ -21,7 +21,7 @@ namespace Voussoir
   {
     double tension = 0., bond = 0., cohesion = 0.; // [N]
     double friction = 0.;
-    double opening  = 0.;    // largest so far, an intact bond has none [m]
+    double opening  = 0.;    // largest so far; zero for an intact bond [m]
     bool   locked   = false; // no slip (shear keys)
 
     // friction follows the pressure with a delay (see ContactPoint): the shear

@@ -40,8 +40,8 @@ namespace Voussoir
     bool
     grout(const std::vector<std::string> &loads, const Vector &displacement);
 
-    /** Joins all interfaces, as after a read of points whose interfaces had
-     *  been grouted: bars and uplift act.
+    /** Joins all interfaces, for points read from a state in which they were
+     *  grouted: bars and uplift act.
      *  @param water see `has_water` */
     void
     join_all(const std::vector<bool> &water);

@@ -207,7 +207,7 @@ namespace Voussoir
     /**
      * Corners of trilinear cells in single precision; forces can be computed in
      * single precision as long as a caller holds them. Null for cells of higher
-     * degree and reproducible sums, which are in double precision.
+     * degree and for reproducible sums: both are in double precision.
      */
     std::shared_ptr<const MatrixFree::SingleCorners>
     single_corners() const;

@@ -12,8 +12,8 @@ namespace Voussoir
   /** The SIMD type of all cell work: one cell per lane. */
   using Lanes = dealii::VectorizedArray<double>;
 
-  /** Whether single precision takes two batches of cells at a time: unless a
-   *  batch is one cell. */
+  /** Whether single precision takes two batches of cells at a time, as it does
+   *  unless a batch is one cell. */
   constexpr bool has_singles = Lanes::size() > 1;
   using Singles =
     std::conditional_t<has_singles,

@@ -27,8 +27,9 @@ namespace Voussoir
   /**
    * Distributes the cells as p4est does, in the order of its trees and by their
    * cost, and counts the nodes that ranks share, without starting these ranks.
-   * Nodes are those of degree 1; each belongs to the first rank at it, and the
-   * others exchange it with that one. All ranks must call this together.
+   * Nodes are those of degree 1; each belongs to the first rank that has a cell
+   * there; other ranks exchange its values with this rank. All ranks must call
+   * this together.
    *
    * @param cost of a cell, as for the balance of ranks
    */

@@ -125,7 +125,7 @@ namespace Voussoir
      * energy is that of the trapezoidal rule of the time step, (s_a e_b - s_b
      * e_a)/2 + (s_a + s_b) (p_b - p_a)/2 , with the elastic strain e and the
      * irreversible p: so a crack takes its energy with any time step, and gains
-     * none. In the static state damage advances to the strain itself.
+     * none. In the static state damage advances up to the present strain.
      *
      * @param equivalent_stress effective stress of a uniaxial test [Pa]
      * @param band width of the band [m]

@@ -13,8 +13,8 @@ namespace Voussoir
   std::array<unsigned int, 4>
   face_vertices(const CoarseMesh &mesh, const CoarseMesh::Face &face);
 
-  /** A face of a cell with its four vertices, sorted so that both its cells
-   *  have the same. */
+  /** A face of a cell with its four vertices, in an order that is the same for
+   *  both its cells. */
   struct SortedFace
   {
     std::array<unsigned int, 4> vertices; // ascending

@@ -59,7 +59,7 @@ namespace Voussoir
       return to_number<Number>(word(expected), expected);
     }
 
-    /** The next word as the number of things that follow in the file. */
+    /** The next word as the number of items that follow in the file. */
     std::size_t
     count(const std::string &expected);
 

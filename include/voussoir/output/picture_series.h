@@ -23,8 +23,8 @@ namespace Voussoir
     void
     check(const ObservedModel &model) const;
 
-    /** Begins a new list, with the pictures that a run which was interrupted
-     *  drew before this one continues. */
+    /** Begins a new list; a run that continues keeps the pictures of the
+     *  interrupted run. */
     void
     prepare(const ObservedRun &run);
 

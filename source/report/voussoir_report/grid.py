@@ -116,7 +116,7 @@ class Grid:
         others = mine if among is None else self.faces(among)
         keys = np.concatenate([self.face_keys(mine), self.face_keys(others)])
         _, inverse, counts = np.unique(keys, return_inverse=True, return_counts=True)
-        # each face of these is among the others, too, hence twice
+        # each face of these cells is among the others, too, and so occurs twice
         return mine[counts[inverse.reshape(-1)[:len(mine)]] == 2]
 
     @functools.cached_property
@@ -306,8 +306,8 @@ def dam_of(run):
 
 
 def dam_materials(run, names):
-    """Names of the materials of the dam: those whose names or cell sets say so, and
-    not rock, or else the first material."""
+    """Names of the materials of the dam: those with dam, block or concrete, and without
+    rock, in their names or cell sets, or else the first material."""
     entries = dict(run.objects("Materials"))
 
     def is_called(name, *words):

@@ -147,7 +147,7 @@ def to_html(runs, sections):
 
 
 def folders_of(runs):
-    """The folders of the results; a common parent of several runs once."""
+    """The folders of the results; a common parent is named once."""
     parents = {str(pathlib.Path(run.folder).parent) for run in runs}
     if len(runs) > 1 and len(parents) == 1:
         return f"{parents.pop()}: {', '.join(pathlib.Path(run.folder).name for run in runs)}"

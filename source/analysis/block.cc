@@ -7,11 +7,11 @@ namespace Voussoir
 
   namespace
   {
-    // Rows at a time, of all vectors: they stay in the cache.
+    // Rows treated at a time, of all vectors: they stay in the cache.
     constexpr std::size_t piece = 256;
     static_assert(piece % Lanes::size() == 0);
 
-    // Vectors at a time: their sums stay in registers.
+    // Vectors treated at a time: their sums stay in registers.
     constexpr unsigned int tile = 4;
 
 

@@ -399,8 +399,8 @@ namespace Voussoir
   void
   LoadPath::search_equilibrium(const Vector &force, MaterialMemory *memory)
   {
-    // within a stage, a small part of the error of the increments, 1e-3, is
-    // enough
+    // within a stage a hundredth of the error of the increments, 1e-3, is an
+    // accuracy that suffices
     constexpr double on_the_path = 1e-5;
     const double     of_the_last = model.contact != nullptr ?
                                      0.1 * parameters.rest :

@@ -35,8 +35,8 @@ namespace Voussoir
     list.set("PDE equations", int(n_components));
     list.set("aggregation: type", "Uncoupled");
     list.set("aggregation: threshold", 0.02);
-    // Smoothed as well, the finest prolongation and its products would take
-    // half of all memory, for a tenth fewer iterations that cost more each.
+    // A smoothed finest prolongation would take half of all memory with its
+    // products, and save a tenth of the iterations, but make each dearer.
     list.sublist("aggregation: list (level 0)")
       .set("aggregation: smoothing sweeps", 0);
     list.set("smoother: type", "Chebyshev");

@@ -79,7 +79,7 @@ namespace Voussoir
         const auto tensors = FaceStress(model, *face.mesh).evaluate(state);
         const unsigned int n_quantities = face.is_level ? 2 : 6;
 
-        // of each the value, negative of a smallest one, and its place
+        // of each extreme the value, negative if it is a smallest, and place
         std::vector<std::array<double, 4>> most(
           n_quantities, {{std::numeric_limits<double>::lowest()}});
         for (unsigned int node = 0; node < tensors.size(); ++node)

@@ -350,7 +350,7 @@ namespace Voussoir
       for (const std::string &other : declared_sections)
         if (!other.empty() && section_of(other) == parent)
           siblings.push_back(entry_of(other));
-      // where an entry of the user names the sections
+      // the entry, if any, by which the user names the sections
       std::string cause;
       for (const std::string entry : {"Names", "Type", "Observers"})
         if (const std::string path = parent + "/" + entry;

@@ -160,7 +160,7 @@ namespace Voussoir
     }
 
 
-    /** Error of this rank; the same is thrown on all. */
+    /** Error of this rank; all ranks throw the same error. */
     class Problems
     {
     public:

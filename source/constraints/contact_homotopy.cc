@@ -117,8 +117,8 @@ namespace Voussoir
           }
       }
 
-      /** Starts a homotopy at the solution of the last one such that the effect
-       *  of the compliance of the points vanishes from its solution. */
+      /** Starts a homotopy at the solution of the last one, with gaps such that
+       *  its own solution is free of the effect of the points' compliance. */
       void
       correct_softness()
       {

@@ -15,8 +15,8 @@ namespace Voussoir
 
   namespace
   {
-    // Shares of a motion: one that is neglected, and the residual of a singular
-    // Delassus operator.
+    // Shares of a motion: the share that is neglected, and the residual of a
+    // singular Delassus operator.
     constexpr double round_off = 1e-14, left_over = 1e-9;
 
 
@@ -242,7 +242,8 @@ namespace Voussoir
 
         double above     = lowest - gap_below / D[0][0],
                gap_above = closed_gap(above);
-        // where a singular Delassus operator lets it stick, the gap stays zero
+        // where a singular Delassus operator lets the point stick, the gap is
+        // zero
         for (unsigned int i = 0; i < 100 && gap_above < -round_off * b.norm();
              ++i)
           {

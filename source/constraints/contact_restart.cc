@@ -99,7 +99,7 @@ namespace Voussoir
         interfaces.update_limits(point);
       }
 
-    // sums are taken over the ranks: the first rank gets them all
+    // sums are taken over the ranks: the first rank gets all of each sum
     for (ContactSurface &surface : interfaces.surfaces)
       surface.energy = {};
     total = {};

@@ -311,8 +311,7 @@ namespace Voussoir
         if (part == 1.)
           break;
       }
-    double largest =
-      0.; // relative to the force before, whose round-off the remainder has
+    double largest = 0.; // previous force, whose round-off the remainder has
     for (unsigned int k = 0; k < cluster.n_points; ++k)
       largest = std::max(largest, points[cluster.first_point + k].force.norm());
     if (!std::all_of(forces.begin(), forces.end(), [&](const FreeForce &force) {

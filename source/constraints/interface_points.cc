@@ -109,7 +109,7 @@ namespace Voussoir
     // doc/theory.md)
     constexpr double cells = 4.;
 
-    // sums and numbers of them at the nodes of the surfaces
+    // sum and number of the times of passage at the nodes of the surfaces
     Vector times(discretization.owned_dofs,
                  discretization.relevant_dofs,
                  communicator);

@@ -45,7 +45,7 @@ namespace Voussoir
                    1. -
                      0.5 * history.opening * intact.tension / opening_energy) *
           std::max(0., 1. - 0.5 * history.slip * lost_cohesion / slip_energy);
-        // the residual strength is there from the start
+        // the residual strength acts from the start
         return {intact.tension * whole,
                 lost_cohesion * whole,
                 broken.cohesion,

@@ -44,7 +44,7 @@ namespace Voussoir
                           const double         closing)
     {
       ContactLimits result = limits;
-      result.lasting       = 0.; // at rest friction has followed the pressure
+      result.lasting       = 0.; // friction has followed the static pressure
       result.at_once       = 1.;
       result.cohesion = std::clamp(multiplier + cohesion_per_pressure * closing,
                                    0.,

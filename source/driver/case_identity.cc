@@ -166,7 +166,7 @@ namespace Voussoir
               const std::string file =
                 line.substr(start.size(), sum - start.size());
               auto &[compared, shown] = result[entry];
-              // searched after the name of the entry
+              // the name of the entry may contain that of the file
               const auto place = compared.find(file, entry.size());
               if (place != std::string::npos)
                 compared.replace(place, file.size(), line.substr(sum));

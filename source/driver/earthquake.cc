@@ -179,8 +179,8 @@ namespace Voussoir
     }
 
 
-    // Warns of waves too short for the cells of the rock, which do not reach
-    // the dam.
+    // Warns of waves that are too short for the cells of the rock, and so do
+    // not reach the dam.
     void
     check_frequencies(const Model                              &model,
                       const std::array<std::vector<double>, 3> &accelerations,
@@ -280,17 +280,18 @@ namespace Voussoir
                        *model.solid.materials[face.material]))
               {
                 const auto &names = model.parameters.materials.objects;
-                log.warn("the sides of the model consist at the same height of \"",
-                         names[m].first,
-                         "\", at (",
-                         highest[m]->middle,
-                         ") m, and of \"",
-                         names[face.material].first,
-                         "\", at (",
-                         face.middle,
-                         ") m, but the earthquake rises as in one column of "
-                         "horizontal layers, which has the material of the "
-                         "larger area there");
+                log.warn(
+                  "the sides of the model consist at the same height of \"",
+                  names[m].first,
+                  "\", at (",
+                  highest[m]->middle,
+                  ") m, and of \"",
+                  names[face.material].first,
+                  "\", at (",
+                  face.middle,
+                  ") m, but the earthquake rises as in one column of "
+                  "horizontal layers, which has the material of the "
+                  "larger area there");
                 return;
               }
           if (const SideFace *&top = highest[face.material];

@@ -249,7 +249,7 @@ namespace Voussoir
     for (unsigned int i = n; i > 0 && from.empty(); --i)
       {
         chosen = numbered(name, i);
-        // a study continues from one that it has not recorded
+        // a study may not have recorded a finished run, and restarts it
         if (!options.overwrite &&
             Utilities::MPI::broadcast(log.communicator(),
                                       is_finished(chosen,

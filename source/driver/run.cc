@@ -186,7 +186,7 @@ namespace Voussoir
         "nothing moves the model, neither an earthquake nor a constraint nor "
         "a load outside the static stages, so that it stays at rest; give one "
         "of these, or \"End time = 0\" in section \"Time\"");
-    observe(); // after a restart the state of the checkpoint, once more
+    observe(); // after a restart the state of the checkpoint once more
   }
 
 

@@ -425,7 +425,7 @@ namespace Voussoir
     march.end_time      = run.state.time;
     march.loop_time     = run.times.seconds();
     march.throughput    = run.times.throughput(run.state.step);
-    // least over the ranks: the last one to reach the exchange of contact does
+    // least over the ranks: the last rank to reach the exchange of contact does
     // not wait there
     if (run.contact && march.loop_time > 0.)
       march.contact_share =

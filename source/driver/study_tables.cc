@@ -156,7 +156,7 @@ namespace Voussoir
           names.push_back(number.path);
         for (const Outcome &outcome : outcomes)
           {
-            // a failed run is not beyond the others
+            // a failed run does not count as beyond the others
             if (outcome.summary.end == RunEnd::failed)
               continue;
             samples.push_back({outcome.values, {}});

@@ -74,7 +74,7 @@ namespace Voussoir
   double
   DiscretizationParameters::relative_cost(const bool has_memory) const
   {
-    // eight points against one, in a whole step, measured
+    // measured cost of eight points relative to one, in a whole step
     return quadrature == QuadratureRule::one_point_where_elastic && has_memory ?
              2.5 :
              1.;

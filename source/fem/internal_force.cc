@@ -197,8 +197,8 @@ namespace Voussoir
     double s = 1.;
     for (const CellKernel *kernel : kernels)
       s = std::max(s, kernel->damping_factor());
-    // |u_e| <= sqrt(24) max |u| ; fixed nodes have no mass here, but are like
-    // the others
+    // |u_e| <= sqrt(24) max |u| ; fixed nodes, which have no mass here, have
+    // stiffness like the others
     const double stiffness = 100. * input.bound->mass.linfty_norm() /
                              (input.bound->time_step * input.bound->time_step);
     return std::min(limit, stiffness * s * motion);

@@ -36,7 +36,7 @@ namespace Voussoir
     constexpr auto places = places_in_buffer();
 
 
-    // The four values of each cell, of each node.
+    // Four values of each cell, for each of the eight nodes.
     using Buffers = std::array<std::array<float, 8 * width>, 8>;
   } // namespace
 

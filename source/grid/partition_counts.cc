@@ -87,7 +87,7 @@ namespace Voussoir
                       "\"Partition = p4est\".");
     const auto rank = deal_cells(grid, cost, n_ranks);
 
-    // each node is counted where the first cell at it is owned
+    // the rank that owns the first cell at a node counts the node
     constexpr auto none = numbers::invalid_unsigned_int;
     struct Node
     {

@@ -331,8 +331,8 @@ namespace Voussoir
         springs[place->second].dashpot += stiffness.dashpot;
       }
 
-    // the tractions at the points at which the cells integrate, so that a
-    // column on the same levels is followed exactly
+    // the tractions at the points at which the cells integrate, so that the
+    // model moves exactly as a column on the same levels
     const unsigned int  n_points = discretization.degree + 1;
     const Quadrature<2> points =
       quadrature == QuadratureRule::gauss_lobatto ?

@@ -74,7 +74,7 @@ namespace Voussoir
     struct Facet
     {
       types::global_dof_index node;
-      double                  weight; // of the share of a hanging node
+      double                  weight; // share in a hanging node, else one
       double                  place;  // across the valley
       double                  z;
       Tensor<1, 3>            normal;

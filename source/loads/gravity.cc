@@ -119,7 +119,8 @@ namespace Voussoir
                           "zero, so that there is no weight; give that of "
                           "gravity, 0, 0, -9.81, or leave the load "
                           "out.");
-        // it may be inclined, or above 1 g as for a pseudo-static earthquake
+        // gravity may be inclined, or above 1 g as for a pseudo-static
+        // earthquake
         if (acceleration.norm() < 5. || acceleration.norm() > 20.)
           log.warn(entry,
                    acceleration,

@@ -25,8 +25,8 @@ namespace Voussoir
       "Place of the given motion. outcrop: on bare rock at the bottom of the "
       "model, twice the incident wave there, as in most codes; damping of the "
       "rock then weakens it on its way up. level rock: on bare rock at the "
-      "height of the model's surface, like the rock at its bottom, whose damping "
-      "is taken into account. free surface: on top of the modelled ground "
+      "height of the model's surface, like the rock at its bottom, whose "
+      "damping is taken into account. free surface: on top of the modelled ground "
       "without dam and canyon, from where the wave is deconvolved. incident "
       "wave: the upgoing wave itself at the bottom of the model.");
     for (unsigned int c = 0; c < 3; ++c)

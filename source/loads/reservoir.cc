@@ -278,7 +278,7 @@ namespace Voussoir
 
     // the areas at the unknowns of this rank, whichever rank owns the solid's
     // nodes
-    std::array<Vector, 4> sums; // the last is positive where there are any
+    std::array<Vector, 4> sums; // x, y, z; amount, positive where wet
     for (unsigned int d = 0; d < 4; ++d)
       {
         sums[d].reinit(wall);

@@ -158,7 +158,7 @@ namespace Voussoir
                    largest,
                    " K; give changes since the joints were closed, not the "
                    "temperature itself");
-        if (elevations.size() > 1 && // one row is the same everywhere
+        if (elevations.size() > 1 && // a single row holds everywhere
             (elevations.front() > top || elevations.back() < bottom))
           log.warn("\"Table\"",
                    section,

@@ -223,7 +223,7 @@ namespace Voussoir
         const auto   rising = [&](const double x) {
           return fc * n * x / (n - 1. + std::pow(x, n));
         };
-        // up to 0.4 fc it is taken as linear
+        // the curve is taken as linear up to 0.4 fc
         double x = 0.4 * fc / elastic;
         while (rising(x) < 0.4 * fc)
           x *= 1.001;

@@ -146,7 +146,7 @@ namespace Voussoir
                 const double crushing,
                 const double length) const
       {
-        // a wide crack has no tensile strength, and a finite effective one
+        // a wide crack has no tensile strength, but a finite effective strength
         const double t = std::max(1e-10,
                                   std::exp(-tensile_strength * length *
                                            opening / fracture_energy));

@@ -181,8 +181,8 @@ namespace Voussoir
                            weight * memory.damage +
                              (1. - weight) *
                                damage_in_compression(largest, threshold));
-                // in proportion to that of D_t, which in the static state
-                // follows its curve
+                // the loss is proportional to that of D_t, which in the static
+                // state follows its curve
                 const double growth = memory.damage - before_in_tension;
                 lane_of(lost, lane) =
                   (damage - before) * (growth > 0. ?

@@ -96,7 +96,7 @@ namespace Voussoir
               const PointSituation<Number>   &situation) const
       {
         const auto split = split_tension(stress(strain), *this);
-        // the compressed part is ordered as the whole is
+        // the compressed part has the order of the whole stress
         const OfBoth<Number> equivalent{
           {split.principal.values[0],
            friction * split.compression[0] - split.compression[2]}};

@@ -205,7 +205,7 @@ namespace Voussoir
     double       nearest    = std::numeric_limits<double>::max();
     for (int half_row = 2 * base_row + 1; half_row < 2 * n_rows - 1; ++half_row)
       {
-        // the columns between the banks, whose feet lie lower
+        // the columns whose foot on the contour lies below this row
         const int row = half_row / 2, foot = (half_row - 1) / 2;
         int       first = first_dam_column, last = last_dam_column;
         while (first < last && contour_rows[first] > foot)

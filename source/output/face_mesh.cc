@@ -139,7 +139,7 @@ namespace Voussoir
   void
   FaceMesh::number_nodes(const NodeNumbers &nodes, const unsigned int n_sets)
   {
-    // the owner of a node numbers it in each of its sets
+    // the owner of a node numbers the node in each of its sets
     std::vector<std::pair<types::global_dof_index, unsigned int>> records;
     for (const auto &item : nodes)
       records.emplace_back(item.first.second, item.first.first);

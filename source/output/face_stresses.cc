@@ -163,8 +163,8 @@ namespace Voussoir
       static constexpr unsigned int n_extremes = 6,
                                     n_values   = 2 * n_extremes + 4;
 
-      /** Whether an extreme is a largest value, as every other one is from the
-       *  first on. */
+      /** Whether an extreme is a largest value: the first is, and every other
+       *  after it. */
       static bool
       is_largest(const unsigned int c)
       {

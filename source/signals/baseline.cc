@@ -19,9 +19,9 @@
 //   integral of d_corrected^2 dt -> min  with  v(T) = 0, d(T) = 0.
 //
 // Velocity and displacement are linear in the coefficients of p; so this is a
-// least-squares problem with two constraints, and both hold to rounding. It is
-// the sixth-degree polynomial of displacement that PEER removes (Ancheta et
-// al., PEER report 2013/03), with the end conditions added. The high-pass
+// least-squares problem with two constraints, and both hold to round-off. PEER
+// removes the same polynomial, of sixth degree in the displacement (Ancheta et
+// al., PEER report 2013/03), without the end conditions. The high-pass
 // filter that may precede it is the acausal four-pole Butterworth filter, with
 // pads of zeros after Boore (Bull. Seism. Soc. Am. 95, 2005). The pads are cut
 // off afterwards, their effect on the end of the motion is removed by p.

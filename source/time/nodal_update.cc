@@ -140,7 +140,7 @@ namespace Voussoir
               last_displacement[slot][d] + time_step * next[d];
           }
 
-        // the sweep has added these for the motion without terms
+        // the sweep has added this work for the motion without nodal terms
         if (has_base)
           for (unsigned int d = 0; d < 3; ++d)
             accounts.work_of_base -= 0.5 * time_step *

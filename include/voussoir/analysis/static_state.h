@@ -95,14 +95,15 @@ namespace Voussoir
    * state by hand_over().
    *
    * Each stage is first solved in one increment with elastic materials, by
-   * multigrid, with interfaces in Newton steps. Where materials crack or yield under its
-   * loads, these and the temperature grow in increments, as cracks and plastic
-   * flow depend on the path, and equilibrium is searched for with the laws of
-   * the materials (see EquilibriumSearch). Where this search fails, equilibrium
-   * is found by dynamic relaxation, which at the end of a stage also checks
-   * whether a state with interfaces is in equilibrium. An increment is halved
-   * while the return mapping of the materials differs between one step and two.
-   * An interface is grouted at the end of the stage that names its load.
+   * multigrid, with interfaces in Newton steps. Where materials crack or yield
+   * under its loads, these and the temperature grow in increments, as cracks
+   * and plastic flow depend on the path, and equilibrium is searched for with
+   * the laws of the materials (see EquilibriumSearch). Where this search fails,
+   * equilibrium is found by dynamic relaxation, which at the end of a stage
+   * also checks whether a state with interfaces is in equilibrium. An increment
+   * is halved while the return mapping of the materials differs between one
+   * step and two. An interface is grouted at the end of the stage that names
+   * its load.
    *
    * Throws LostEquilibrium if no equilibrium is found.
    *
@@ -116,12 +117,12 @@ namespace Voussoir
                     nlohmann::json         &summary);
 
   /**
-   * Prepares a static state for the dynamic model: finds the force that balances
-   * it there, and converts the internal variables of the materials to the moduli
-   * of that model. Reactions of supports that are fixed in the static stages only
-   * are part of the force, so that without an earthquake nothing moves. Forces of
-   * contact are no part of it, as the run finds them by itself. Without static
-   * stages nothing is done.
+   * Prepares a static state for the dynamic model: finds the force that
+   * balances it there, and converts the internal variables of the materials to
+   * the moduli of that model. Reactions of supports that are fixed in the
+   * static stages only are part of the force, so that without an earthquake
+   * nothing moves. Forces of contact are no part of it, as the run finds them
+   * by itself. Without static stages nothing is done.
    *
    * @param internal_force that of the run
    * @return dissipation of the laws in the static state on this rank [J]: zero,

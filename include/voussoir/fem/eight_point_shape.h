@@ -20,7 +20,7 @@ namespace Voussoir
   class EightPointShape
   {
   public:
-    /** @param matrix_free whose quadrature has the points */
+    /** @param matrix_free with the quadrature of these points */
     explicit EightPointShape(const Discretization::MatrixFree &matrix_free)
       : coordinate(2. * matrix_free.quadrature.point(7)[0] - 1.)
     {}

@@ -31,7 +31,7 @@ namespace Voussoir
      *  nodes are free. */
     Vector reaction;
 
-    /** Loads and reactions of the static stage, which stay constant, by the
+    /** Loads and reactions of the static stage, which stay constant, with the
      *  moduli of the run [N]; see hand_over. */
     Vector force;
 

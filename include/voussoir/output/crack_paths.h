@@ -10,7 +10,7 @@ namespace Voussoir
   /** A path through cracked cells from one face to the other. */
   struct CrackPath
   {
-    double           opening = 0.; // smallest one along the path [mm]
+    double           opening = 0.; // the smallest along the path [mm]
     dealii::Point<3> where;        // its place [m]
   };
 
@@ -38,7 +38,7 @@ namespace Voussoir
                const std::vector<std::array<std::bitset<8>, 2>> &touching);
 
     /** Number of a cracked cell, in the order of the first calls; its eighths
-     *  are numbered from eight times that on. */
+     *  are numbered from eight times this number on. */
     unsigned int
     number_of(const Cell &cell);
 

@@ -154,8 +154,8 @@ namespace Voussoir
     double
     least_scale(const unsigned long long step) const;
 
-    /** Sum of the losses of the elastic cells up to this step, from those in the
-     *  next and in the last step [J]. */
+    /** Sum of the losses of the elastic cells up to this step, from those in
+     * the next and in the last step [J]. */
     double
     loss_in_cells(const unsigned long long step,
                   const double             next_loss,

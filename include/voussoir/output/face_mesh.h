@@ -49,8 +49,8 @@ namespace Voussoir
     std::array<dealii::Tensor<1, 3>, 2>
     arch_and_cantilever(const unsigned int node) const;
 
-    /** Part of an owned face between four neighbouring nodes, the lower
-     *  direction of the face faster. */
+    /** Part of an owned face between four neighbouring nodes, in lexicographic
+     *  order of the directions of the face. */
     struct Quadrilateral
     {
       unsigned int                set;
@@ -72,8 +72,8 @@ namespace Voussoir
     Vector
     make_vector(const unsigned int width) const;
 
-    /** Means over the places of each node from the sums over those of this
-     *  rank, @p width of each node; all ranks must call this together.
+    /** Makes means over all places of each node of sums over its places on this
+     *  rank, @p width numbers a node; all ranks must call this together.
      *  @param work of make_vector() */
     void
     mean_over_places(Vector              &work,
@@ -82,7 +82,7 @@ namespace Voussoir
 
     /** Numbers of the nodes for a checkpoint, by the name of the set.
      *
-     *  @param values @p width of each node
+     *  @param values @p width numbers of each node
      *  @param what   follows the name */
     std::map<std::string, KeyedValues>
     keyed_values(std::vector<double> &values,

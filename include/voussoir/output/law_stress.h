@@ -100,7 +100,8 @@ namespace Voussoir
 
     bool all_are_elastic = true; // under any strain
 
-    // of all lanes if it is the same isotropic one; and their widest bands [m]
+    // the material of all lanes if it is the same and isotropic, else null; and
+    // the width of the widest band of each lane [m]
     const Material *common = nullptr;
     Lanes           bands  = 1.;
   };

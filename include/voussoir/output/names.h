@@ -28,8 +28,8 @@ namespace Voussoir
                 const Contact                  *contact);
 
     std::vector<std::string> materials;
-    std::vector<std::string> cell_sets; // of the mesh, by name, with blocks
-    std::vector<std::string> face_sets; // of the mesh, by name
+    std::vector<std::string> cell_sets;  // of the mesh, by name, with blocks
+    std::vector<std::string> face_sets;  // of the mesh, by name
     std::vector<std::string> interfaces; // in the order of their section
 
     /** Names behind the numbers of the state of a contact point. */

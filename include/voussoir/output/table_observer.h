@@ -60,7 +60,7 @@ namespace Voussoir
 
     /** The line of a sample, in the order of the columns, once its sums and
      *  largest values are those of all ranks; overrides find extremes here. By
-     *  default the line is the sums. */
+     *  default the line has the sums. */
     virtual std::vector<double>
     line_of(const Sample &sample);
 

@@ -34,7 +34,7 @@ def response_spectrum(accelerations, time_step, periods=PERIODS, damping=0.05):
     by free motion for one longest period.
     """
     accelerations, periods = np.asarray(accelerations, float), np.asarray(periods, float)
-    # steps so short that a maximum between them exceeds the larger of both by 0.8 % at most
+    # steps so short that a maximum between two of them exceeds the larger value by 0.8 % at most
     parts = int(np.ceil(25. * time_step / periods.min()))
     h = time_step / parts
     n = accelerations.shape[-1]

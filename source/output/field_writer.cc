@@ -203,7 +203,8 @@ namespace Voussoir
       const std::vector<NodalField> &fields;
       const std::vector<CellField>   cell_fields = {};
 
-      // principal stresses and their displacement; null: not written
+      // principal stresses, null if not written, and the displacement they
+      // follow from
       std::unique_ptr<const PrincipalStresses> stress   = nullptr;
       Vector                                   filtered = {};
     };

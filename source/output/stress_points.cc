@@ -28,7 +28,7 @@ namespace Voussoir
       unsigned int point;
       LawStress    law;
 
-      // gradients of the shape functions by the node
+      // gradients of the shape functions by node
       std::map<types::global_dof_index, Tensor<1, 3>> weights;
       double temperature = 0.; // change [K]
     };

@@ -139,7 +139,7 @@ namespace Voussoir
     Sweep
     sweep(Points &points, const Cluster &cluster);
 
-    /** Finds the forces of a cluster that the sweeps did not find.
+    /** Finds the forces of a cluster for which the sweeps have failed.
      *  @param size of the displacement of its nodes */
     void
     follow_path(Points        &points,

@@ -72,8 +72,9 @@ namespace Voussoir
     Vector
     make_vector(const unsigned int width) const;
 
-    /** Makes means over all places of each node of sums over its places on this
-     *  rank, @p width numbers a node; all ranks must call this together.
+    /** Replaces sums over the places of each node on this rank by the means
+     * over all its places, @p width numbers a node; all ranks must call this
+     * together.
      *  @param work of make_vector() */
     void
     mean_over_places(Vector              &work,

@@ -120,7 +120,7 @@ namespace Voussoir
       return item->second;
     }
 
-    /** Wall time of a step, from the first ones [s]. */
+    /** Wall time of a step, measured in the first steps [s]. */
     double
     seconds_per_step(Run &run)
     {

@@ -66,7 +66,7 @@ namespace Voussoir
   {
     const WaveParameters &wave;
     MotionPlace           given_at;
-    QuadratureRule        quadrature; // of the cells, which a column follows
+    QuadratureRule        quadrature; // of the cells and of a column
     double                duration;   // of the run [s]
   };
 

@@ -105,6 +105,26 @@ namespace Voussoir
       Patterns::Integer(0));
 
     prm.enter_subsection("Limit");
+    declare_limit(prm);
+    prm.leave_subsection();
+    prm.enter_subsection("Extrapolation");
+    declare_extrapolation(prm);
+    prm.leave_subsection();
+    prm.enter_subsection("Fragility");
+    declare_fragility(prm);
+    prm.leave_subsection();
+    prm.enter_subsection("Sensitivity");
+    declare_sensitivity(prm);
+    prm.leave_subsection();
+    prm.enter_subsection("Calibration");
+    declare_calibration(prm);
+    prm.leave_subsection();
+  }
+
+
+  void
+  StudyParameters::declare_limit(ParameterHandler &prm)
+  {
     prm.add_parameter("Entry",
                       varied_to_limit,
                       "Entry that grows until a criterion is met, as \"Ground "
@@ -130,9 +150,12 @@ namespace Voussoir
       extend,
       "Whether to search beyond \"From\" and \"To\", by up to four times "
       "their distance, where the limit is not between them.");
-    prm.leave_subsection();
+  }
 
-    prm.enter_subsection("Extrapolation");
+
+  void
+  StudyParameters::declare_extrapolation(ParameterHandler &prm)
+  {
     prm.add_parameter(
       "Over",
       refined,
@@ -156,9 +179,12 @@ namespace Voussoir
       "cells to the power of minus one over this. Where all runs have the "
       "same number of cells, the size is the time step.",
       Patterns::Integer(1, 3));
-    prm.leave_subsection();
+  }
 
-    prm.enter_subsection("Fragility");
+
+  void
+  StudyParameters::declare_fragility(ParameterHandler &prm)
+  {
     prm.add_parameter(
       "Intensity",
       intensity,
@@ -174,9 +200,12 @@ namespace Voussoir
                       "Probability that median and dispersion lie within "
                       "their bounds [-].",
                       Patterns::Double(0.5, 0.999));
-    prm.leave_subsection();
+  }
 
-    prm.enter_subsection("Sensitivity");
+
+  void
+  StudyParameters::declare_sensitivity(ParameterHandler &prm)
+  {
     prm.add_parameter(
       "Change",
       change,
@@ -190,9 +219,12 @@ namespace Voussoir
                       "Entries that are moved, by their paths, separated by "
                       "semicolons; a star stands for any letters, as in "
                       "\"Materials/*\".");
-    prm.leave_subsection();
+  }
 
-    prm.enter_subsection("Calibration");
+
+  void
+  StudyParameters::declare_calibration(ParameterHandler &prm)
+  {
     prm.add_parameter(
       "Fitted",
       fitted,
@@ -224,7 +256,6 @@ namespace Voussoir
                       "Largest number of steps of the search; each takes one "
                       "run and a further one for each fitted entry.",
                       Patterns::Integer(1, 100));
-    prm.leave_subsection();
   }
 
 

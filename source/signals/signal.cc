@@ -13,27 +13,28 @@ namespace Voussoir
                  const double   frequency,
                  const double   middle,
                  const double   peak_acceleration)
-    : displacement_order(quantity == Quantity::displacement ? 2 :
-                         quantity == Quantity::velocity     ? 1 :
-                                                              0)
+    : SmoothSignal(quantity == Quantity::displacement ? 2 :
+                   quantity == Quantity::velocity     ? 1 :
+                                                        0)
     , middle(middle)
     , c(std::pow(dealii::numbers::PI * frequency, 2))
   {
     // The acceleration is the derivative of order 2, 3 or 4 of the Gaussian.
     // The third one is largest where the fourth one vanishes, that is at
     // 4 u^2 - 12 u + 3 = 0 with u = c tau^2. The sign makes the shape positive.
-    const double u       = (3. - std::sqrt(6.)) / 2.;
-    const double largest = quantity == Quantity::acceleration ?
-                             2. * c :
-                           quantity == Quantity::velocity ?
-                             std::abs(gaussian(3, middle + std::sqrt(u / c))) :
-                             12. * c * c;
-    factor               = -peak_acceleration / largest;
+    const double u = (3. - std::sqrt(6.)) / 2.;
+    const double largest =
+      quantity == Quantity::acceleration ?
+        2. * c :
+      quantity == Quantity::velocity ?
+        std::abs(derivative(3, middle + std::sqrt(u / c))) :
+        12. * c * c;
+    factor = -peak_acceleration / largest;
   }
 
 
   double
-  Ricker::gaussian(const unsigned int order, const double time) const
+  Ricker::derivative(const int order, const double time) const
   {
     const double t = time - middle;
     const double u = c * t * t;
@@ -51,27 +52,6 @@ namespace Voussoir
         default:
           return 4. * c * c * (4. * u * u - 12. * u + 3.) * g;
       }
-  }
-
-
-  double
-  Ricker::displacement(const double time) const
-  {
-    return factor * gaussian(displacement_order, time);
-  }
-
-
-  double
-  Ricker::velocity(const double time) const
-  {
-    return factor * gaussian(displacement_order + 1, time);
-  }
-
-
-  double
-  Ricker::acceleration(const double time) const
-  {
-    return factor * gaussian(displacement_order + 2, time);
   }
 
 
@@ -170,7 +150,7 @@ namespace Voussoir
   Pulse::Pulse(const Quantity quantity,
                const double   duration,
                const double   peak_acceleration)
-    : displacement_order(quantity == Quantity::displacement ? 0 : -1)
+    : SmoothSignal(quantity == Quantity::displacement ? 0 : -1)
     , duration(duration)
   {
     AssertThrow(quantity != Quantity::acceleration,
@@ -188,7 +168,7 @@ namespace Voussoir
 
 
   double
-  Pulse::bump(const int order, const double time) const
+  Pulse::derivative(const int order, const double time) const
   {
     const double s     = std::clamp(time / duration, 0., 1.);
     const double q     = s * (1. - s);
@@ -207,27 +187,6 @@ namespace Voussoir
           return 1024. * q * q * (3. * slope * slope - 2. * q) /
                  (duration * duration);
       }
-  }
-
-
-  double
-  Pulse::displacement(const double time) const
-  {
-    return factor * bump(displacement_order, time);
-  }
-
-
-  double
-  Pulse::velocity(const double time) const
-  {
-    return factor * bump(displacement_order + 1, time);
-  }
-
-
-  double
-  Pulse::acceleration(const double time) const
-  {
-    return factor * bump(displacement_order + 2, time);
   }
 
 

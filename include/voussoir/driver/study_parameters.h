@@ -105,6 +105,21 @@ namespace Voussoir
     measured_numbers() const;
 
   private:
+    void
+    declare_limit(dealii::ParameterHandler &prm);
+
+    void
+    declare_extrapolation(dealii::ParameterHandler &prm);
+
+    void
+    declare_fragility(dealii::ParameterHandler &prm);
+
+    void
+    declare_sensitivity(dealii::ParameterHandler &prm);
+
+    void
+    declare_calibration(dealii::ParameterHandler &prm);
+
     /** Refuses fewer numbers than entries, and other evaluations beside
      *  calibration. */
     void

@@ -47,12 +47,54 @@ namespace Voussoir
   }
 
   /**
+   * A motion whose three quantities are successive derivatives of one smooth
+   * function of time, times a factor.
+   */
+  class SmoothSignal : public Signal
+  {
+  public:
+    double
+    displacement(const double time) const override
+    {
+      return factor * derivative(displacement_order, time);
+    }
+
+    double
+    velocity(const double time) const override
+    {
+      return factor * derivative(displacement_order + 1, time);
+    }
+
+    double
+    acceleration(const double time) const override
+    {
+      return factor * derivative(displacement_order + 2, time);
+    }
+
+  protected:
+    /** @param displacement_order which derivative is the displacement */
+    explicit SmoothSignal(const int displacement_order)
+      : displacement_order(displacement_order)
+    {}
+
+    /** The derivative of that order of the function; of order -1 its integral.
+     */
+    virtual double
+    derivative(const int order, const double time) const = 0;
+
+    double factor = 0.;
+
+  private:
+    int displacement_order;
+  };
+
+  /**
    * The Ricker wavelet (1 - 2 a) exp(-a), a = (pi f (t - t_p))^2, of central
    * frequency f [Hz] and middle t_p [s], in the displacement, velocity or
    * acceleration. With t_p >= 1.5 / f the motion before t = 0 is below 1e-6 of
    * its peak. All three quantities return to zero.
    */
-  class Ricker : public Signal
+  class Ricker : public SmoothSignal
   {
   public:
     Ricker(const Quantity quantity,
@@ -61,27 +103,16 @@ namespace Voussoir
            const double   peak_acceleration);
 
     double
-    displacement(const double time) const override;
-
-    double
-    velocity(const double time) const override;
-
-    double
-    acceleration(const double time) const override;
-
-    double
     end() const override;
 
   private:
-    /** The derivative of that order of exp(-(pi f (t - t_p))^2). */
+    /** Of exp(-(pi f (t - t_p))^2). */
     double
-    gaussian(const unsigned int order, const double time) const;
+    derivative(const int order, const double time) const override;
 
-    unsigned int displacement_order;
-    double       middle;
+    double middle;
     /** c = (pi f)^2. */
     double c;
-    double factor;
   };
 
   /**
@@ -133,7 +164,7 @@ namespace Voussoir
    * displacement (the ground returns) or in the velocity (it stays displaced by
    * 128/315 of T times the peak velocity).
    */
-  class Pulse : public Signal
+  class Pulse : public SmoothSignal
   {
   public:
     Pulse(const Quantity quantity,
@@ -141,25 +172,14 @@ namespace Voussoir
           const double   peak_acceleration);
 
     double
-    displacement(const double time) const override;
-
-    double
-    velocity(const double time) const override;
-
-    double
-    acceleration(const double time) const override;
-
-    double
     end() const override;
 
   private:
-    /** The derivative of that order (-1: integral) of the bump in time. */
+    /** Of the bump. */
     double
-    bump(const int order, const double time) const;
+    derivative(const int order, const double time) const override;
 
-    int    displacement_order;
     double duration;
-    double factor;
   };
 
   /**

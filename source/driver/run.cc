@@ -68,6 +68,8 @@ namespace Voussoir
     , time_step(setup->time_step)
     , contact(static_state.contact)
     , loads(acting_loads(model))
+    , crack_tips(model.solid.discretization,
+                 {model.solid.materials.begin(), model.solid.materials.end()})
     , equation{model.solid.discretization,
                setup->internal_force,
                model.solid.mass,
@@ -78,7 +80,8 @@ namespace Voussoir
                projections(),
                setup->earthquake.base.moves() ? &setup->earthquake.base :
                                                 nullptr,
-               time_step.closing_viscosity}
+               time_step.closing_viscosity,
+               &crack_tips}
     , scheme(equation, time_step.leap_frog())
     , state(scheme.initial_state())
     , observed{setup->plan.observed(log),

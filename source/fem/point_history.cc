@@ -185,7 +185,7 @@ namespace Voussoir
   KeyedValues
   PointHistory::checkpoint_values()
   {
-    KeyedValues values{n_points() * (n_numbers + 1 + n_of_active_point()),
+    KeyedValues values{2 + n_points() * (n_numbers + 1 + n_of_active_point()),
                        {},
                        [this](const std::size_t cell, double *row) {
                          pack(points->cells[cell].second, row);
@@ -200,9 +200,13 @@ namespace Voussoir
 
 
   void
-  PointHistory::pack(const Place &place, double *row) const
+  PointHistory::pack(const Place &place, double *row)
   {
     const unsigned int batch = place.batch, lane = place.lane;
+    // a row of a cell as it began is zero
+    const TipsOfBatch tip = tips.empty() ? TipsOfBatch() : tips_of(batch);
+    *row++                = tip.strength[lane] == 1. ? 0. : tip.strength[lane];
+    *row++                = tip.run_on[lane];
     for (unsigned int q = 0; q < n_points(); ++q)
       {
         for (unsigned int i = 0; i < n_numbers; ++i)
@@ -230,6 +234,11 @@ namespace Voussoir
   PointHistory::unpack(const Place &place, const double *row)
   {
     const unsigned int batch = place.batch, lane = place.lane;
+    const double       strength = *row++, run_on = *row++;
+    if (strength != 0.)
+      tips_of(batch).strength[lane] = strength;
+    if (run_on != 0.)
+      tips_of(batch).run_on[lane] = run_on;
     for (unsigned int q = 0; q < n_points(); ++q)
       {
         const double *numbers_of_law = row;

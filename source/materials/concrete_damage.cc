@@ -314,14 +314,18 @@ namespace Voussoir
            equivalent_compression(split.compression)}};
         const OfBoth<double> irreversible{
           {irreversible_tension, irreversible_crushing}};
-        OfBoth<DamageProgress<Number>> damage;
-        for (const unsigned int sign : {0, 1})
-          damage[sign] = grow(sign,
-                              equivalent[sign],
-                              history + n_of_curve * sign,
-                              situation,
-                              followed(situation),
-                              irreversible[sign] > 0.);
+        const OfBoth<DamageProgress<Number>> damage{
+          {grow_crack(equivalent[0],
+                      history,
+                      situation,
+                      followed(situation),
+                      irreversible[0] > 0.),
+           grow(1,
+                equivalent[1],
+                history + n_of_curve,
+                situation,
+                followed(situation),
+                irreversible[1] > 0.)}};
         OfBoth<SymmetricTensor3<Number>> effective = parts(split, history);
         for (const unsigned int sign : {0, 1})
           effective[sign] = damage[sign].effective * effective[sign];
@@ -371,8 +375,7 @@ namespace Voussoir
       {
         return {damage_of(history, 0),
                 damage_of(history, 1),
-                1e3 * element_length *
-                  tension.at(history[0], element_length).inelastic};
+                1e3 * largest_opening(history, element_length)};
       }
     };
 

@@ -100,12 +100,9 @@ namespace Voussoir
         const OfBoth<Number> equivalent{
           {split.principal.values[0],
            friction * split.compression[0] - split.compression[2]}};
-        OfBoth<DamageProgress<Number>> damage;
-        for (const unsigned int sign : {0, 1})
-          damage[sign] = grow(sign,
-                              equivalent[sign],
-                              history + n_of_curve * sign,
-                              situation);
+        const OfBoth<DamageProgress<Number>> damage{
+          {grow_crack(equivalent[0], history, situation),
+           grow(1, equivalent[1], history + n_of_curve, situation)}};
         return response(parts(split, history), damage, strain);
       }
 

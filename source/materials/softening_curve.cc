@@ -27,12 +27,12 @@ namespace Voussoir
     straight =
       first > last ? 2. * energy(nodes) / (first * first - last * last) : 1e30;
     // the strain must grow along the curve, with some steepness left
-    widest          = 0.9 * young_modulus * straight;
+    widest          = 0.5 * snap_back * young_modulus * straight;
     widest_of_curve = widest;
     for (unsigned int i = peak + 1; i < nodes.size(); ++i)
       widest_of_curve =
         std::min(widest_of_curve,
-                 0.9 * young_modulus *
+                 0.5 * snap_back * young_modulus *
                    (nodes[i].displacement - nodes[i - 1].displacement) /
                    (nodes[i - 1].stress - nodes[i].stress));
     // a curve without displacements has no size

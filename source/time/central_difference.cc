@@ -187,6 +187,8 @@ namespace Voussoir
 
     for (NodalLoad *load : equation.loads)
       load->end_step(state);
+    if (equation.crack_tips != nullptr)
+      equation.crack_tips->look(state.step, state.material_memory);
   }
 
 

@@ -66,6 +66,7 @@ namespace Voussoir
     const TimeStep                 &time_step;
     std::optional<Contact>          contact; // none without interfaces
     std::vector<ActingLoad>         loads;   // beside wave and water
+    const CrackTips                 crack_tips;
     const EquationOfMotion          equation;
     CentralDifference               scheme;
     State                           state;

@@ -273,6 +273,16 @@ namespace Voussoir
     element_eigenvalues(const CellRange                    &batch,
                         const dealii::AlignedVector<Lanes> &masses) const = 0;
 
+    /** Tensile strength of a cell of this size [m] at the tip of a crack, over
+     *  that of the material; see CrackTips. */
+    virtual double
+    tip_strength(const double cell_size) const = 0;
+
+    /** Whether a point with these internal variables has a crack that may run
+     *  on. */
+    virtual bool
+    is_cracked(const double *history) const = 0;
+
     /** Factor s on the damping memory, relative to the damping model. */
     virtual double
     damping_factor() const = 0;

@@ -43,6 +43,14 @@ namespace Voussoir
   };
 
 
+  /** What CrackTips knows of the cells of a batch. */
+  struct TipsOfBatch
+  {
+    Lanes strength = 1.; // over that of the material
+    Lanes run_on   = 0.; // 1 where the crack of the cell has been seen
+  };
+
+
   /** Energy that has been lost at the points since the start, of this rank [J]:
    *  by the law in cracks and plastic flow, by closing cracks, and the work on
    *  damping at points beyond the elastic range, of which a part is stored.
@@ -157,6 +165,22 @@ namespace Voussoir
       return points->bands[points->slot_of_batch[batch]];
     }
 
+    /** Tensile strength of the cells of a batch over that of their material. */
+    Lanes
+    tip_strength(const unsigned int batch) const
+    {
+      return tips.empty() ? Lanes(1.) :
+                            tips[points->slot_of_batch[batch]].strength;
+    }
+
+    TipsOfBatch &
+    tips_of(const unsigned int batch)
+    {
+      if (tips.empty())
+        tips.resize(points->bands.size());
+      return tips[points->slot_of_batch[batch]];
+    }
+
     /** Strain offset e_0, which is added to the strain of the displacement in
      *  the law; see DampedResponse. */
     const SymmetricTensor3<Lanes> &
@@ -265,7 +289,7 @@ namespace Voussoir
     }
 
     void
-    pack(const Place &place, double *row) const;
+    pack(const Place &place, double *row);
 
     void
     unpack(const Place &place, const double *row);
@@ -275,7 +299,8 @@ namespace Voussoir
     std::shared_ptr<StaticStrains> static_strains;
     dealii::AlignedVector<Lanes>
       numbers; // of elastic points, then of the others
-    dealii::AlignedVector<Lanes> imbalances;
+    dealii::AlignedVector<Lanes>       imbalances;
+    dealii::AlignedVector<TipsOfBatch> tips; // by slot; none: as they begin
 
     // place among the points beyond the elastic range, from one; 0: elastic
     std::vector<unsigned int>          active;

@@ -97,7 +97,8 @@ namespace Voussoir
       std::array<Lanes, 2> ratios;
       for (unsigned int half = 0; half < n; ++half)
         {
-          ratios[half] = half_of_singles(ratio, half);
+          ratios[half] =
+            half_of_singles(ratio, half) / history.tip_strength(batch + half);
           for (const unsigned int q : cells.quadrature_point_indices())
             if (history.is_active(batch + half, q))
               ratios[half] =
@@ -133,7 +134,8 @@ namespace Voussoir
         std::decay_t<decltype(cell)> undamped_cell(matrix_free);
         auto                        &own = damped ? undamped_cell : cell;
         const auto find_forces           = [&](const unsigned int batch) {
-          const Lanes widest = history.bands(batch).widest;
+          const Lanes widest       = history.bands(batch).widest,
+                      tip_strength = history.tip_strength(batch);
           cell.reinit(batch);
           read_filtered(cell, input, damping_factor);
           cell.evaluate(dealii::EvaluationFlags::gradients);
@@ -148,7 +150,7 @@ namespace Voussoir
               const bool is_active = history.is_active(batch, q);
               Lanes      ratio     = 0.;
               if (!is_active || history.lanes_are_alone())
-                ratio = law.yield_ratio(trial, widest);
+                ratio = law.yield_ratio(trial, widest) / tip_strength;
               if (is_active || any_above(ratio, 1.))
                 {
                   if (!knows_own)

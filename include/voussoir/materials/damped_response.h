@@ -145,7 +145,9 @@ namespace Voussoir
       const auto response =
         law.respond(now.law_strain,
                     values,
-                    PointSituation<Lanes>{now.band, step.length});
+                    PointSituation<Lanes>{now.band,
+                                          step.length,
+                                          history.tip_strength(batch)});
       now.share   = response.damping_share;
       now.plastic = now.law_strain - response.elastic_strain;
       now.stress  = response.stress;

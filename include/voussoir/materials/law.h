@@ -123,6 +123,22 @@ namespace Voussoir
       return {};
     }
 
+    /** Tensile strength of a cell of this size [m] that a crack runs into, over
+     *  that of the material; 1 for a law whose cracks grow by strength alone.
+     *  Cells at a tip have it in PointSituation. */
+    double
+    tip_strength(const double /*cell_size*/) const
+    {
+      return 1.;
+    }
+
+    /** Whether a point with this history has a crack that may run on. */
+    static bool
+    is_cracked(const double * /*history*/)
+    {
+      return false;
+    }
+
     /** A sentence for the log if cells of this length [m] do not suit the law;
      *  else empty. */
     std::string
@@ -138,6 +154,8 @@ namespace Voussoir
   {
     Number element_length; // width of the band of the crack in the cell [m]
     double time_step;      // since the last call [s]
+
+    Number tip_strength = Number(1.); // see LawDefaults::tip_strength
   };
 
   /** Response of a law with internal variables; by default, that of a point

@@ -103,6 +103,18 @@ namespace Voussoir
       return law.outputs(history, element_length);
     }
 
+    double
+    tip_strength(const double cell_size) const override
+    {
+      return law.tip_strength(cell_size);
+    }
+
+    bool
+    is_cracked(const double *history) const override
+    {
+      return Law::is_cracked(history);
+    }
+
     std::string
     remark(const double element_length) const override
     {

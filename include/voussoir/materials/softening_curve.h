@@ -171,6 +171,18 @@ namespace Voussoir
     }
 
     /**
+     * Factor on the strength of a cell of size h [m] at the tip of a crack,
+     *   1 / sqrt(1 + h / (E Gf / ft^2)) :
+     * the cell averages the stress at the tip, which for h above E Gf / ft^2
+     * would let a crack run at too high a load.
+     */
+    double
+    tip_strength(const double cell_size) const
+    {
+      return 1. / std::sqrt(1. + snap_back * cell_size / widest);
+    }
+
+    /**
      * Share of a straight line of the same energy in the falling branch: above
      * zero where the band is so wide that the steepest piece of the curve
      * itself would snap back.
@@ -232,6 +244,9 @@ namespace Voussoir
     {
       return {*this, band, strength_factor(band), straightness(band)};
     }
+
+    // of which 2 E Gf / ft^2 is the width at which a straight line snaps back
+    static constexpr double snap_back = 1.8;
 
     std::vector<Node> nodes;
     double            young_modulus = 1., irreversible_share = 0.;

@@ -22,6 +22,21 @@ namespace Voussoir
   }
 
 
+  /** Where cracks begin. */
+  enum class CrackGrowth
+  {
+    local,
+    from_tips
+  };
+
+  inline OptionNames<CrackGrowth>
+  option_names(const CrackGrowth)
+  {
+    return {{CrackGrowth::local, "local"},
+            {CrackGrowth::from_tips, "from tips"}};
+  }
+
+
   /**
    * Common part of laws with two scalar damages of the effective stress s = C :
    * e_e , which is split into tension and compression (see split_tension):
@@ -33,14 +48,19 @@ namespace Voussoir
    * began: in the latter case the compressed part is that of
    * stress_beside_crack.
    *
-   * The history begins with the internal variables of the two curves
-   * and the normal of the crack.
+   * A crack that begins at the tip of another one has a factor f on its
+   * strength and 1/f on its openings: at the strain e in a band of width l it
+   * has f times the stress that the curve itself has at e/f in a band f^2 l.
+   *
+   * The history begins with the internal variables of the two curves, the
+   * normal of the crack, and its f.
    */
   struct SplitDamage : IsotropicElasticity, TensileCrack
   {
     SofteningCurve tension, compression;
     CrackDirection crack_direction = CrackDirection::rotating;
     double         crack_friction  = 0.4;
+    CrackGrowth    crack_growth    = CrackGrowth::local;
 
     /** @param sign 0: tension, 1: compression */
     const SofteningCurve &
@@ -68,6 +88,29 @@ namespace Voussoir
                         "where its rough faces slide on each other, and of "
                         "opening to slip.",
                         dealii::Patterns::Double(0.2, 2.));
+      add_option(
+        prm,
+        "Crack growth",
+        crack_growth,
+        "Whether a cell cracks by the tensile strength alone, or, in the "
+        "earthquake, also by the lower strength ft / sqrt(1 + h ft^2 / (E "
+        "Gf)) of a cell of size h that the plane of a crack runs into, with "
+        "which cracks run at about the load of fracture mechanics in cells "
+        "of any size.");
+    }
+
+    double
+    tip_strength(const double cell_size) const
+    {
+      return crack_growth == CrackGrowth::from_tips ?
+               tension.tip_strength(cell_size) :
+               1.;
+    }
+
+    static bool
+    is_cracked(const double *history)
+    {
+      return history[0] > 0.;
     }
 
     void
@@ -121,7 +164,8 @@ namespace Voussoir
     /** Internal variables of one curve and of both. */
     static constexpr unsigned int n_of_curve      = CurveMemory::n_numbers,
                                   normal_at       = 2 * n_of_curve,
-                                  n_split_numbers = normal_at + 3;
+                                  strength_at     = normal_at + 3,
+                                  n_split_numbers = strength_at + 1;
 
     static double
     damage_of(const double *history, const unsigned int sign)
@@ -185,6 +229,54 @@ namespace Voussoir
             }
       last = now;
       return progress;
+    }
+
+    /** Advances the damage in tension, whose strength at the tip of a crack is
+     *  lower; see `grow`. */
+    template <typename Number>
+    DamageProgress<Number>
+    grow_crack(const Number          &equivalent,
+               Number                *history,
+               PointSituation<Number> situation,
+               const double           followed = 1.,
+               const bool             flows    = false) const
+    {
+      using dealii::compare_and_apply_mask;
+      using Comparison  = dealii::SIMDComparison;
+      const Number zero = 0., one = 1.;
+      // A tip may arrive where the stress is higher already; there the crack
+      // begins at this stress, so that no energy gets lost.
+      const Number now =
+        std::min(std::max(situation.tip_strength,
+                          Number(0.99 * tension.yield_ratio(equivalent, zero))),
+                 one);
+      Number      &kept   = history[strength_at];
+      const Number factor = compare_and_apply_mask<Comparison::equal>(
+        kept,
+        zero,
+        compare_and_apply_mask<Comparison::equal>(
+          situation.tip_strength, one, one, now),
+        kept);
+      situation.element_length = situation.element_length * factor * factor;
+      const auto progress      = grow(
+        0, Number(equivalent / factor), history, situation, followed, flows);
+      kept = compare_and_apply_mask<Comparison::equal>(history[0],
+                                                       zero,
+                                                       zero,
+                                                       factor);
+      return progress;
+    }
+
+    /** Largest opening of the crack so far [m]. */
+    double
+    largest_opening(const double *history, const double element_length) const
+    {
+      const double factor = history[strength_at];
+      return factor == 0. ?
+               0. :
+               factor * element_length *
+                 tension.at(history[0], factor * factor * element_length)
+                   .inelastic;
     }
 
     /** Result of a step in tension and in compression, or the parts of the

@@ -2,6 +2,7 @@
 #define voussoir_time_central_difference_h
 
 #include <voussoir/constraints/projection.h>
+#include <voussoir/fem/crack_tips.h>
 #include <voussoir/fem/damping.h>
 #include <voussoir/fem/initial_state.h>
 #include <voussoir/fem/internal_force.h>
@@ -32,6 +33,8 @@ namespace Voussoir
     const RigidBase          *base = nullptr; // null: the ground does not move
 
     double closing_viscosity = 0.; // c of DampedResponse [s]
+
+    const CrackTips *crack_tips = nullptr; // null: cracks have none
   };
 
   /** Explicit central differences in leap-frog form; see LeapFrog. */

@@ -1,0 +1,156 @@
+#include <voussoir/fem/crack_tips.h>
+
+#include <deal.II/grid/grid_tools.h>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /** Whether the plane cuts the face. */
+    template <typename Face>
+    bool
+    cuts(const Point<3> &point, const Tensor<1, 3> &normal, const Face &face)
+    {
+      bool above = false, below = false;
+      for (const unsigned int v : face->vertex_indices())
+        {
+          const double distance = normal * (face->vertex(v) - point);
+          above                 = above || distance > 0.;
+          below                 = below || distance < 0.;
+        }
+      return above && below;
+    }
+  } // namespace
+
+
+  CrackTips::CrackTips(const Discretization                  &discretization,
+                       const std::vector<const CellKernel *> &kernels)
+    : discretization(discretization)
+    , kernels(kernels)
+  {
+    for (const CellKernel *kernel : kernels)
+      follows_tips.push_back(kernel->tip_strength(1.) < 1.);
+    is_shared.resize(discretization.grid.triangulation().n_vertices(), false);
+    for (const auto &cell : discretization.dof_handler.active_cell_iterators())
+      if (cell->is_ghost())
+        for (const unsigned int v : cell->vertex_indices())
+          is_shared[cell->vertex_index(v)] = true;
+  }
+
+
+  void
+  CrackTips::look(const unsigned long long step, MaterialMemory &memory) const
+  {
+    if (step % 4 != 0 ||
+        std::find(follows_tips.begin(), follows_tips.end(), true) ==
+          follows_tips.end())
+      return;
+    std::vector<Crack> cracks = new_cracks(memory);
+    exchange(cracks);
+    for (const Crack &crack : cracks)
+      run_on(crack, memory);
+  }
+
+
+  std::vector<CrackTips::Crack>
+  CrackTips::new_cracks(MaterialMemory &memory) const
+  {
+    std::vector<Crack> cracks;
+    for (unsigned int m = 0; m < kernels.size(); ++m)
+      {
+        if (!follows_tips[m])
+          continue;
+        PointHistory &history = *memory.of(m);
+        for (const auto &[cell, place] : history.cells())
+          {
+            const auto [batch, lane] = place;
+            Tensor<1, 3> sum;
+            for (unsigned int q = 0; q < history.n_points(); ++q)
+              if (history.band(place, q) > 0. &&
+                  history.tips_of(batch).run_on[lane] == 0. &&
+                  kernels[m]->is_cracked(history.read(place, q).data()))
+                {
+                  Tensor<1, 3> normal;
+                  for (unsigned int d = 0; d < 3; ++d)
+                    normal[d] = history.active_point(batch, q).normal[d][lane];
+                  sum += sum * normal < 0. ? -normal : normal;
+                }
+            if (sum.norm() > 0.)
+              {
+                cracks.push_back({cell, sum});
+                history.tips_of(batch).run_on[lane] = 1.;
+              }
+          }
+      }
+    return cracks;
+  }
+
+
+  void
+  CrackTips::exchange(std::vector<Crack> &cracks) const
+  {
+    std::map<Cell, Tensor<1, 3>> shared;
+    for (const Crack &crack : cracks)
+      for (const unsigned int v : crack.cell->vertex_indices())
+        if (is_shared[crack.cell->vertex_index(v)])
+          shared.emplace(crack.cell, crack.normal);
+    const unsigned int n_most =
+      Utilities::MPI::max(static_cast<unsigned int>(shared.size()),
+                          discretization.grid.communicator());
+    if (n_most == 0)
+      return;
+    using Sent = std_cxx17::optional<Tensor<1, 3>>;
+    GridTools::exchange_cell_data_to_ghosts<Tensor<1, 3>, DoFHandler<3>>(
+      discretization.dof_handler,
+      [&](const Cell &cell) -> Sent {
+        const auto crack = shared.find(cell);
+        return crack == shared.end() ? Sent() : Sent(crack->second);
+      },
+      [&](const Cell &cell, const Tensor<1, 3> &normal) {
+        cracks.push_back({cell, normal});
+      });
+  }
+
+
+  void
+  CrackTips::run_on(const Crack &crack, MaterialMemory &memory) const
+  {
+    const auto    &cell   = crack.cell;
+    const Point<3> centre = cell->center();
+    for (const unsigned int f : cell->face_indices())
+      {
+        if (cell->at_boundary(f))
+          continue;
+        const auto neighbor = cell->neighbor(f);
+        if (!neighbor->has_children())
+          {
+            if (cuts(centre, crack.normal, cell->face(f)))
+              weaken(neighbor, memory);
+            continue;
+          }
+        const unsigned int opposite = cell->neighbor_of_neighbor(f);
+        for (unsigned int c = 0; c < cell->face(f)->n_children(); ++c)
+          {
+            const auto child = cell->neighbor_child_on_subface(f, c);
+            if (cuts(centre, crack.normal, child->face(opposite)))
+              weaken(child, memory);
+          }
+      }
+  }
+
+
+  void
+  CrackTips::weaken(const Cell &cell, MaterialMemory &memory) const
+  {
+    if (!cell->is_locally_owned())
+      return;
+    const unsigned int material = discretization.grid.material(cell);
+    if (!follows_tips[material])
+      return;
+    const auto [batch, lane] = discretization.place_of(cell);
+    memory.of(material)->tips_of(batch).strength[lane] =
+      kernels[material]->tip_strength(std::cbrt(cell->measure()));
+  }
+} // namespace Voussoir

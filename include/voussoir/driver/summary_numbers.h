@@ -33,9 +33,11 @@ namespace Voussoir
       double                   value;
       std::vector<std::string> names; // along the path, without stars
 
-      /** When [s] and where [m] that was, if the summary has it beside it: "at
-       *  the time [s]", or "time of the smallest safety [s]" beside "smallest
-       *  safety"; likewise "at [m]" and "place of the ...". Else null. */
+      /** When [s] and where [m] that was, if the summary has it beside it:
+       *  "time of the smallest safety [s]" beside "smallest safety", or "at the
+       *  time [s]", which is that of "largest ..." and "smallest ..." where the
+       *  object has such; likewise "place of the ..." and "at [m]". Else null.
+       */
       nlohmann::json time, place;
     };
 

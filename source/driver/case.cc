@@ -156,34 +156,6 @@ namespace Voussoir
                                          shape + "\"");
         }
     }
-
-
-    /** Sections of a study whose first entry, without which they do nothing, is
-     *  empty. */
-    void
-    note_unused_evaluations(Case &parameters)
-    {
-      const ParameterFile &file = parameters.file;
-      for (const std::vector<std::string> &entries :
-           std::vector<std::vector<std::string>>{
-             {"Limit", "Entry", "From", "To", "Accuracy", "Criterion"},
-             {"Extrapolation", "Over", "Order", "Dimensions"},
-             {"Fragility", "Intensity", "Criterion", "Confidence"},
-             {"Sensitivity", "Change", "Entries"},
-             {"Calibration", "Fitted", "Measured", "Error"}})
-        {
-          const std::string section = "Study/" + entries[0];
-          if (file.given(section + "/" + entries[1]).empty() &&
-              std::any_of(entries.begin() + 2,
-                          entries.end(),
-                          [&](const std::string &entry) {
-                            return !file.given(section + "/" + entry).empty();
-                          }))
-            parameters.notes.push_back("section \"" + section +
-                                       "\" is not used, as \"" + entries[1] +
-                                       "\" there is empty");
-        }
-    }
   } // namespace
 
 
@@ -205,7 +177,6 @@ namespace Voussoir
     add_points_of_histories(*this);
     note_unused_crack_friction(*this);
     note_unused_spectrum(*this);
-    note_unused_evaluations(*this);
     check();
     for (const std::string &warning : ground_motion.warnings())
       warnings.push_back(warning);

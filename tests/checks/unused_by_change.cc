@@ -89,12 +89,6 @@ namespace Voussoir
           "of its own: no note",
           make_case(file.with({vertical + "Shape=hydropower code", period}))
             ->notes.empty());
-
-        verdicts.same_text("extrapolation over nothing",
-                           only_note(
-                             file.with({"Study/Extrapolation/Order=2"})),
-                           "section \"Study/Extrapolation\" is not used, as "
-                           "\"Over\" there is empty");
       }
 
     private:

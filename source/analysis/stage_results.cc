@@ -86,14 +86,19 @@ namespace Voussoir
       const auto   base = nearest_in_x("base of the crown",
                                      foot,
                                      0.5 * (foot.front()[0] + foot.back()[0]));
-      return {nearest_in_x("crest at its lower quarter of x",
-                           crest,
-                           first + 0.25 * (last - first)),
-              nearest_in_x("crest at the crown", crest, base.position[0]),
-              nearest_in_x("crest at its upper quarter of x",
-                           crest,
-                           first + 0.75 * (last - first)),
-              base};
+      const auto   crown =
+        nearest_in_x("crest at the crown", crest, base.position[0]);
+      const auto lower = nearest_in_x("crest at its lower quarter of x",
+                                      crest,
+                                      first + 0.25 * (last - first));
+      const auto upper = nearest_in_x("crest at its upper quarter of x",
+                                      crest,
+                                      first + 0.75 * (last - first));
+      // a section of one cell has no quarters
+      if (lower.position[0] < crown.position[0] &&
+          crown.position[0] < upper.position[0])
+        return {lower, crown, upper, base};
+      return {crown, base};
     }
 
 

@@ -209,13 +209,30 @@ namespace Voussoir
       // numbers that are moved by a small share do not change the time of a run
       const std::size_t n_tried =
         Case(file).study.moves_numbers() ? 1 : runs.size();
-      double seconds = 0.;
+      double                   seconds = 0.;
+      std::vector<std::string> texts; // of all runs, each once
+      const auto               add = [&texts](const std::string &text) {
+        if (std::find(texts.begin(), texts.end(), text) == texts.end())
+          texts.push_back(text);
+      };
       for (std::size_t i = 0; i < n_tried; ++i)
-        seconds += estimate(Case(runs[i]), options, communicator).seconds *
-                   runs.size() / n_tried;
+        {
+          const Case     run(runs[i]);
+          const Estimate found = estimate(run, options, communicator);
+          seconds += found.seconds * runs.size() / n_tried;
+          for (const std::string &note : run.notes)
+            add("note: " + note + '\n');
+          for (const std::string &warning : found.warnings)
+            add("Warning: " + warning + '\n');
+          nlohmann::json missed;
+          for (const std::string &name : not_met(found.checks))
+            missed[name] = found.checks.at(name);
+          add(description("Numerical checks not met, known before", missed));
+        }
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
         std::cout
-          << "Valid: a study of " << counted(runs.size(), "run", "runs")
+          << join(texts, "") << "Valid: a study of "
+          << counted(runs.size(), "run", "runs")
           << (Case(file).study.seeks_limit() ? " and values between them" : "")
           << ".\nTheir steps take about " << duration_text(seconds) << " on "
           << counted(Utilities::MPI::n_mpi_processes(communicator),

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iomanip>
 #include <map>
-#include <numeric>
 
 namespace Voussoir
 {
@@ -156,38 +155,12 @@ namespace Voussoir
     }
 
 
-    /** The frequency below which half of the power of the acceleration lies
-     *  [Hz]. */
-    double
-    middle_frequency(const std::array<std::vector<double>, 3> &accelerations)
-    {
-      std::vector<double> power;
-      for (const std::vector<double> &component : accelerations)
-        if (!component.empty())
-          {
-            const auto spectrum =
-              fourier_transform(component, transform_size(component.size()));
-            power.resize(spectrum.size(), 0.);
-            for (std::size_t k = 0; k < spectrum.size(); ++k)
-              power[k] += std::norm(spectrum[k]);
-          }
-      std::partial_sum(power.begin(), power.end(), power.begin());
-      const auto half =
-        std::lower_bound(power.begin(), power.end(), 0.5 * power.back());
-      return double(half - power.begin()) / (2. * double(power.size() - 1) *
-                                             EarthquakeMotion::sample_interval);
-    }
-
-
     // Warns of waves that are too short for the cells of the rock, and so do
     // not reach the dam.
     void
-    check_frequencies(const Model                              &model,
-                      const std::array<std::vector<double>, 3> &accelerations,
-                      Log                                      &log)
+    check_frequencies(const Model &model, const double middle, Log &log)
     {
       constexpr double          fairly  = 8. / 5.; // nodes per wavelength
-      const double              middle  = middle_frequency(accelerations);
       const std::vector<double> carried = model.carried_frequencies();
       for (unsigned int m = 0; m < carried.size(); ++m)
         if (carried[m] > 0. && model.solid.materials[m]->inertia_factor == 1. &&
@@ -222,15 +195,12 @@ namespace Voussoir
     // Reports damping on the way to the surface: the more rock lies below the
     // dam, the more it weakens an outcrop motion given at its bottom.
     void
-    report_loss(const Model                              &model,
-                const std::array<std::vector<double>, 3> &accelerations,
-                Log                                      &log)
+    report_loss(const Model &model, const double frequency, Log &log)
     {
       constexpr double noteworthy = 0.05;
       const auto      &damping    = model.parameters.damping;
       if (damping.model == DampingModel::none)
         return;
-      const double frequency = middle_frequency(accelerations);
       // by level, which several faces share
       std::map<double, double> damped_times;
       for (const SideFace &face : model.boundary.side_faces())
@@ -357,10 +327,13 @@ namespace Voussoir
         for (std::size_t i = 0; i * sample_interval <= end_time; ++i)
           accelerations[d].push_back(
             signals[d]->acceleration(i * sample_interval));
+    // half of the power of the acceleration lies below
+    const double middle =
+      frequency_of_intensity(accelerations, sample_interval, 0.5);
     if (end_time > 0.)
       {
         check_peaks(signals, ground_motion, end_time, log);
-        check_frequencies(model, accelerations, log);
+        check_frequencies(model, middle, log);
         check_strong_part(signals, parameters.acceptance, end_time, log);
       }
     if (model.rigid_base())
@@ -389,7 +362,7 @@ namespace Voussoir
       {
         check_layers(model, log);
         if (end_time > 0. && ground_motion.given_at == MotionPlace::outcrop)
-          report_loss(model, accelerations, log);
+          report_loss(model, middle, log);
       }
   }
 

@@ -94,25 +94,40 @@ namespace Voussoir
     }
 
 
-    /** Whether a run to this end time has finished and written all files. */
-    bool
-    is_finished(const std::string &folder, const double end_time)
+    /** A run that has come to its end and left all files. */
+    struct FinishedRun
+    {
+      double end  = std::numeric_limits<double>::quiet_NaN(); // [s]
+      double step = end;
+
+      bool
+      reaches(const double time) const
+      {
+        return end > time - 0.5 * step;
+      }
+    };
+
+
+    /** The finished run of a folder; without numbers if there is none. */
+    FinishedRun
+    finished_run(const std::string &folder)
     {
       std::ifstream        in(folder + "/summary.json");
       const nlohmann::json summary =
         nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
       if (!is_summary(summary) || summary.contains("files not written"))
-        return false;
+        return {};
       const std::string verdict = summary.at("verdict");
-      const auto        number  = [&](const char *name) {
-        const auto found = summary.find(name);
-        return found != summary.end() && found->is_number() ?
-                         found->get<double>() :
-                         std::numeric_limits<double>::quiet_NaN();
-      };
-      return verdict.rfind("stopped", 0) != 0 &&
-             verdict.rfind("failed", 0) != 0 &&
-             number("end time [s]") > end_time - 0.5 * number("time step [s]");
+      if (verdict.rfind("stopped", 0) == 0 || verdict.rfind("failed", 0) == 0)
+        return {};
+      FinishedRun run;
+      for (const auto &[name, value] :
+           {std::make_pair("end time [s]", &run.end),
+            std::make_pair("time step [s]", &run.step)})
+        if (const auto found = summary.find(name);
+            found != summary.end() && found->is_number())
+          *value = *found;
+      return run;
     }
 
 
@@ -246,14 +261,14 @@ namespace Voussoir
     const unsigned int n =
       Utilities::MPI::broadcast(log.communicator(), count(name));
     std::vector<std::string> damaged, finished;
+    FinishedRun              run;
     for (unsigned int i = n; i > 0 && from.empty(); --i)
       {
         chosen = numbered(name, i);
+        run =
+          Utilities::MPI::broadcast(log.communicator(), finished_run(chosen));
         // a study may not have recorded a finished run, and restarts it
-        if (!options.overwrite &&
-            Utilities::MPI::broadcast(log.communicator(),
-                                      is_finished(chosen,
-                                                  parameters.time.end_time)))
+        if (!options.overwrite && run.reaches(parameters.time.end_time))
           {
             finished.push_back(chosen);
             continue;
@@ -280,7 +295,19 @@ namespace Voussoir
     on_first_rank(log.communicator(), [&] { check_sizes(); });
     const double reached = header.at("time");
     if (reached < parameters.time.end_time)
-      return;
+      {
+        if (run.reaches(reached))
+          log.line("The run in \"",
+                   chosen,
+                   "\" had come to its end at ",
+                   run.end,
+                   " s and is extended to ",
+                   parameters.time.end_time,
+                   " s, from its checkpoint of ",
+                   reached,
+                   " s");
+        return;
+      }
     std::ostringstream text;
     text << "The checkpoint \"" << from << "\" is of " << reached
          << " s, but \"End time\" in section \"Time\" is "

@@ -101,7 +101,10 @@ namespace Voussoir
              time_step.length,
              model.parameters.output.energy_interval)
     , times(model.solid.discretization.dof_handler.n_dofs())
-    , supervision(observed, energy, model.parameters.output.energy_limit)
+    , supervision(observed,
+                  energy,
+                  model.parameters.output.energy_limit,
+                  lowered_strength(model))
     , checkpoints(*setup, folder, contact ? &*contact : nullptr, log)
     , requests(model.parameters.output, folder, log)
   {

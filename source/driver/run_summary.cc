@@ -440,12 +440,19 @@ namespace Voussoir
     if (run.model.solid.internal_force.has_memory())
       march.materials =
         memory_summary(run.observed, run.model.parameters.material_names());
-    if (const WidestCrack widest = widest_crack(run.observed, true);
-        widest.opening > 0.)
-      march.detachment = {
-        {"crack over its cell", widest.share},
-        {"crack opening [mm]", 1e3 * widest.opening},
-        {"at [m]", {widest.where[0], widest.where[1], widest.where[2]}}};
+    const auto &materials = run.model.solid.materials;
+    if (std::any_of(materials.begin(),
+                    materials.end(),
+                    [](const Material *material) {
+                      return reports_cracks(*material);
+                    }))
+      {
+        const WidestCrack widest = widest_crack(run.observed, true);
+        march.detachment         = {{"crack over its cell", widest.share},
+                                    {"crack opening [mm]", 1e3 * widest.opening}};
+        if (widest.opening > 0.)
+          march.detachment["at [m]"] = to_json(widest.where);
+      }
     march.energy = run.energy.summary();
     return summary;
   }

@@ -60,17 +60,34 @@ namespace Voussoir
     }
 
 
-    /** The value beside a number, under one of two names, or null. */
+    bool
+    is_extreme(const std::string &name)
+    {
+      return name.rfind("largest", 0) == 0 || name.rfind("smallest", 0) == 0;
+    }
+
+
+    /** The value beside a number under a name of its own, or under a name of
+     *  the object, which belongs to the extreme of the object if it has one;
+     *  else null. */
     nlohmann::json
     beside(const nlohmann::json &around,
+           const std::string    &number,
            const std::string    &own_name,
            const std::string    &name)
     {
       if (!around.is_object())
         return {};
-      return around.contains(own_name) ? around.at(own_name) :
-             around.contains(name)     ? around.at(name) :
-                                         nlohmann::json();
+      if (around.contains(own_name))
+        return around.at(own_name);
+      const auto items = around.items();
+      const bool is_its =
+        is_extreme(number) ||
+        std::none_of(items.begin(), items.end(), [](const auto &item) {
+          return item.value().is_number() && is_extreme(item.key());
+        });
+      return is_its && around.contains(name) ? around.at(name) :
+                                               nlohmann::json();
     }
   } // namespace
 
@@ -134,12 +151,14 @@ namespace Voussoir
               return;
             const std::string name = dealii::Utilities::trim(
               way.back().substr(0, way.back().find('[')));
-            found = {number,
-                     way,
-                     beside(around,
-                            "time of the " + name + " [s]",
-                            "at the time [s]"),
-                     beside(around, "place of the " + name + " [m]", "at [m]")};
+            found = {
+              number,
+              way,
+              beside(around,
+                     name,
+                     "time of the " + name + " [s]",
+                     "at the time [s]"),
+              beside(around, name, "place of the " + name + " [m]", "at [m]")};
           });
     return found;
   }

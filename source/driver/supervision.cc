@@ -1,5 +1,6 @@
 #include <voussoir/constraints/contact.h>
 #include <voussoir/driver/supervision.h>
+#include <voussoir/driver/verdict_tables.h>
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/material_memory.h>
 
@@ -21,10 +22,12 @@ namespace Voussoir
 
   Supervision::Supervision(const ObservedRun   &run,
                            const EnergyBalance &energy,
-                           const double         energy_limit)
+                           const double         energy_limit,
+                           const double         lowered_strength)
     : run(run)
     , energy(energy)
     , energy_limit(energy_limit)
+    , lowered_strength(lowered_strength)
     , has_memory(run.solid.internal_force.has_memory())
     , checks(check_interval, run.time_step)
   {}
@@ -95,8 +98,14 @@ namespace Voussoir
     text << std::setprecision(3) << "at t = " << time
          << " s a crack is open by " << 1e3 * widest.opening << " mm, "
          << 100. * widest.share
-         << " % of its cell: cracks have detached a block from the rest; its "
-            "detachment is a reliable result, its motion afterwards is not";
+         << " % of its cell: cracks have detached a block from the rest; ";
+    if (lowered_strength > most_lowered)
+      text << "neither its detachment nor its motion afterwards is a reliable "
+              "result, as long cells lower the strength by "
+           << lowered_strength << " %";
+    else
+      text << "its detachment is a reliable result, its motion afterwards is "
+              "not";
     run.log.warn(text.str());
   }
 

@@ -16,8 +16,8 @@ namespace Voussoir
     // (see Supervision). Below a scaled Jacobian of a tenth a cell is close to
     // flat.
     constexpr double most_energy = 0.01, most_of_losses = 0.03,
-                     least_jacobian = 0.1, most_lowered = 10., // [%]
-      intensity_carried = 0.9, most_slip = 0.5, widest_crack_share = 0.02;
+                     least_jacobian = 0.1, intensity_carried = 0.9,
+                     most_slip = 0.5, widest_crack_share = 0.02;
 
     // Smaller openings and slips arise from elastic deformation of the mesh
     // [mm]; a surface that slides faster at the end has not come to rest
@@ -252,8 +252,13 @@ namespace Voussoir
           const nlohmann::json &through = summary.at("through cracks");
           results["open from face to face at one moment [mm]"] =
             with_place(at_most(number_in(through, once), visible), through);
-          results["open from face to face at the end [mm]"] =
-            at_most(number_in(through, last), visible);
+          nlohmann::json &end =
+            results["open from face to face at the end [mm]"];
+          end = at_most(number_in(through, last), visible);
+          if (const char *place =
+                "place of the opening from face to face at the end [m]";
+              through.contains(place))
+            end["at [m]"] = through.at(place);
         }
       if (summary.contains("detachment"))
         {
@@ -305,29 +310,9 @@ namespace Voussoir
 
 
   double
-  frequency_of_intensity(
-    const std::array<std::vector<double>, 3> &accelerations,
-    const double                              sample_interval,
-    const double                              share)
+  lowered_strength(const Model &model)
   {
-    std::size_t n = 0;
-    for (const auto &component : accelerations)
-      n = std::max(n, component.size());
-    const std::size_t   size = transform_size(n);
-    std::vector<double> power(size / 2 + 1);
-    for (const auto &component : accelerations)
-      if (!component.empty())
-        {
-          const auto spectrum = fourier_transform(component, size);
-          for (std::size_t k = 0; k < power.size(); ++k)
-            power[k] += std::norm(spectrum[k]);
-        }
-    const double whole = std::accumulate(power.begin(), power.end(), 0.);
-    double       sum   = 0.;
-    for (std::size_t k = 0; k < power.size() && whole > 0.; ++k)
-      if ((sum += power[k]) >= share * whole)
-        return double(k) / (double(size) * sample_interval);
-    return 0.;
+    return most_lowered_strength(model).share;
   }
 
 

@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/json_entries.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/output/crack_paths.h>
 #include <voussoir/output/material_memory.h>
@@ -121,16 +122,25 @@ namespace Voussoir
       conclude(const State &state, nlohmann::json &summary) override
       {
         const Openings  openings = find_openings();
-        const CrackPath now      = paths->widest(openings.now, 0.);
+        const CrackPath now      = paths->widest(openings.now, 0.),
+                        ever     = paths->widest(openings.ever, 0.);
         compare(now, state.time);
-        summary["through cracks"] = {
-          {"largest opening from face to face at one moment [mm]", most[0]},
-          {"at the time [s]", most[1]},
-          {"opening from face to face at the end [mm]", now.opening},
-          {"largest openings ever from face to face [mm]",
-           paths->widest(openings.ever, 0.).opening}};
+        const std::string last   = "opening from face to face at the end",
+                          widest = "largest openings ever from face to face";
+        nlohmann::json &cracks   = summary["through cracks"];
+        cracks                   = {
+                            {"largest opening from face to face at one moment [mm]", most[0]},
+                            {"at the time [s]", most[1]},
+                            {last + " [mm]", now.opening},
+                            {"time of the " + last + " [s]", state.time},
+                            {widest + " [mm]", ever.opening},
+                            {"time of the " + widest + " [s]", nullptr}}; // of several moments
         if (most[0] > 0.)
-          summary["through cracks"]["at [m]"] = {most[2], most[3], most[4]};
+          cracks["at [m]"] = {most[2], most[3], most[4]};
+        if (now.opening > 0.)
+          cracks["place of the " + last + " [m]"] = to_json(now.where);
+        if (ever.opening > 0.)
+          cracks["place of the " + widest + " [m]"] = to_json(ever.where);
       }
 
       static void

@@ -3,6 +3,7 @@
 #include <fftw3.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace Voussoir
 {
@@ -59,5 +60,32 @@ namespace Voussoir
     while (result < size)
       result *= 2;
     return result;
+  }
+
+
+  double
+  frequency_of_intensity(
+    const std::array<std::vector<double>, 3> &accelerations,
+    const double                              sample_interval,
+    const double                              share)
+  {
+    std::size_t n = 0;
+    for (const auto &component : accelerations)
+      n = std::max(n, component.size());
+    const std::size_t   size = transform_size(n);
+    std::vector<double> power(size / 2 + 1);
+    for (const auto &component : accelerations)
+      if (!component.empty())
+        {
+          const auto spectrum = fourier_transform(component, size);
+          for (std::size_t k = 0; k < power.size(); ++k)
+            power[k] += std::norm(spectrum[k]);
+        }
+    const double whole = std::accumulate(power.begin(), power.end(), 0.);
+    double       sum   = 0.;
+    for (std::size_t k = 0; k < power.size() && whole > 0.; ++k)
+      if ((sum += power[k]) >= share * whole)
+        return double(k) / (double(size) * sample_interval);
+    return 0.;
   }
 } // namespace Voussoir

@@ -51,6 +51,14 @@ namespace Voussoir
                            straight.run.state.displacement.linfty_norm() >
                              1e-4);
         } // which leaves the folder to the next one
+        std::ostringstream sentence_of_extension;
+        sentence_of_extension << "The run in \"in_two\" had come to its end at "
+                              << shorter->time.end_time
+                              << " s and is extended to " << end << " s";
+        verdicts.is_true(
+          "the log says what is extended, and to when",
+          text_of("in_two/log.txt").find(sentence_of_extension.str()) !=
+            std::string::npos);
 
         write_record(1e-3, communicator);
         const auto  changed  = make_case(with(file, "in_two", 2. * end));

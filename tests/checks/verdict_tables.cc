@@ -1,4 +1,5 @@
 #include <voussoir/driver/verdict_tables.h>
+#include <voussoir/signals/fourier.h>
 
 #include "check.h"
 
@@ -49,6 +50,16 @@ namespace Voussoir
              {{"largest displacement [m]", 0.2},
               {"time of the largest displacement [s]", 3.5}}},
             {"base", {{"largest displacement [m]", 0.1}}}}},
+          {"through cracks",
+           {{"largest opening from face to face at one moment [mm]", 64.},
+            {"at the time [s]", 2.},
+            {"opening from face to face at the end [mm]", 12.},
+            {"time of the opening from face to face at the end [s]", 9.}}},
+          {"detachment", {{"crack over its cell", 0.1}, {"at [m]", {1, 2, 3}}}},
+          {"tension",
+           {{"largest principal stress [MPa]", 3.},
+            {"at the time [s]", 2.},
+            {"not exceeded in 95 % of the volume [MPa]", 1.}}},
           {"interfaces",
            {{"surfaces", nlohmann::json::object()},
             {"blocks",
@@ -75,9 +86,35 @@ namespace Voussoir
                       1e-12);
         verdicts.is_true("no such number: not assessed",
                          summary.acceptance.at("rate").at("met").is_null());
+        const auto time_of = [&summary](const char *name) {
+          const nlohmann::json &line = summary.acceptance.at(name);
+          return line.contains("at the time [s]") ?
+                   line.at("at the time [s]").get<double>() :
+                   -1.;
+        };
+        verdicts.near("cut through, when it was widest [s]",
+                      time_of("cut through"),
+                      2.,
+                      1e-12);
+        verdicts.near("  at the end [s]",
+                      time_of("open at the end"),
+                      9.,
+                      1e-12);
+        verdicts.near("  a share of the volume has no time",
+                      time_of("most of the volume"),
+                      -1.,
+                      0.);
+        verdicts.is_true("  a crack that is no extreme has the place beside it",
+                         summary.acceptance.at("loose").at("at [m]") ==
+                           nlohmann::json({1, 2, 3}));
         verdicts.is_true("a criterion of another load case is left out",
                          !summary.acceptance.contains("other case"));
-        verdicts.same_text("verdict", summary.verdict(), "not met: crest");
+        verdicts.same_text(
+          "verdict",
+          summary.verdict(),
+          "not met: detached: crack over its cell; open from face to face "
+          "at one moment [mm]; open from face to face at the "
+          "end [mm]; crest; cut through; loose; open at the end");
         const RunSummary read = nlohmann::json(summary).get<RunSummary>();
         verdicts.is_true("read as it was written",
                          read.acceptance == summary.acceptance &&

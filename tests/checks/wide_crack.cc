@@ -19,9 +19,23 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
+        verdicts.is_true("1 mm: no crack, no warning",
+                         warnings_at(file, 1e-3, communicator).empty());
+        const char *share = "crack over its cell";
+        verdicts.near("  crack over its cell",
+                      read_summary(folder).at("detachment").at(share),
+                      0.,
+                      0.);
         verdicts.is_true("60 mm: no warning",
                          warnings_at(file, 0.06, communicator).empty());
+        verdicts.near("  crack over its cell",
+                      read_summary(folder).at("detachment").at(share),
+                      0.06 / 3.25 * std::pow(std::sin(0.3 * numbers::PI), 2),
+                      0.05);
         const nlohmann::json warnings = warnings_at(file, 0.14, communicator);
+        verdicts.same_text("140 mm: verdict",
+                           read_summary(folder).at("verdict"),
+                           "not met: detached: crack over its cell");
         verdicts.is_true("140 mm: one warning, of cracks",
                          warnings.size() == 1 &&
                            warnings.at(0).get<std::string>().find("a crack is "
@@ -34,6 +48,20 @@ namespace Voussoir
                       std::asin(std::sqrt(65. / 140.)) / (0.05 * numbers::PI) +
                         0.05,
                       0.03);
+        verdicts.is_true("  its detachment is a reliable result",
+                         text.find("its detachment is a reliable result") !=
+                           std::string::npos);
+
+        const nlohmann::json brittle =
+          warnings_at(file.with({"Materials/weak/Fracture energy=120"}),
+                      0.14,
+                      communicator);
+        verdicts.is_true(
+          "where its cell lowers the strength it is not",
+          brittle.size() == 1 &&
+            brittle.at(0).get<std::string>().find(
+              "neither its detachment nor its motion afterwards is a reliable "
+              "result, as long cells lower the strength") != std::string::npos);
       }
 
     private:
@@ -45,9 +73,11 @@ namespace Voussoir
         return warnings_of(file,
                            "Constraints/pull/Displacement=0, 0, " +
                              std::to_string(amplitude),
-                           "wide_crack",
+                           folder,
                            communicator);
       }
+
+      static constexpr const char *folder = "wide_crack";
     };
 
     // Reference: closed form

@@ -227,7 +227,7 @@ def check_verdicts(scratch):
             ("a number that is none", {**good, "engineering results": {"slip at the end [mm]": line(None, False)}},
              ("good", "bad"), {"slip at the end [mm]": "not met"}),
             ("strength lowered", {"numerical checks": {"strength lowered by long cells [%]": line(59., False, **{
-                "at most": 10., "of": "concrete"})}}, ("bad", "open"), {"strength lowered by long cells [%]": "not met"}),
+                "at most": 10., "of": "concrete", "remedy": "cells of at most 2 m keep it"})}}, ("bad", "open"), {"strength lowered by long cells [%]": "not met"}),
             ("a warning", {**good, "warnings": [detached]}, ("doubt", "open"), {}),
             ("stopped", {**good, "verdict": "stopped: the motion grows without end"}, ("bad", "open"), {}),
             ("a criterion", {**good, "acceptance table": {"crest": crest}}, ("bad", "good", "open"),
@@ -244,6 +244,8 @@ def check_verdicts(scratch):
         if name.startswith("demand over"):
             is_true("with its place and time", lines["demand over tensile strength"].place
                     == "upstream face, at 2.00 s, x = 59.0, y = 1.00, z = 20.0 m")
+        if name == "strength lowered":
+            is_true("with its remedy", found[0].remarks == ["strength lowered by long cells [%]: cells of at most 2 m keep it"])
         if name == "a criterion":
             is_true("with its limit, unit and source", lines["crest, MCE: 4.2"].limit == "at most 0.150 m (user's)"
                     and lines["crest, MCE: 4.2"].found == "0.200 m")
@@ -282,6 +284,10 @@ def check_study(scratch):
     (folder / "study.json").write_text(json.dumps({"runs": [
         {"folder": f"run_{factor}", "verdict": "no objection", "values": {"Ground motion/Overload factor": str(factor)},
          "quantities": {"largest displacement [m]": 0.1 * factor}} for factor in (1, 2)]}))
+    is_true("names of what is numbered", study.titled("modes/modes/0/frequency [Hz]") == "mode 1: frequency [Hz]"
+            and study.titled("static state/stages/1/points/crest/displacement y [m]") == "stage 2, crest: displacement y [m]"
+            and study.titled("interfaces/blocks/*/slip [mm]") == "blocks *: slip [mm]"
+            and study.titled("end time [s]") == "end time [s]")
     table = next(part for part in study.study_section([], [study.Study(folder)]).parts if isinstance(part, page.Table))
     is_true("acceptance of the runs of a study", table.head == ["Overload factor", "crest, MCE"]
             and table.rows == [["1", "met: 0.100"], ["2", "not met: 0.200"]])

@@ -66,6 +66,13 @@ def check_ends(scratch):
             and " 0 were stopped" not in said.splitlines()[-1], said)
 
 
+def check_validation(scratch):
+    code, said = study(cases / "study_slope.prm", scratch / "valid", "Ground motion/Spectrum/Periods=0.1, 1",
+                       options=("--validate",))
+    is_true("--validate has the notes of all runs, each once", code == 0 and said.count("note: ") == 1
+            and 'note: "Periods" in section "Ground motion/Spectrum" is not used' in said, said)
+
+
 def check_notes(scratch):
     columns, folder = cases / "study_columns.prm", scratch / "columns"
     code, said = study(columns, folder)
@@ -137,7 +144,7 @@ def check_two_at_once(scratch):
 
 
 with tempfile.TemporaryDirectory() as name:
-    for check in (check_ends, check_notes, check_files, check_two_at_once):
+    for check in (check_ends, check_validation, check_notes, check_files, check_two_at_once):
         place = pathlib.Path(name).resolve() / check.__name__
         place.mkdir()
         check(place)

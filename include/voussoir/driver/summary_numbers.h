@@ -34,9 +34,10 @@ namespace Voussoir
       std::vector<std::string> names; // along the path, without stars
 
       /** Time [s] and place [m] of the number, if the summary has them beside
-       *  it: "at the time [s]", or "time of the smallest safety [s]" beside
-       *  "smallest safety"; likewise "at [m]" and "place of the ...". Else
-       *  null. */
+       *  it: "time of the smallest safety [s]" beside "smallest safety", or "at
+       *  the time [s]", which belongs to "largest ..." and "smallest ..." where
+       *  the object has such numbers; likewise "place of the ..." and "at [m]".
+       *  Else null. */
       nlohmann::json time, place;
     };
 

@@ -13,10 +13,12 @@ namespace Voussoir
     /**
      * @param run,energy   must live as long as this
      * @param energy_limit of the energy-balance error, see EnergyBalance::alarm
+     * @param lowered_strength by long cells [%]
      */
     Supervision(const ObservedRun   &run,
                 const EnergyBalance &energy,
-                const double         energy_limit);
+                const double         energy_limit,
+                const double         lowered_strength);
 
     /** Evaluates the energy balance of a state. If the run must stop the result
      *  is the reason, else it is empty, and the state is the last good one. */
@@ -52,7 +54,7 @@ namespace Voussoir
 
     const ObservedRun   &run;
     const EnergyBalance &energy;
-    const double         energy_limit;
+    const double         energy_limit, lowered_strength;
     const bool           has_memory;
     const Schedule       checks; // of cracks and slips
 

@@ -5,6 +5,15 @@
 
 namespace Voussoir
 {
+  /** Reduction of a strength by long cells up to which it counts as kept [%].
+   */
+  constexpr double most_lowered = 10.;
+
+  /** The largest of a strength in tension or compression, in the run or in its
+   *  static state [%]. Called on all ranks. */
+  double
+  lowered_strength(const Model &model);
+
   /**
    * Numerical checks that are possible before the first step: time step,
    * distortion of cells, strengths lowered by cells that are too long for their
@@ -34,14 +43,6 @@ namespace Voussoir
   /** A table in lines of text, under its name; empty if there is none. */
   std::string
   description(const std::string &title, const nlohmann::json &table);
-
-  /** Frequency below which a share of the Arias intensity of these
-   *  accelerations lies, of all components [Hz]; 0 if nothing moves. */
-  double
-  frequency_of_intensity(
-    const std::array<std::vector<double>, 3> &accelerations,
-    const double                              sample_interval,
-    const double                              share);
 } // namespace Voussoir
 
 #endif

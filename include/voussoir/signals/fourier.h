@@ -1,6 +1,7 @@
 #ifndef voussoir_signals_fourier_h
 #define voussoir_signals_fourier_h
 
+#include <array>
 #include <complex>
 #include <vector>
 
@@ -23,6 +24,14 @@ namespace Voussoir
   /** The smallest power of two not below @p size, at least two. */
   std::size_t
   transform_size(const std::size_t size);
+
+  /** Frequency below which a share of the Arias intensity of these
+   *  accelerations lies, of all components [Hz]; 0 if nothing moves. */
+  double
+  frequency_of_intensity(
+    const std::array<std::vector<double>, 3> &accelerations,
+    const double                              sample_interval,
+    const double                              share);
 } // namespace Voussoir
 
 #endif

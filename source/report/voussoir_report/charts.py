@@ -108,12 +108,17 @@ def finish(axes, title, x, y, zero, limits=None, log=False):
     legend_above(axes)
 
 
+def columns_for(names):
+    """Of a legend, as many as have space."""
+    return 2 if max(map(len, names), default=0) > 15 else 3
+
+
 def legend_above(axes):
     """Adds a legend of the curves that have names, above them."""
     names = axes.get_legend_handles_labels()[1]
     if not names:
         return
-    columns = 2 if max(len(name) for name in names) > 15 else 3
+    columns = columns_for(names)
     rows = -(-len(names) // columns)
     forward, back = axes.yaxis.get_transform(), axes.yaxis.get_transform().inverted()
     low, high = forward.transform(axes.get_ylim())
@@ -204,7 +209,8 @@ def framed(image, across, caption, name, scale=None, legend=None, dpi=None):
     """A picture of a scene that is @p across [m] wide, with a scale bar, a colour bar and
     a legend of colours."""
     height = WIDTH * image.shape[0] / image.shape[1]
-    rows = -(-len(legend or ()) // 3)
+    columns = columns_for(legend or ())
+    rows = -(-len(legend or ()) // columns)
     below = 0.7 if scale else 0.2 * rows
     figure = Figure(figsize=(WIDTH, height + below))
     axes = place(figure, 0., below, WIDTH, height)
@@ -215,7 +221,7 @@ def framed(image, across, caption, name, scale=None, legend=None, dpi=None):
         scale.bar(figure)
     if legend:
         figure.legend([Rectangle((0, 0), 1, 1, color=colour) for colour in legend.values()], list(legend),
-                      ncols=3, frameon=False, loc="lower center", borderaxespad=0.)
+                      ncols=columns, frameon=False, loc="lower center", borderaxespad=0.)
     return picture(figure, caption, name, vector=False, dpi=dpi, shaded=True)
 
 
@@ -268,6 +274,23 @@ def face_map(panels, scale, caption, name, unit="", largest=None):
         draw_panel(axes, panel, scale, unit, largest)
     scale.bar(figure)
     return picture(figure, caption, name, vector=False)
+
+
+def face_profiles(runs, every, label, caption, name):
+    """Values over the elevation on the faces of slices of a dam, the downstream one dashed, of
+    each run in its colour."""
+    figure, axes = new_figure(3.6)
+    for run, panels in zip(runs, every):
+        for panel, style in zip(panels, ("-", "--")):
+            face = panel.title.split(",")[0]
+            levels, row = np.unique(np.round(panel.places[..., 1].ravel(), 3), return_inverse=True)
+            values = np.broadcast_to(panel.values.reshape(len(panel.places), -1), panel.places.shape[:2]).ravel()
+            axes.plot(np.bincount(row.ravel(), values) / np.bincount(row.ravel()), levels, style,
+                      color=f"C{run.place % 10}",
+                      label=face if len(runs) == 1 else run.title_in_chart if style == "-" else None)
+    axes.axvline(0., color="0.4", linewidth=0.6)
+    finish(axes, "", label, "elevation z [m]", zero=False)
+    return picture(figure, caption, name)
 
 
 def draw_panel(axes, panel, scale, unit="", largest=None):
@@ -327,17 +350,17 @@ def sections_map(panels, scale, caption, name):
         axes.set_xticks([])
         axes.spines["bottom"].set_visible(False)
         axes.grid(False)
-        scale_bar(axes, axes.get_xlim()[1], bottom - 0.5 * gap, 0.25 * (top - bottom))
+        scale_bar(axes, axes.get_xlim()[1], bottom - 0.5 * gap, 0.25 * (top - bottom), below=True)
     scale.bar(figure)
     return picture(figure, caption, name, vector=False)
 
 
-def scale_bar(axes, right, at, about):
-    """Draws a scale bar with its length [m], as the abscissa has no numbers."""
+def scale_bar(axes, right, at, about, below=False):
+    """Draws a scale bar with its length [m] over or below it, as the abscissa has no numbers."""
     length = float(f"{about:.0e}")
     axes.plot([right - length, right], [at, at], color="black", linewidth=1.5, clip_on=False)
-    axes.annotate(f"{length:g} m", (right - 0.5 * length, at), xytext=(0, 2), textcoords="offset points",
-                  ha="center", fontsize=8)
+    axes.annotate(f"{length:g} m", (right - 0.5 * length, at), xytext=(0, -2 if below else 2), textcoords="offset points",
+                  ha="center", va="top" if below else "bottom", fontsize=8)
 
 
 def fine(levels):

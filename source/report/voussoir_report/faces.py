@@ -42,14 +42,28 @@ def face_panels(run, field, file=FILE):
     return panels
 
 
+def maps(runs, every, label, caption, name, unit="", largest=None, colours=None):
+    """A picture of panels for each run, in the same colours; of slices of a dam, whose faces
+    are too narrow for it, one of all."""
+    is_slice = [dam_of(run).is_slice for run in runs]
+    slices = [run for run, narrow in zip(runs, is_slice) if narrow]
+    wide = [(run, panels) for run, panels, narrow in zip(runs, every, is_slice) if not narrow]
+    pictures = []
+    if wide:
+        scale = charts.Scale([panel.values for _, panels in wide for panel in panels], label, colours=colours)
+        pictures = [charts.face_map(panels, scale, run.prefix + caption, f"{name}_{run.label}", unit, largest)
+                    for run, panels in wide]
+    if slices:
+        pictures.append(charts.face_profiles(
+            slices, [panels for panels, narrow in zip(every, is_slice) if narrow], label,
+            f"{caption}, over the elevation" + (", dashed on the downstream face" if len(slices) > 1 else ""), name))
+    return pictures
+
+
 def stress_maps(runs, field, title, largest):
-    """A picture of a field for each run, in the same colours, with the largest or
-    smallest value marked."""
-    every = [face_panels(run, field) for run in runs]
-    scale = charts.Scale([panel.values for panels in every for panel in panels], f"{title} [MPa]")
-    return [charts.face_map(panels, scale, run.prefix + title[0].upper() + title[1:],
-                            f"{field.removesuffix('_MPa')}_{run.label}", "MPa", largest)
-            for run, panels in zip(runs, every)]
+    """A picture of a field for each run, with the largest or smallest value marked."""
+    return maps(runs, [face_panels(run, field) for run in runs], f"{title} [MPa]", title[0].upper() + title[1:],
+                field.removesuffix("_MPa"), "MPa", largest)
 
 
 def face_stress_section(runs):
@@ -94,13 +108,9 @@ def different(runs, field):
 
 
 def time_maps(runs):
-    every = [face_panels(run, "time_of_largest_principal_stress_s") for run in runs]
-    scale = charts.Scale([panel.values for panels in every for panel in panels], "time [s]",
-                         colours="viridis")
-    return [charts.face_map([dataclasses.replace(panel, values=panel.values.mean(axis=1)) for panel in panels],
-                            scale, f"{run.prefix}Time of the largest principal stress",
-                            f"time_{run.label}")
-            for run, panels in zip(runs, every)]
+    every = [[dataclasses.replace(panel, values=panel.values.mean(axis=1)) for panel in face_panels(
+        run, "time_of_largest_principal_stress_s")] for run in runs]
+    return maps(runs, every, "time [s]", "Time of the largest principal stress", "time", colours="viridis")
 
 
 def extremes_table(runs):

@@ -47,11 +47,13 @@ def joint_corners(run, name):
 def opening_sections(runs):
     """Pictures of the joints from the side, coloured by their largest opening."""
     values = [grid_of(run, FILE).values["largest_opening_mm"] for run in runs]
-    scale = charts.Scale(values, "largest opening [mm]", 0., "inferno_r", low=0.)
+    every = [[(name.removeprefix("joint "), list(joint_corners(run, name)[..., 1:]),
+               opening[surfaces_of(run)[name]].mean(axis=1)) for name in joints_of(run)]
+             for run, opening in zip(runs, values)]
+    scale = charts.Scale([opening for panels in every for _, _, opening in panels], "largest opening [mm]", 0.,
+                         "inferno_r", low=0.)
     pictures = []
-    for run, opening in zip(runs, values):
-        panels = [(name.removeprefix("joint "), list(joint_corners(run, name)[..., 1:]),
-                   opening[surfaces_of(run)[name]].mean(axis=1)) for name in joints_of(run)]
+    for run, panels in zip(runs, every):
         caption = f"{run.prefix}The joints from the side, from the right bank to the left, upstream on the left"
         pictures.append(charts.sections_map(panels, scale, caption, f"opening_{run.label}"))
     return pictures
@@ -258,7 +260,8 @@ def planes_section(runs):
     text = ("Factor of safety of a block: resistance of its planes over the driving forces (weight, water, uplift, "
             "thrust of the dam and the block's inertia as if it moved with its base), by limit equilibrium; below one "
             "the block slides, and slip and slip rate show how far. The mobilised ratio is the shear of the contact "
-            "forces over the resistance of the planes: about one at most, as friction limits the shear. Sliding safety "
+            "forces over the resistance of the planes: about one at most, as friction limits the shear, "
+            "and above it for moments, as friction follows the pressure with a delay. Sliding safety "
             "of a plane: resistance by friction and cohesion over the shear force, by the resultants of its contact "
             "forces, which does not fall below one either. At a gap in a curve the block has no driving force, or other "
             "planes prevent its slip.")

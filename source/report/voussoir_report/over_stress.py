@@ -1,7 +1,7 @@
 """Over-stress of the faces after a linear analysis."""
 
 from . import charts
-from .faces import face_panels
+from .faces import face_panels, maps
 from .files import refuse
 from .grid import dam_of
 from .page import Pictures, Section, Table, number
@@ -40,12 +40,9 @@ def over_stress_section(runs):
     drawn = [run for run in runs if run.has(FILE) and dam_of(run)
              and face_panels(run, "time_above_1_s", FILE)]
     if drawn:
-        every = [face_panels(run, "time_above_1_s", FILE) for run in drawn]
-        scale = charts.Scale([panel.values for panels in every for panel in panels],
-                             "time above the strength [s]", colours="viridis")
-        parts.append(Pictures([
-            charts.face_map(panels, scale, f"{run.prefix}Accumulated time above the strength",
-                            f"over_stress_time_{run.label}") for run, panels in zip(drawn, every)]))
+        parts.append(Pictures(maps(drawn, [face_panels(run, "time_above_1_s", FILE) for run in drawn],
+                                   "time above the strength [s]", "Accumulated time above the strength",
+                                   "over_stress_time", colours="viridis")))
     return Section("Over-stress of the faces", parts)
 
 

@@ -60,7 +60,7 @@ SUMMARY = Group(
 # a table of the verdict: lines by their names
 LINES = Group(others=Group(
     {}, {**dict.fromkeys(("value", "demand"), NUMBER_OR_NONE), **dict.fromkeys(("at most", "at least"), NUMBER),
-         **dict.fromkeys(("of", "load case", "source", "quantity"), TEXT),
+         **dict.fromkeys(("of", "load case", "source", "quantity", "remedy"), TEXT),
          "at the time [s]": NUMBER_OR_NONE, "at [m]": [NUMBER]}))
 SUMMARY.optional.update(dict.fromkeys(("numerical checks", "engineering results", "acceptance table"), LINES))
 

@@ -77,9 +77,12 @@ def short(path):
 
 
 def titled(path):
-    """The last name with that of its object, as "left wedge: smallest safety"."""
-    *_, above, place = ("", "", *path.rsplit(short(path), 1)[0].strip("/").split("/"))
-    of = f"{above} *" if place == "*" else place
+    """The last name with that of its object, as "left wedge: smallest safety", or "mode 1: frequency"."""
+    names = ("", "", *path.rsplit(short(path), 1)[0].strip("/").split("/"))
+    above, place = names[-2:]
+    numbered = [f"{kind.removesuffix('s')} {int(n) + 1}" for kind, n in zip(names, names[1:]) if n.isdigit()]
+    named = [] if place.isdigit() else [f"{above} *" if place == "*" else place]
+    of = ", ".join((*numbered[-1:], *named))
     return f"{of}: {short(path)}" if of else short(path)
 
 

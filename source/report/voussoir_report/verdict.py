@@ -101,7 +101,8 @@ def numerical_checks(run):
         title, judged = "To be examined before the results are used", TO_JUDGE
     else:
         title = "All checks are met"
-    return Verdict("Numerical checks", title, lines, run.warnings, judged)
+    remedies = [f"{name}: {line['remedy']}" for name, line in run.summary.get(CHECKS, {}).items() if "remedy" in line]
+    return Verdict("Numerical checks", title, lines, [*run.warnings, *remedies], judged)
 
 
 def engineering_results(run):

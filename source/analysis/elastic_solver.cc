@@ -2,11 +2,7 @@
 #include <voussoir/analysis/trilinear_cells.h>
 #include <voussoir/base/interruption.h>
 
-#include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/solver_cg.h>
-#include <deal.II/lac/trilinos_sparsity_pattern.h>
-
-#include <Epetra_MultiVector.h>
 
 namespace Voussoir
 {
@@ -15,7 +11,7 @@ namespace Voussoir
   namespace
   {
     // Stress of the six unit strains: xx, yy, zz, xy, xz, yz with the tensor
-    // component 1/2 in the last three.
+    // component 1/2 in the last three, as a unit displacement gradient has it.
     using Elasticity = std::array<SymmetricTensor<2, 3>, 6>;
 
     Elasticity
@@ -42,23 +38,21 @@ namespace Voussoir
       matrix = 0.;
       trilinear.for_each_point(
         corners, [&](const double volume, const auto &gradient) {
-          std::array<std::array<SymmetricTensor<2, 3>, 3>, 8> strain, stress;
-          for (unsigned int i = 0; i < 8; ++i)
-            for (unsigned int d = 0; d < 3; ++d)
+          for (unsigned int j = 0; j < 8; ++j)
+            for (unsigned int e = 0; e < 3; ++e)
               {
-                Tensor<2, 3> displacement_gradient;
-                displacement_gradient[d] = gradient[i];
-                strain[i][d]             = symmetrize(displacement_gradient);
-                for (unsigned int c = 0; c < 6; ++c)
-                  stress[i][d] += (c < 3 ? 1. : 2.) * volume *
-                                  strain[i][d].access_raw_entry(c) *
-                                  elasticity[c];
+                SymmetricTensor<2, 3> stress;
+                for (unsigned int k = 0; k < 3; ++k)
+                  stress += (volume * gradient[j][k]) *
+                            elasticity[SymmetricTensor<2, 3>::
+                                         component_to_unrolled_index({e, k})];
+                for (unsigned int i = j; i < 8; ++i)
+                  {
+                    const Tensor<1, 3> force = stress * gradient[i];
+                    for (unsigned int d = 0; d < 3; ++d)
+                      matrix(3 * i + d, 3 * j + e) += force[d];
+                  }
               }
-          for (unsigned int i = 0; i < 8; ++i)
-            for (unsigned int j = 0; j <= i; ++j)
-              for (unsigned int d = 0; d < 3; ++d)
-                for (unsigned int e = 0; e < 3; ++e)
-                  matrix(3 * i + d, 3 * j + e) += strain[i][d] * stress[j][e];
         });
       for (unsigned int i = 0; i < 24; ++i)
         for (unsigned int j = i / 3 * 3 + 3; j < 24; ++j)
@@ -85,6 +79,31 @@ namespace Voussoir
           visit(cell, corners, dofs);
         });
     }
+
+
+    /** Visits a matrix between some unknowns, without the fixed ones. */
+    template <typename IsFixed, typename Entry>
+    void
+    visit_free(const std::vector<types::global_dof_index> &unknowns,
+               const IsFixed                              &is_fixed,
+               const Entry                                &entry,
+               const ContributionVisit                    &visit)
+    {
+      std::vector<unsigned int>            left;
+      std::vector<types::global_dof_index> free;
+      for (unsigned int i = 0; i < unknowns.size(); ++i)
+        if (!is_fixed(i))
+          {
+            left.push_back(i);
+            free.push_back(unknowns[i]);
+          }
+      FullMatrix<double> matrix(left.size());
+      for (unsigned int i = 0; i < left.size(); ++i)
+        for (unsigned int j = 0; j < left.size(); ++j)
+          matrix(i, j) = entry(left[i], left[j]);
+      if (!free.empty())
+        visit({free, [&]() -> const FullMatrix<double> & { return matrix; }});
+    }
   } // namespace
 
 
@@ -104,99 +123,128 @@ namespace Voussoir
       if (constraints.is_constrained(
             discretization.owned_dofs.nth_index_in_set(i)))
         constrained.push_back(i);
-    assemble(materials, additions.contact);
+
+    IndexSet with_ghosts = discretization.relevant_dofs;
+    with_ghosts.add_indices(constraints.get_local_lines()); // nodes that lead
     if (additions.contact != nullptr)
-      tie(*additions.contact, *additions.displacement);
-    set_up_multigrid();
+      for (const auto node : additions.contact->cluster_nodes())
+        with_ghosts.add_range(3 * node, 3 * node + 3);
+    const auto layout = std::make_shared<const Utilities::MPI::Partitioner>(
+      discretization.owned_dofs,
+      with_ghosts,
+      discretization.grid.communicator());
+
+    const Contributions body = [&](const ContributionVisit &visit) {
+      visit_body(materials, visit);
+    };
+    const Contributions contact = [&](const ContributionVisit &visit) {
+      visit_contact(visit);
+    };
+    Vector     stiffness = discretization.create_vector();
+    const auto add_owned = [&](const Vector &values) {
+      for (unsigned int i = 0; i < stiffness.locally_owned_size(); ++i)
+        stiffness.local_element(i) += values.local_element(i);
+    };
+    add_owned(diagonal(body, layout));
+    if (additions.contact != nullptr)
+      {
+        static_contact.emplace(additions.contact->points_of_interfaces(),
+                               stiffness);
+        static_contact->tie(*additions.displacement);
+        add_owned(diagonal(contact, layout));
+      }
+    multigrid.emplace(
+      [this](Vector &force, const Vector &displacement) {
+        multiply(force, displacement, true);
+        clear_constrained(force);
+      },
+      stiffness,
+      constrained,
+      std::make_unique<Aggregates>(
+        [&](const ContributionVisit &visit) {
+          body(visit);
+          contact(visit);
+        },
+        layout,
+        constrained,
+        3,
+        6,
+        [&](const unsigned int node, FullMatrix<double> &rigid_modes) {
+          // translations, and rotations about the origin
+          const Point<3> &x = discretization.node_positions[node];
+          rigid_modes       = 0.;
+          for (unsigned int d = 0; d < 3; ++d)
+            {
+              const unsigned int e = (d + 1) % 3, f = (d + 2) % 3;
+              rigid_modes(d, d)     = 1.;
+              rigid_modes(e, 3 + d) = -x[f];
+              rigid_modes(f, 3 + d) = x[e];
+            }
+        }));
   }
 
 
   void
-  ElasticSolver::assemble(const std::vector<const Material *> &materials,
-                          const Contact                       *contact)
+  ElasticSolver::visit_body(const std::vector<const Material *> &materials,
+                            const ContributionVisit             &visit) const
   {
-    IndexSet rows = discretization.relevant_dofs;
-    rows.add_indices(constraints.get_local_lines()); // of nodes that lead
-    if (contact != nullptr)
-      for (const auto node : contact->cluster_nodes())
-        rows.add_range(3 * node, 3 * node + 3);
-    TrilinosWrappers::SparsityPattern pattern(
-      discretization.owned_dofs,
-      discretization.owned_dofs,
-      rows,
-      discretization.grid.communicator(),
-      81);
-    for_each_trilinear_cell(
-      discretization, [&](const auto &, const auto &, const auto &dofs) {
-        constraints.add_entries_local_to_global(dofs, pattern, true);
-      });
-    if (contact != nullptr)
-      for (const ContactPoint &point : contact->points())
-        for (const unsigned int a : {point.first, point.second})
-          for (const unsigned int b : {point.first, point.second})
-            for (unsigned int d = 0; d < 3; ++d)
-              for (unsigned int e = 0; e < 3; ++e)
-                pattern.add(3 * contact->cluster_nodes()[a] + d,
-                            3 * contact->cluster_nodes()[b] + e);
-    pattern.compress();
-    matrix.reinit(pattern);
-
     std::vector<Elasticity> elasticities;
     for (unsigned int m = 0; m < materials.size(); ++m)
       elasticities.push_back(
         elasticity_of(*materials[m], internal_force.factor_of(m)));
     const TrilinearCell trilinear;
-    FullMatrix<double>  cell_matrix(24);
+    Condensation        condense(constraints);
+    FullMatrix<double>  of_cell(24);
     for_each_trilinear_cell(
       discretization,
       [&](const auto &cell, const auto &corners, const auto &dofs) {
-        find_stiffness(trilinear,
-                       corners,
-                       elasticities[discretization.grid.material(cell)],
-                       cell_matrix);
-        constraints.distribute_local_to_global(cell_matrix, dofs, matrix);
+        condense(
+          dofs,
+          [&]() -> const FullMatrix<double> & {
+            find_stiffness(trilinear,
+                           corners,
+                           elasticities[discretization.grid.material(cell)],
+                           of_cell);
+            return of_cell;
+          },
+          visit);
       });
     if (springs != nullptr)
       for (unsigned int slot = 0; slot < springs->nodes.size(); ++slot)
         {
           const auto first = discretization.owned_dofs.nth_index_in_set(
             3 * springs->nodes[slot]);
-          for (unsigned int d = 0; d < 3; ++d)
-            for (unsigned int e = 0; e < 3; ++e)
-              if (!constraints.is_constrained(first + d) &&
-                  !constraints.is_constrained(first + e))
-                matrix.add(first + d, first + e, springs->springs[slot][d][e]);
+          visit_free(
+            {first, first + 1, first + 2},
+            [&](const unsigned int d) {
+              return constraints.is_constrained(first + d);
+            },
+            [&](const unsigned int d, const unsigned int e) {
+              return springs->springs[slot][d][e];
+            },
+            visit);
         }
-    matrix.compress(VectorOperation::add);
   }
 
 
   void
-  ElasticSolver::tie(Contact &contact, const Vector &displacement)
+  ElasticSolver::visit_contact(const ContributionVisit &visit) const
   {
-    Vector stiffness = diagonal();
-    clear_constrained(stiffness);
-    static_contact.emplace(contact.points_of_interfaces(), stiffness);
-    static_contact->tie(displacement);
-
-    const auto add = [&](const auto          first,
-                         const auto          second,
-                         const auto         &first_fixed,
-                         const auto         &second_fixed,
-                         const Tensor<2, 3> &values) {
-      for (unsigned int d = 0; d < 3; ++d)
-        for (unsigned int e = 0; e < 3; ++e)
-          if (!first_fixed[d] && !second_fixed[e])
-            matrix.add(3 * first + d, 3 * second + e, values[d][e]);
-    };
+    if (!static_contact)
+      return;
     for (const StaticContact::Pair &p : static_contact->pairs())
       {
-        add(p.first, p.first, p.first_fixed, p.first_fixed, p.tangent);
-        add(p.second, p.second, p.second_fixed, p.second_fixed, p.tangent);
-        add(p.first, p.second, p.first_fixed, p.second_fixed, -p.tangent);
-        add(p.second, p.first, p.second_fixed, p.first_fixed, -p.tangent);
+        const auto a = 3 * p.first, b = 3 * p.second;
+        visit_free(
+          {a, a + 1, a + 2, b, b + 1, b + 2},
+          [&](const unsigned int i) {
+            return i < 3 ? p.first_fixed[i] : p.second_fixed[i - 3];
+          },
+          [&](const unsigned int i, const unsigned int j) {
+            return (i / 3 == j / 3 ? 1. : -1.) * p.tangent[i % 3][j % 3];
+          },
+          visit);
       }
-    matrix.compress(VectorOperation::add);
   }
 
 
@@ -204,48 +252,6 @@ namespace Voussoir
   ElasticSolver::tangent_contact()
   {
     return static_contact ? &*static_contact : nullptr;
-  }
-
-
-  void
-  ElasticSolver::set_up_multigrid()
-  {
-    // translations, and rotations about the origin
-    const auto        &map = matrix.trilinos_matrix().OperatorDomainMap();
-    Epetra_MultiVector rigid_modes(map, 6);
-    for (unsigned int node = 0; node < discretization.n_owned_nodes(); ++node)
-      {
-        const Point<3> &x = discretization.node_positions[node];
-        for (unsigned int d = 0; d < 3; ++d)
-          {
-            const unsigned int e = (d + 1) % 3, f = (d + 2) % 3;
-            rigid_modes[d][3 * node + d]     = 1.;
-            rigid_modes[3 + d][3 * node + e] = -x[f];
-            rigid_modes[3 + d][3 * node + f] = x[e];
-          }
-      }
-
-    multigrid.emplace(
-      [this](Vector &force, const Vector &displacement) {
-        multiply(force, displacement, true);
-        clear_constrained(force);
-      },
-      matrix,
-      diagonal(),
-      constrained,
-      3,
-      rigid_modes);
-  }
-
-
-  Vector
-  ElasticSolver::diagonal() const
-  {
-    Vector result = discretization.create_vector();
-    for (unsigned int i = 0; i < result.locally_owned_size(); ++i)
-      result.local_element(i) =
-        matrix.diag_element(discretization.owned_dofs.nth_index_in_set(i));
-    return result;
   }
 
 

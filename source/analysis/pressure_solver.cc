@@ -3,9 +3,7 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/interruption.h>
 
-#include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/solver_cg.h>
-#include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 namespace Voussoir
 {
@@ -16,21 +14,28 @@ namespace Voussoir
     : space(space)
     , constrained(constrained)
   {
-    assemble();
-    Vector diagonal = space.create_vector();
-    for (unsigned int i = 0; i < diagonal.locally_owned_size(); ++i)
-      diagonal.local_element(i) =
-        matrix.diag_element(space.owned_dofs.nth_index_in_set(i));
-    Epetra_MultiVector constant(matrix.trilinos_matrix().OperatorDomainMap(),
-                                1);
-    constant.PutScalar(1.);
-    multigrid.emplace([this](Vector       &flux,
-                             const Vector &pressure) { apply(flux, pressure); },
-                      matrix,
-                      diagonal,
-                      this->constrained,
-                      1,
-                      constant);
+    const auto          constraints = make_constraints();
+    const Contributions laplacian   = [&](const ContributionVisit &visit) {
+      visit_cells(constraints, visit);
+    };
+    const auto layout = space.create_ghosted_vector().get_partitioner();
+    Vector     diagonal_of_owned = space.create_vector();
+    const auto values            = diagonal(laplacian, layout);
+    for (unsigned int i = 0; i < values.locally_owned_size(); ++i)
+      diagonal_of_owned.local_element(i) = values.local_element(i);
+    multigrid.emplace(
+      [this](Vector &flux, const Vector &pressure) { apply(flux, pressure); },
+      diagonal_of_owned,
+      this->constrained,
+      std::make_unique<Aggregates>(laplacian,
+                                   layout,
+                                   this->constrained,
+                                   1,
+                                   1,
+                                   [](const unsigned int,
+                                      FullMatrix<double> &constant) {
+                                     constant = 1.;
+                                   }));
   }
 
 
@@ -51,51 +56,38 @@ namespace Voussoir
 
 
   void
-  PressureSolver::assemble()
+  PressureSolver::visit_cells(const AffineConstraints<double> &constraints,
+                              const ContributionVisit         &visit) const
   {
-    const auto                           constraints = make_constraints();
+    const TrilinearCell                  trilinear;
+    Condensation                         condense(constraints);
+    FullMatrix<double>                   of_cell(8);
     std::vector<types::global_dof_index> dofs(8);
-    const auto for_each_cell = [&](const auto &visit) {
-      for_each_trilinear_cell(
-        space.dof_handler,
-        space.fe,
-        space.mapping,
-        [&](const auto &cell) {
-          std::vector<types::global_dof_index> nodes(
-            space.fe.n_dofs_per_cell());
-          cell->get_dof_indices(nodes);
-          return nodes;
-        },
-        [&](const auto &, const auto &corners, const auto &nodes) {
-          dofs.assign(nodes.begin(), nodes.end());
-          visit(corners);
-        });
-    };
-    TrilinosWrappers::SparsityPattern pattern(space.owned_dofs,
-                                              space.owned_dofs,
-                                              space.relevant_dofs,
-                                              space.grid.communicator(),
-                                              27);
-    for_each_cell([&](const auto &) {
-      constraints.add_entries_local_to_global(dofs, pattern, true);
-    });
-    pattern.compress();
-    matrix.reinit(pattern);
-
-    const TrilinearCell trilinear;
-    FullMatrix<double>  cell_matrix(8);
-    for_each_cell([&](const auto &corners) {
-      cell_matrix = 0.;
-      trilinear.for_each_point(corners,
-                               [&](const double volume, const auto &gradient) {
-                                 for (unsigned int i = 0; i < 8; ++i)
-                                   for (unsigned int j = 0; j < 8; ++j)
-                                     cell_matrix(i, j) +=
-                                       volume * (gradient[i] * gradient[j]);
-                               });
-      constraints.distribute_local_to_global(cell_matrix, dofs, matrix);
-    });
-    matrix.compress(VectorOperation::add);
+    for_each_trilinear_cell(
+      space.dof_handler,
+      space.fe,
+      space.mapping,
+      [&](const auto &cell) {
+        std::vector<types::global_dof_index> nodes(space.fe.n_dofs_per_cell());
+        cell->get_dof_indices(nodes);
+        return nodes;
+      },
+      [&](const auto &, const auto &corners, const auto &nodes) {
+        dofs.assign(nodes.begin(), nodes.end());
+        condense(
+          dofs,
+          [&]() -> const FullMatrix<double> & {
+            of_cell = 0.;
+            trilinear.for_each_point(
+              corners, [&](const double volume, const auto &gradient) {
+                for (unsigned int i = 0; i < 8; ++i)
+                  for (unsigned int j = 0; j < 8; ++j)
+                    of_cell(i, j) += volume * (gradient[i] * gradient[j]);
+              });
+            return of_cell;
+          },
+          visit);
+      });
   }
 
 

@@ -3,7 +3,9 @@
 #include <deal.II/base/numbers.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace Voussoir
 {
@@ -16,31 +18,30 @@ namespace Voussoir
       Oscillator(const double omega,
                  const double damping_ratio,
                  const double time_step)
-        : h(time_step)
-        , xi(damping_ratio)
-        , omega(omega)
-        , damped_omega(omega * std::sqrt(1. - xi * xi))
-        , cosine(std::exp(-xi * omega * h) * std::cos(damped_omega * h))
-        , sine(std::exp(-xi * omega * h) * std::sin(damped_omega * h))
-      {}
+      {
+        for (unsigned int i = 0; i < 4; ++i)
+          {
+            std::array<double, 4> unit{};
+            unit[i]           = 1.;
+            const auto [u, v] = advanced(unit, omega, damping_ratio, time_step);
+            to_displacement[i] = u;
+            to_velocity[i]     = v;
+          }
+      }
 
-      /**
-       * u'' + 2 xi w u' + w^2 u = -(a + s t) over one step: the particular
-       * solution p(t) = -(a + s t)/w^2 + 2 xi s/w^3 plus a free oscillation.
-       */
+      /** One step in which the acceleration is a + s t. */
       void
       advance(const double a, const double s)
       {
-        const double p_0 =
-          -a / (omega * omega) + 2. * xi * s / std::pow(omega, 3);
-        const double p_slope = -s / (omega * omega);
-
-        const double u_free = u - p_0;
-        const double c = (v - p_slope + xi * omega * u_free) / damped_omega;
-
-        u = p_0 + p_slope * h + cosine * u_free + sine * c;
-        v = p_slope + cosine * (damped_omega * c - xi * omega * u_free) -
-            sine * (damped_omega * u_free + xi * omega * c);
+        const std::array<double, 4> state{{a, s, u, v}};
+        u = std::inner_product(state.begin(),
+                               state.end(),
+                               to_displacement.begin(),
+                               0.);
+        v = std::inner_product(state.begin(),
+                               state.end(),
+                               to_velocity.begin(),
+                               0.);
       }
 
       double
@@ -50,7 +51,36 @@ namespace Voussoir
       }
 
     private:
-      const double h, xi, omega, damped_omega, cosine, sine;
+      /**
+       * u'' + 2 xi w u' + w^2 u = -(a + s t) over one step: the particular
+       * solution p(t) = -(a + s t)/w^2 + 2 xi s/w^3 plus a free oscillation.
+       *
+       * @param state a, s, displacement and velocity
+       * @return displacement and velocity at the end
+       */
+      static std::pair<double, double>
+      advanced(const std::array<double, 4> &state,
+               const double                 omega,
+               const double                 xi,
+               const double                 h)
+      {
+        const auto [a, s, u, v]   = state;
+        const double damped_omega = omega * std::sqrt(1. - xi * xi),
+                     decay        = std::exp(-xi * omega * h),
+                     cosine       = decay * std::cos(damped_omega * h),
+                     sine         = decay * std::sin(damped_omega * h);
+        const double p_0 =
+          -a / (omega * omega) + 2. * xi * s / std::pow(omega, 3);
+        const double p_slope = -s / (omega * omega);
+
+        const double u_free = u - p_0;
+        const double c = (v - p_slope + xi * omega * u_free) / damped_omega;
+        return {p_0 + p_slope * h + cosine * u_free + sine * c,
+                p_slope + cosine * (damped_omega * c - xi * omega * u_free) -
+                  sine * (damped_omega * u_free + xi * omega * c)};
+      }
+
+      std::array<double, 4> to_displacement, to_velocity; // over a step
 
       double u = 0, v = 0;
     };

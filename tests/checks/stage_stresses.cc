@@ -92,11 +92,11 @@ namespace Voussoir
         };
         verdicts.near("point in a cell, weight: cantilever stress",
                       point(0, "inside", "cantilever stress [MPa]"),
-                      -0.7 * weight,
+                      -0.72 * weight,
                       tolerance);
         verdicts.near("  arch stress",
                       point(0, "inside", "arch stress [MPa]"),
-                      -0.7 * aside * weight,
+                      -0.72 * aside * weight,
                       tolerance);
         verdicts.near("point between two, cooling: largest principal stress",
                       point(2, "between", "largest principal stress [MPa]"),
@@ -131,7 +131,7 @@ namespace Voussoir
                       CsvTable(folder + "/static_stages.csv")
                         .numbers("inside cantilever stress [MPa]")
                         .at(2),
-                      -0.7 * weight - pressure,
+                      -0.72 * weight - pressure,
                       tolerance);
       }
     };

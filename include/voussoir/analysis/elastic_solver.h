@@ -86,26 +86,20 @@ namespace Voussoir
           const double  tolerance) const;
 
   private:
+    /** Visits the contributions of cells and springs. */
     void
-    assemble(const std::vector<const Material *> &materials,
-             const Contact                       *contact);
+    visit_body(const std::vector<const Material *> &materials,
+               const ContributionVisit             &visit) const;
 
-    /** Ties the parts where they touch. */
+    /** Visits those of the tangent of the contact. */
     void
-    tie(Contact &contact, const Vector &displacement);
-
-    void
-    set_up_multigrid();
+    visit_contact(const ContributionVisit &visit) const;
 
     /** `apply` without polling for a request to stop. */
     void
     multiply(Vector       &force,
              const Vector &displacement,
              const bool    single_precision) const;
-
-    /** Diagonal of the matrix, at owned entries. */
-    Vector
-    diagonal() const;
 
     const Discretization &discretization;
     const InternalForce  &internal_force;
@@ -118,7 +112,6 @@ namespace Voussoir
     mutable Vector                           tied; // the tied displacement
     std::vector<unsigned int>                constrained; // owned entries
     std::optional<StaticContact>             static_contact;
-    dealii::TrilinosWrappers::SparseMatrix   matrix; // until `multigrid` is
     std::optional<Multigrid>                 multigrid;
   };
 } // namespace Voussoir

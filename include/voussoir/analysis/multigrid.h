@@ -1,28 +1,22 @@
 #ifndef voussoir_analysis_multigrid_h
 #define voussoir_analysis_multigrid_h
 
-#include <voussoir/fem/discretization.h>
+#include <voussoir/analysis/aggregates.h>
 
 #include <deal.II/base/subscriptor.h>
 #include <deal.II/lac/diagonal_matrix.h>
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/trilinos_precondition.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-
-#include <Epetra_MultiVector.h>
-
-#include <functional>
-
-struct ML_Struct; // of Trilinos
 
 namespace Voussoir
 {
   /**
    * A multigrid cycle whose finest level is a matrix-free operator, with
-   * Chebyshev smoothing by its diagonal (Adams et al. 2003); the coarser levels
-   * are Trilinos' smoothed aggregation of a matrix that is spectrally
-   * equivalent. Products with that matrix would take most of the time, so that
-   * it is freed once the coarser levels are made.
+   * Chebyshev smoothing by its diagonal (Adams et al. 2003); the next one is
+   * made of aggregates of a matrix that is spectrally equivalent, and the
+   * coarser ones by Trilinos' smoothed aggregation. Smoothed as well, the
+   * finest prolongation would take most of the memory, for a tenth fewer
+   * iterations that cost more each.
    */
   class Multigrid
   {
@@ -31,20 +25,15 @@ namespace Voussoir
     using Operator = std::function<void(Vector &dst, const Vector &src)>;
 
     /**
-     * @param apply    on the finest level
-     * @param matrix with arbitrary entries where fixed; afterwards empty,
-     *   unless it is so small that it is the only level
-     * @param diagonal of the matrix
-     * @param constrained     owned entries
-     * @param n_components of a node, whose entries follow each other
-     * @param near_kernel the motions without energy of a free body
+     * @param apply       on the finest level
+     * @param diagonal    of that level, in the layout of its vectors
+     * @param constrained owned entries
+     * @param aggregates  of the next level
      */
-    Multigrid(const Operator                         &apply,
-              dealii::TrilinosWrappers::SparseMatrix &matrix,
-              const Vector                           &diagonal,
-              const std::vector<unsigned int>        &constrained,
-              const unsigned int                      n_components,
-              const Epetra_MultiVector               &near_kernel);
+    Multigrid(const Operator                  &apply,
+              const Vector                    &diagonal,
+              const std::vector<unsigned int> &constrained,
+              std::unique_ptr<Aggregates>      aggregates);
 
     /** One cycle from zero. */
     void
@@ -89,18 +78,11 @@ namespace Voussoir
                                     Vector,
                                     dealii::DiagonalMatrix<Vector>>;
 
-    /** dst += correction by the coarser levels for the residual. */
-    void
-    correct(Vector &dst, const Vector &residual) const;
-
     FinestLevel                               finest;
-    const std::vector<unsigned int>          &constrained;
+    const std::unique_ptr<const Aggregates>   aggregates;
     Smoother                                  smoother;
     dealii::TrilinosWrappers::PreconditionAMG coarser;
-    ML_Struct                                *levels = nullptr; // of `coarser`
-    bool                        single_level = false; // which is solved at once
-    mutable Vector              residual, change;
-    mutable std::vector<double> coarse_residual, coarse_change;
+    mutable Vector residual, coarse_residual, coarse_change;
   };
 } // namespace Voussoir
 

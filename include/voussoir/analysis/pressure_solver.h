@@ -31,7 +31,8 @@ namespace Voussoir
     make_constraints() const;
 
     void
-    assemble();
+    visit_cells(const dealii::AffineConstraints<double> &constraints,
+                const ContributionVisit                 &visit) const;
 
     void
     apply(Vector &flux, const Vector &pressure) const;
@@ -39,9 +40,7 @@ namespace Voussoir
     const AcousticSpace            &space;
     const std::vector<unsigned int> constrained;
 
-    // empty, unless it is the only level of the multigrid, which refers to it
-    dealii::TrilinosWrappers::SparseMatrix matrix;
-    std::optional<Multigrid>               multigrid;
+    std::optional<Multigrid> multigrid;
   };
 } // namespace Voussoir
 

@@ -86,7 +86,10 @@ namespace Voussoir
                         numbering[(i + (v & 1)) + n * (j + ((v >> 1) & 1)) +
                                   n * n * (k + (v >> 2))];
                       corners[v] =
-                        mapping.transform_unit_to_real_cell(cell, points[node]);
+                        degree == 1 ?
+                          cell->vertex(v) :
+                          mapping.transform_unit_to_real_cell(cell,
+                                                              points[node]);
                       corner_nodes[v] = nodes[node];
                     }
                   visit(cell, corners, corner_nodes);

@@ -121,12 +121,13 @@ namespace Voussoir
       if (verdict.rfind("stopped", 0) == 0 || verdict.rfind("failed", 0) == 0)
         return {};
       FinishedRun run;
-      for (const auto &[name, value] :
-           {std::make_pair("end time [s]", &run.end),
-            std::make_pair("time step [s]", &run.step)})
+      const auto  read = [&summary](const char *name, double &value) {
         if (const auto found = summary.find(name);
             found != summary.end() && found->is_number())
-          *value = *found;
+          value = *found;
+      };
+      read("end time [s]", run.end);
+      read("time step [s]", run.step);
       return run;
     }
 

@@ -41,7 +41,7 @@ namespace Voussoir
 
 
   void
-  CrackTips::look(const unsigned long long step, MaterialMemory &memory) const
+  CrackTips::update(const unsigned long long step, MaterialMemory &memory) const
   {
     if (step % 4 != 0 ||
         std::find(follows_tips.begin(), follows_tips.end(), true) ==
@@ -50,7 +50,7 @@ namespace Voussoir
     std::vector<Crack> cracks = new_cracks(memory);
     exchange(cracks);
     for (const Crack &crack : cracks)
-      run_on(crack, memory);
+      propagate(crack, memory);
   }
 
 
@@ -115,7 +115,7 @@ namespace Voussoir
 
 
   void
-  CrackTips::run_on(const Crack &crack, MaterialMemory &memory) const
+  CrackTips::propagate(const Crack &crack, MaterialMemory &memory) const
   {
     const auto    &cell   = crack.cell;
     const Point<3> centre = cell->center();

@@ -188,7 +188,7 @@ namespace Voussoir
     for (NodalLoad *load : equation.loads)
       load->end_step(state);
     if (equation.crack_tips != nullptr)
-      equation.crack_tips->look(state.step, state.material_memory);
+      equation.crack_tips->update(state.step, state.material_memory);
   }
 
 

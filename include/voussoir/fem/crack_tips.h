@@ -6,18 +6,18 @@
 namespace Voussoir
 {
   /**
-   * Where cracks run on. A crack of smeared damage goes from cell to cell, and
+   * Tips of cracks. A crack of smeared damage propagates from cell to cell, and
    * a cell averages the high stress at the tip: with the strength of the
-   * material, a crack in cells that are not much smaller than E Gf / ft^2 runs
-   * at up to half as much load again as in truth. Hence cells beside a cracked
-   * one, if its plane cuts the face between them, have the strength that the
-   * law of their material gives a cell of their size, whatever material the
-   * crack comes from; all others have that of the material. The plane goes
-   * through the centre of the cracked cell, across the mean normal of the
-   * points that have cracked when that is seen.
+   * material, a crack in cells that are not much smaller than E Gf / ft^2
+   * propagates at up to 1.4 times the correct load. Hence the neighbours of a
+   * cracked cell, where the plane of its crack cuts the common face, have the
+   * strength that the law of their own material gives a cell of their size; all
+   * other cells have the strength of the material. The plane goes through the
+   * centre of the cracked cell; its normal is the mean of the normals of the
+   * points that have cracked when the crack is found.
    *
-   * A cell that has once been at a tip stays so. Cracks do not run on across
-   * joints, whose two sides are no neighbours in the mesh.
+   * A cell that has once been at a tip keeps this strength. Cracks do not
+   * propagate across joints, whose two sides are no neighbours in the mesh.
    */
   class CrackTips
   {
@@ -26,9 +26,10 @@ namespace Voussoir
     CrackTips(const Discretization                  &discretization,
               const std::vector<const CellKernel *> &kernels);
 
-    /** Looks for new cracks after every fourth step, and lets them run on. */
+    /** Finds new cracks after every fourth step, and weakens the cells at their
+     *  tips. */
     void
-    look(const unsigned long long step, MaterialMemory &memory) const;
+    update(const unsigned long long step, MaterialMemory &memory) const;
 
   private:
     using Cell = Discretization::Cell;
@@ -39,7 +40,7 @@ namespace Voussoir
       dealii::Tensor<1, 3> normal;
     };
 
-    /** Cracks of own cells that have not been seen yet. */
+    /** Cracks of own cells that were not found before. */
     std::vector<Crack>
     new_cracks(MaterialMemory &memory) const;
 
@@ -47,8 +48,9 @@ namespace Voussoir
     void
     exchange(std::vector<Crack> &cracks) const;
 
+    /** Weakens the neighbours that the plane of the crack enters. */
     void
-    run_on(const Crack &crack, MaterialMemory &memory) const;
+    propagate(const Crack &crack, MaterialMemory &memory) const;
 
     /** Gives an own cell the strength of a tip. */
     void

@@ -2,6 +2,8 @@
 
 #include <deal.II/grid/grid_tools.h>
 
+#include <optional>
+
 namespace Voussoir
 {
   using namespace dealii;
@@ -101,7 +103,7 @@ namespace Voussoir
                           discretization.grid.communicator());
     if (n_most == 0)
       return;
-    using Sent = std_cxx17::optional<Tensor<1, 3>>;
+    using Sent = std::optional<Tensor<1, 3>>;
     GridTools::exchange_cell_data_to_ghosts<Tensor<1, 3>, DoFHandler<3>>(
       discretization.dof_handler,
       [&](const Cell &cell) -> Sent {

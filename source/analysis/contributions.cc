@@ -56,17 +56,19 @@ namespace Voussoir
   }
 
 
-  Vector
-  diagonal(const Contributions &contributions,
-           const std::shared_ptr<const Utilities::MPI::Partitioner> &layout)
+  void
+  add_diagonal(Vector              &diagonal,
+               const Contributions &contributions,
+               const std::shared_ptr<const Utilities::MPI::Partitioner> &layout)
   {
-    Vector result(layout);
+    Vector values(layout);
     contributions([&](const Contribution &contribution) {
       const FullMatrix<double> &entries = contribution.entries();
       for (unsigned int i = 0; i < contribution.unknowns.size(); ++i)
-        result(contribution.unknowns[i]) += entries(i, i);
+        values(contribution.unknowns[i]) += entries(i, i);
     });
-    result.compress(VectorOperation::add);
-    return result;
+    values.compress(VectorOperation::add);
+    for (unsigned int i = 0; i < layout->locally_owned_size(); ++i)
+      diagonal.local_element(i) += values.local_element(i);
   }
 } // namespace Voussoir

@@ -140,18 +140,14 @@ namespace Voussoir
     const Contributions contact = [&](const ContributionVisit &visit) {
       visit_contact(visit);
     };
-    Vector     stiffness = discretization.create_vector();
-    const auto add_owned = [&](const Vector &values) {
-      for (unsigned int i = 0; i < stiffness.locally_owned_size(); ++i)
-        stiffness.local_element(i) += values.local_element(i);
-    };
-    add_owned(diagonal(body, layout));
+    Vector stiffness = discretization.create_vector();
+    add_diagonal(stiffness, body, layout);
     if (additions.contact != nullptr)
       {
         static_contact.emplace(additions.contact->points_of_interfaces(),
                                stiffness);
         static_contact->tie(*additions.displacement);
-        add_owned(diagonal(contact, layout));
+        add_diagonal(stiffness, contact, layout);
       }
     multigrid.emplace(
       [this](Vector &force, const Vector &displacement) {

@@ -18,14 +18,12 @@ namespace Voussoir
     const Contributions laplacian   = [&](const ContributionVisit &visit) {
       visit_cells(constraints, visit);
     };
-    const auto layout = space.create_ghosted_vector().get_partitioner();
-    Vector     diagonal_of_owned = space.create_vector();
-    const auto values            = diagonal(laplacian, layout);
-    for (unsigned int i = 0; i < values.locally_owned_size(); ++i)
-      diagonal_of_owned.local_element(i) = values.local_element(i);
+    const auto layout   = space.create_ghosted_vector().get_partitioner();
+    Vector     diagonal = space.create_vector();
+    add_diagonal(diagonal, laplacian, layout);
     multigrid.emplace(
       [this](Vector &flux, const Vector &pressure) { apply(flux, pressure); },
-      diagonal_of_owned,
+      diagonal,
       this->constrained,
       std::make_unique<Aggregates>(laplacian,
                                    layout,

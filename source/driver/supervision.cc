@@ -14,9 +14,8 @@ namespace Voussoir
 
   namespace
   {
-    // Interval of checks of cracks and slips [s], and limit of the opening of a
-    // crack over its cell, a fiftieth: a wider crack detaches a block.
-    constexpr double check_interval = 0.1, widest_share = 0.02;
+    // interval of checks of cracks and slips [s]
+    constexpr double check_interval = 0.1;
   } // namespace
 
 
@@ -91,7 +90,7 @@ namespace Voussoir
     if (warned_of_cracks || !has_memory)
       return;
     const WidestCrack widest = widest_crack(run);
-    warned_of_cracks         = widest.share > widest_share;
+    warned_of_cracks         = widest.share > widest_crack_share;
     if (!warned_of_cracks)
       return;
     std::ostringstream text;

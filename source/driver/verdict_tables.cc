@@ -17,7 +17,7 @@ namespace Voussoir
     // flat.
     constexpr double most_energy = 0.01, most_of_losses = 0.03,
                      least_jacobian = 0.1, intensity_carried = 0.9,
-                     most_slip = 0.5, widest_crack_share = 0.02;
+                     most_slip = 0.5;
 
     // Smaller openings and slips arise from elastic deformation of the mesh
     // [mm]; a surface that slides faster at the end has not come to rest

@@ -34,6 +34,8 @@ namespace Voussoir
   {
     for (const CellKernel *kernel : kernels)
       follows_tips.push_back(kernel->tip_strength(1.) < 1.);
+    if (!is_needed())
+      return;
     is_shared.resize(discretization.grid.triangulation().n_vertices(), false);
     for (const auto &cell : discretization.dof_handler.active_cell_iterators())
       if (cell->is_ghost())
@@ -42,12 +44,18 @@ namespace Voussoir
   }
 
 
+  bool
+  CrackTips::is_needed() const
+  {
+    return std::find(follows_tips.begin(), follows_tips.end(), true) !=
+           follows_tips.end();
+  }
+
+
   void
   CrackTips::update(const unsigned long long step, MaterialMemory &memory) const
   {
-    if (step % 4 != 0 ||
-        std::find(follows_tips.begin(), follows_tips.end(), true) ==
-          follows_tips.end())
+    if (step % 4 != 0 || !is_needed())
       return;
     std::vector<Crack> cracks = new_cracks(memory);
     exchange(cracks);

@@ -1,8 +1,7 @@
 #include <voussoir/fem/nodal_values.h>
 
-#include <fstream>
-
 #include "check.h"
+#include "slice_mesh.h"
 
 namespace Voussoir
 {
@@ -21,69 +20,29 @@ namespace Voussoir
     {
       const unsigned int columns = 7 * n / 2, rows = n, wide = n / 6;
       const double       h = 0.6 / n;
-      const auto         node =
-        [&](const unsigned int i, const unsigned int j, const unsigned int k) {
-          return 1 + (j * (columns + 1) + i) * 2 + k;
-        };
-      std::vector<std::string> elements;
-      const auto               add = [&](const std::string &element) {
-        elements.push_back(std::to_string(elements.size() + 1) + element);
-      };
-      const auto quad = [&](const unsigned int                 set,
-                            const std::array<unsigned int, 4> &nodes) {
-        std::ostringstream text;
-        text << " 3 2 " << set << ' ' << set;
-        for (const unsigned int number : nodes)
-          text << ' ' << number;
-        add(text.str());
-      };
+      SliceMesh          mesh(columns, rows);
       for (unsigned int j = 0; j < rows; ++j)
         for (unsigned int i = 0; i < columns; ++i)
           {
             if (2 * i + 1 == columns && 2 * j < rows)
               continue; // the notch
-            std::ostringstream text;
-            text << " 5 2 1 1";
+            mesh.add_cell(1, i, j);
             for (const unsigned int k : {0, 1})
-              text << ' ' << node(i, j, k) << ' ' << node(i + 1, j, k) << ' '
-                   << node(i + 1, j + 1, k) << ' ' << node(i, j + 1, k);
-            add(text.str());
-            for (const unsigned int k : {0, 1})
-              quad(3,
-                   {{node(i, j, k),
-                     node(i + 1, j, k),
-                     node(i + 1, j + 1, k),
-                     node(i, j + 1, k)}});
+              mesh.add_side(3, i, j, k);
           }
       for (unsigned int i = 0; i < columns; ++i)
         {
           if (i < wide || i >= columns - wide)
-            quad(2,
-                 {{node(i, 0, 0),
-                   node(i + 1, 0, 0),
-                   node(i + 1, 0, 1),
-                   node(i, 0, 1)}});
+            mesh.add_level(2, i, 0);
           if (2 * i + 1 + wide >= columns && 2 * i + 1 <= columns + wide)
-            quad(4,
-                 {{node(i, rows, 0),
-                   node(i + 1, rows, 0),
-                   node(i + 1, rows, 1),
-                   node(i, rows, 1)}});
+            mesh.add_level(4, i, rows);
         }
-      std::ofstream file(name);
-      file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n"
-              "3 1 \"beam\"\n2 2 \"supports\"\n2 3 \"sides\"\n2 4 \"load\"\n"
-              "$EndPhysicalNames\n$Nodes\n"
-           << 2 * (columns + 1) * (rows + 1) << '\n';
-      for (unsigned int j = 0; j <= rows; ++j)
-        for (unsigned int i = 0; i <= columns; ++i)
-          for (unsigned int k = 0; k < 2; ++k)
-            file << node(i, j, k) << ' ' << h * i << ' ' << -(h * k) << ' '
-                 << h * j << '\n';
-      file << "$EndNodes\n$Elements\n" << elements.size() << '\n';
-      for (const std::string &element : elements)
-        file << element << '\n';
-      file << "$EndElements\n";
+      mesh.write(name,
+                 {{3, "beam"}, {2, "supports"}, {2, "sides"}, {2, "load"}},
+                 h,
+                 [h](const unsigned int i, const unsigned int j) {
+                   return std::pair{h * i, h * j};
+                 });
     }
 
 

@@ -1,9 +1,9 @@
 #include <voussoir/fem/nodal_values.h>
 
 #include <deque>
-#include <fstream>
 
 #include "check.h"
+#include "slice_mesh.h"
 
 namespace Voussoir
 {
@@ -26,62 +26,31 @@ namespace Voussoir
     {
       const unsigned int columns = std::lround(width / h),
                          rows    = std::lround(height / h);
-      const auto node =
-        [&](const unsigned int i, const unsigned int j, const unsigned int k) {
-          return 1 + (j * (columns + 1) + i) * 2 + k;
-        };
-      std::vector<std::string> elements;
-      const auto               add = [&](const std::string               &kind,
-                           const unsigned int               set,
-                           const std::vector<unsigned int> &nodes) {
-        std::ostringstream text;
-        text << elements.size() + 1 << ' ' << kind << " 2 " << set << ' '
-             << set;
-        for (const unsigned int number : nodes)
-          text << ' ' << number;
-        elements.push_back(text.str());
-      };
+      SliceMesh mesh(columns, rows);
       for (unsigned int j = 0; j < rows; ++j)
         for (unsigned int i = 0; i < columns; ++i)
           {
             const bool is_notch = 2 * j + 1 == rows && (i + 0.5) * h < notch;
-            std::vector<unsigned int> corners;
-            for (const unsigned int k : {0, 1})
-              for (const auto &[a, b] :
-                   {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
-                corners.push_back(node(i + a, j + b, k));
-            add("5", is_notch ? 2 : 1, corners);
-            add("3", 5, {corners.begin(), corners.begin() + 4});
+            mesh.add_cell(is_notch ? 2 : 1, i, j);
+            mesh.add_side(5, i, j, 0);
           }
       for (unsigned int i = 0; i < columns; ++i)
-        for (const unsigned int j : {0U, rows})
-          add("3",
-              j == 0 ? 3 : 4,
-              {node(i, j, 0),
-               node(i + 1, j, 0),
-               node(i + 1, j, 1),
-               node(i, j, 1)});
-      std::ofstream file(name);
-      file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n"
-              "3 1 \"plate\"\n3 2 \"notch\"\n2 3 \"bottom\"\n2 4 \"top\"\n"
-              "2 5 \"side\"\n$EndPhysicalNames\n$Nodes\n"
-           << 2 * (columns + 1) * (rows + 1) << '\n';
-      for (unsigned int j = 0; j <= rows; ++j)
-        for (unsigned int i = 0; i <= columns; ++i)
-          for (unsigned int k = 0; k < 2; ++k)
-            {
-              // parallel rows in the middle, level ends
-              const double x = i * h, z = j * h,
-                           to_end = std::min(z, height - z) / (0.32 * height),
-                           rise   = slope * positive_part(x - notch) *
-                                  std::min(to_end, 1.);
-              file << node(i, j, k) << ' ' << x << ' ' << -(h * k) << ' '
-                   << z + rise << '\n';
-            }
-      file << "$EndNodes\n$Elements\n" << elements.size() << '\n';
-      for (const std::string &element : elements)
-        file << element << '\n';
-      file << "$EndElements\n";
+        {
+          mesh.add_level(3, i, 0);
+          mesh.add_level(4, i, rows);
+        }
+      mesh.write(
+        name,
+        {{3, "plate"}, {3, "notch"}, {2, "bottom"}, {2, "top"}, {2, "side"}},
+        h,
+        [&](const unsigned int i, const unsigned int j) {
+          // parallel rows in the middle, level ends
+          const double x = i * h, z = j * h,
+                       to_end = std::min(z, height - z) / (0.32 * height),
+                       rise   = slope * positive_part(x - notch) *
+                              std::min(to_end, 1.);
+          return std::pair{x, z + rise};
+        });
     }
 
 

@@ -51,10 +51,12 @@ namespace Voussoir
   };
 
 
-  /** Diagonal of the matrix; @p layout has all unknowns of the contributions.
-   */
-  Vector
-  diagonal(
+  /** Adds the diagonal of the matrix to the owned entries of a vector.
+   *
+   *  @param layout has all unknowns of the contributions */
+  void
+  add_diagonal(
+    Vector              &diagonal,
     const Contributions &contributions,
     const std::shared_ptr<const dealii::Utilities::MPI::Partitioner> &layout);
 } // namespace Voussoir

@@ -9,6 +9,9 @@ namespace Voussoir
    */
   constexpr double most_lowered = 10.;
 
+  /** Opening of a crack over its cell beyond which it detaches a block. */
+  constexpr double widest_crack_share = 0.02;
+
   /** The largest of a strength in tension or compression, in the run or in its
    *  static state [%]. Called on all ranks. */
   double

@@ -40,6 +40,10 @@ namespace Voussoir
       dealii::Tensor<1, 3> normal;
     };
 
+    /** Whether the cracks of any material grow from tips. */
+    bool
+    is_needed() const;
+
     /** Cracks of own cells that were not found before. */
     std::vector<Crack>
     new_cracks(MaterialMemory &memory) const;

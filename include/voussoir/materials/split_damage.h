@@ -53,7 +53,7 @@ namespace Voussoir
    * has f times the stress that the curve itself has at e/f in a band f^2 l.
    *
    * The history begins with the internal variables of the two curves, the
-   * normal of the crack, and its f.
+   * normal of the crack, and its f if cracks grow from tips.
    */
   struct SplitDamage : IsotropicElasticity, TensileCrack
   {
@@ -241,6 +241,8 @@ namespace Voussoir
                const double           followed = 1.,
                const bool             flows    = false) const
     {
+      if (crack_growth == CrackGrowth::local)
+        return grow(0, equivalent, history, situation, followed, flows);
       using dealii::compare_and_apply_mask;
       using Comparison  = dealii::SIMDComparison;
       const Number zero = 0., one = 1.;
@@ -250,13 +252,9 @@ namespace Voussoir
         std::min(std::max(situation.tip_strength,
                           Number(0.99 * tension.yield_ratio(equivalent, zero))),
                  one);
-      Number      &kept   = history[strength_at];
-      const Number factor = compare_and_apply_mask<Comparison::equal>(
-        kept,
-        zero,
-        compare_and_apply_mask<Comparison::equal>(
-          situation.tip_strength, one, one, now),
-        kept);
+      Number      &kept = history[strength_at];
+      const Number factor =
+        compare_and_apply_mask<Comparison::equal>(kept, zero, now, kept);
       situation.element_length = situation.element_length * factor * factor;
       const auto progress      = grow(
         0, Number(equivalent / factor), history, situation, followed, flows);
@@ -271,12 +269,9 @@ namespace Voussoir
     double
     largest_opening(const double *history, const double element_length) const
     {
-      const double factor = history[strength_at];
-      return factor == 0. ?
-               0. :
-               factor * element_length *
-                 tension.at(history[0], factor * factor * element_length)
-                   .inelastic;
+      const double kept = history[strength_at], factor = kept > 0. ? kept : 1.;
+      return factor * element_length *
+             tension.at(history[0], factor * factor * element_length).inelastic;
     }
 
     /** Result of a step in tension and in compression, or the parts of the

@@ -9,6 +9,15 @@ namespace Voussoir
 {
   using namespace dealii;
 
+  namespace
+  {
+    // Residual over the loads within a stage: a hundredth of the error of the
+    // increments, 1e-3, suffices; and a trial is to show only whether
+    // materials crack or yield.
+    constexpr double on_the_path = 1e-5, on_trial = 1e-2;
+  } // namespace
+
+
   StaticLoads
   StaticLoads::grown_to(const StaticLoads &end, const double share) const
   {
@@ -159,9 +168,10 @@ namespace Voussoir
 
     // at once, unless materials crack or yield
     const double largest_step = 1. / parameters.increments;
+    bool         is_trial = internal_force.has_memory() && largest_step < 1.;
     double       step = 1., largest_error = 0.;
     unsigned int n_jumps = 0;
-    Vector rate; // derivative of the displacement by the share, once they crack
+    Vector       rate; // derivative of the displacement by the share, if known
     since_start.restart();
     for (double share = 0.; share < 1.;)
       {
@@ -171,18 +181,21 @@ namespace Voussoir
         const Vector displacement_before = state.displacement;
         const auto   memory_before       = state.material_memory;
         const auto   points_before       = contact_points();
-        if (rate.size() > 0 && !secants.empty())
+        if (rate.size() > 0)
           state.displacement.add(next - share, rate);
-        increment           = {{share, next}};
-        is_last             = next == 1.;
-        const bool is_trial = step > largest_step;
-        may_be_halved       = !is_trial && step > least_step;
-        is_found            = true;
-        find_equilibrium(goal, is_trial);
+        increment     = {{share, next}};
+        may_be_halved = !is_trial && step > least_step;
+        is_found      = true;
 
-        const bool has_dissipated =
-          is_found &&
-          dissipated(state.material_memory, memory_before.losses().material);
+        const auto find = [&](const double asked) {
+          accuracy = asked;
+          find_equilibrium(goal, is_trial);
+          return is_found && dissipated(state.material_memory,
+                                        memory_before.losses().material);
+        };
+        bool has_dissipated = is_trial && find(on_trial);
+        if (!has_dissipated)
+          has_dissipated = find(next < 1. ? on_the_path : 0.);
         double error = 0.;
         if (!is_found || (has_dissipated && is_trial))
           error = 1.;
@@ -212,13 +225,26 @@ namespace Voussoir
             n_jumps += error > tolerance;
             largest_error = std::max(largest_error, error);
             // after a sudden crack longer increments suffice again
-            if (!is_trial && error < 0.25 * tolerance)
-              step = std::min(2. * step, largest_step);
+            step = std::min(error < 0.25 * tolerance ? 2. * step : step,
+                            largest_step);
             continue;
           }
-        if (is_trial)
-          since_start.restart();
-        step                  = is_trial ? largest_step : 0.5 * step;
+        rate.reinit(0);
+        if (!is_trial)
+          step *= 0.5;
+        else
+          {
+            since_start.restart();
+            is_trial = false;
+            step =
+              elastic_share(displacement_before, memory_before, start, end);
+            if (step > 0.)
+              {
+                rate = state.displacement;
+                rate -= displacement_before;
+              }
+            step = std::max(step, largest_step);
+          }
         state.displacement    = displacement_before;
         state.material_memory = memory_before;
         if (model.contact != nullptr)
@@ -237,6 +263,29 @@ namespace Voussoir
         " % of the loads against two of half the size, as where a crack "
         "grows suddenly; take more stages, or more \"Load increments\" in "
         "section \"Static state\"");
+  }
+
+
+  double
+  LoadPath::elastic_share(const Vector         &before,
+                          const MaterialMemory &memory,
+                          const StaticLoads    &start,
+                          const StaticLoads    &end) const
+  {
+    Vector force(before), displacement(before);
+    for (unsigned int n = parameters.increments - 1; n > 0; --n)
+      {
+        const double   share = double(n) / parameters.increments;
+        MaterialMemory tried = memory;
+        displacement         = before;
+        displacement.sadd(1. - share, share, state.displacement);
+        internal_force.set_thermal_strain(
+          start.grown_to(end, share).temperature, tried);
+        internal_force.respond(force, displacement, tried);
+        if (!dissipated(tried, memory.losses().material))
+          return share;
+      }
+    return 0.;
   }
 
 
@@ -342,7 +391,9 @@ namespace Voussoir
       search_equilibrium(force, nullptr);
     else
       effort.iterations +=
-        solver->solve(state.displacement, force, parameters.tolerance);
+        solver->solve(state.displacement,
+                      force,
+                      std::max(parameters.tolerance, accuracy));
   }
 
 
@@ -399,14 +450,10 @@ namespace Voussoir
   void
   LoadPath::search_equilibrium(const Vector &force, MaterialMemory *memory)
   {
-    // within a stage a hundredth of the error of the increments, 1e-3, is an
-    // accuracy that suffices
-    constexpr double on_the_path = 1e-5;
-    const double     of_the_last = model.contact != nullptr ?
-                                     0.1 * parameters.rest :
-                                     std::max(parameters.tolerance, 1e-8);
-    const double     tolerance =
-      is_last ? of_the_last : std::max(of_the_last, on_the_path);
+    const double tolerance =
+      std::max(model.contact != nullptr ? 0.1 * parameters.rest :
+                                          std::max(parameters.tolerance, 1e-8),
+               accuracy);
     // a long crack takes several steps for each cell along it
     const unsigned int patience =
       memory != nullptr && may_be_halved ? 100 : 300;
@@ -442,7 +489,7 @@ namespace Voussoir
     if (!is_found)
       return;
     MaterialMemory none;
-    if ((model.contact != nullptr && is_last) || !search.found)
+    if ((model.contact != nullptr && accuracy == 0.) || !search.found)
       relax(force, memory == nullptr ? none : *memory);
     effort.by_multigrid = effort.by_multigrid && search.found;
   }

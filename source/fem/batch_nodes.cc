@@ -1,5 +1,8 @@
 #include <voussoir/fem/batch_nodes.h>
 
+// GCC 12 finds "uninitialized" variables in its own AVX-512 intrinsics.
+#pragma GCC diagnostic ignored "-Wuninitialized"
+
 namespace Voussoir
 {
   using namespace dealii;
@@ -13,7 +16,8 @@ namespace Voussoir
   void
   BatchNodes::reinit(const unsigned int batch)
   {
-    entries = matrix_free.node_entries[batch];
+    this->batch = batch;
+    entries     = matrix_free.node_entries[batch];
     if (entries == nullptr)
       by_library.reinit(batch);
     else // the next batch is prefetched meanwhile
@@ -30,17 +34,36 @@ namespace Voussoir
         by_library.read_dof_values(vector);
         return;
       }
+    read_nodes(vector.begin(), begin_dof_values());
+  }
+
+
+  void
+  BatchNodes::read_nodes(const double *vector, Lanes *values) const
+  {
     for (unsigned int v = 0; v < 8; ++v)
       {
         // the fourth is not used
         std::array<Lanes, 4> components;
         vectorized_load_and_transpose(4,
-                                      vector.begin(),
+                                      vector,
                                       entries + v * width,
                                       components.data());
         for (unsigned int d = 0; d < 3; ++d)
-          begin_dof_values()[8 * d + v] = components[d];
+          values[8 * d + v] = components[d];
       }
+  }
+
+
+  BatchNodes::MatrixFree::Corners
+  BatchNodes::corners() const
+  {
+    const unsigned int place = matrix_free.place_of_own_corners[batch];
+    if (place != numbers::invalid_unsigned_int)
+      return matrix_free.own_corners[place];
+    MatrixFree::Corners corners;
+    read_nodes(matrix_free.positions.data(), corners.data());
+    return corners;
   }
 
 
@@ -55,21 +78,24 @@ namespace Voussoir
     std::array<unsigned int, width> places;
     for (unsigned int lane = 0; lane < width; ++lane)
       places[lane] = 4 * lane;
+    std::array<std::array<double, 4 * width>, 8> of_nodes;
     for (unsigned int v = 0; v < 8; ++v)
       {
-        const std::array<Lanes, 4>    components{{begin_dof_values()[v],
-                                                  begin_dof_values()[8 + v],
-                                                  begin_dof_values()[16 + v],
-                                                  Lanes(0.)}};
-        std::array<double, 4 * width> by_lane;
+        const std::array<Lanes, 4> components{{begin_dof_values()[v],
+                                               begin_dof_values()[8 + v],
+                                               begin_dof_values()[16 + v],
+                                               Lanes(0.)}};
         vectorized_transpose_and_store(
-          false, 4, components.data(), places.data(), by_lane.data());
-        for (unsigned int lane = 0; lane < width; ++lane)
-          {
-            double *node = vector.begin() + entries[v * width + lane];
-            for (unsigned int d = 0; d < 3; ++d)
-              node[d] += by_lane[4 * lane + d];
-          }
+          false, 4, components.data(), places.data(), of_nodes[v].data());
       }
+    double             *sums     = vector.begin();
+    const unsigned int *of_batch = entries;
+    for (unsigned int lane = 0; lane < width; ++lane)
+      for (unsigned int v = 0; v < 8; ++v)
+        {
+          Doubles4 numbers;
+          std::memcpy(&numbers, &of_nodes[v][4 * lane], sizeof(numbers));
+          add_to_node(sums + of_batch[v * width + lane], numbers);
+        }
   }
 } // namespace Voussoir

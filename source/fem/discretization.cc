@@ -96,17 +96,17 @@ namespace Voussoir
 
     // Corners of the cells of a batch; lanes without a cell have those of the
     // last cell.
-    std::array<Point<3, Lanes>, 8>
+    Discretization::MatrixFree::Corners
     corners_of(const Discretization::MatrixFree &matrix_free,
                const unsigned int                batch)
     {
-      std::array<Point<3, Lanes>, 8> corners;
-      const unsigned int             n_cells =
+      Discretization::MatrixFree::Corners corners;
+      const unsigned int                  n_cells =
         matrix_free.n_active_entries_per_cell_batch(batch);
       for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
         for (unsigned int v = 0; v < 8; ++v)
           for (unsigned int d = 0; d < 3; ++d)
-            corners[v][d][lane] =
+            corners[8 * d + v][lane] =
               matrix_free.get_cell_iterator(batch, std::min(lane, n_cells - 1))
                 ->vertex(v)[d];
       return corners;
@@ -238,8 +238,8 @@ namespace Voussoir
     matrix_free.node_entries.assign(matrix_free.n_cell_batches(), nullptr);
     if (degree == 1)
       {
-        keep_corners_only();
         find_node_entries();
+        keep_corners_only();
       }
     if (single_precision)
       kept_single_corners = single_corners();
@@ -282,10 +282,35 @@ namespace Voussoir
   void
   Discretization::keep_corners_only()
   {
-    const unsigned int n_batches = matrix_free.n_cell_batches();
-    matrix_free.corners.resize(n_batches);
+    const unsigned int n_batches = matrix_free.n_cell_batches(),
+                       n_lanes   = Lanes::size();
+    const auto &layout           = *matrix_free.get_vector_partitioner();
+    matrix_free.trilinear        = true;
+    matrix_free.positions.resize(layout.locally_owned_size() +
+                                 layout.n_ghost_indices());
+    const auto is_complete = [&](const unsigned int batch) {
+      return matrix_free.node_entries[batch] != nullptr &&
+             matrix_free.n_active_entries_per_cell_batch(batch) == n_lanes;
+    };
+    matrix_free.place_of_own_corners.assign(n_batches,
+                                            numbers::invalid_unsigned_int);
     for (unsigned int batch = 0; batch < n_batches; ++batch)
-      matrix_free.corners[batch] = corners_of(matrix_free, batch);
+      {
+        const auto corners = corners_of(matrix_free, batch);
+        if (is_complete(batch))
+          for (unsigned int v = 0; v < 8; ++v)
+            for (unsigned int lane = 0; lane < n_lanes; ++lane)
+              for (unsigned int d = 0; d < 3; ++d)
+                matrix_free.positions
+                  [matrix_free.node_entries[batch][v * n_lanes + lane] + d] =
+                  corners[8 * d + v][lane];
+        else
+          {
+            matrix_free.place_of_own_corners[batch] =
+              matrix_free.own_corners.size();
+            matrix_free.own_corners.push_back(corners);
+          }
+      }
     auto &geometry =
       const_cast<
         internal::MatrixFreeFunctions::MappingInfo<3, double, Lanes> &>(
@@ -350,11 +375,9 @@ namespace Voussoir
       std::make_shared<MatrixFree::SingleCorners>(matrix_free.n_cell_batches());
     for (unsigned int batch = 0; batch < matrix_free.n_cell_batches(); ++batch)
       {
-        const auto &corners = matrix_free.corners[batch];
-        for (unsigned int v = 0; v < 8; ++v)
-          for (unsigned int d = 0; d < 3; ++d)
-            (*result)[batch][8 * d + v] =
-              rounded(corners[v][d] - corners[0][d]);
+        const auto corners = corners_of(matrix_free, batch);
+        for (unsigned int k = 0; k < 24; ++k)
+          (*result)[batch][k] = rounded(corners[k] - corners[k / 8 * 8]);
       }
     matrix_free.single_corners = result;
     return result;

@@ -11,9 +11,23 @@ namespace Voussoir
   {
     constexpr unsigned int width = Lanes::size();
 
-    // Three components of a node and one entry more, which is not used.
-    typedef double Doubles4 __attribute__((vector_size(32)));
-    typedef float  Floats4 __attribute__((vector_size(16)));
+    // The three components of a node and one entry more, which is not used: of
+    // a cell, of one or two cells, and of every fourth one of the cells.
+    constexpr unsigned int n_blocks = has_singles ? width / 2 : 1;
+    constexpr unsigned int in_group = n_blocks == 1 ? 1 : 2;
+    constexpr unsigned int n_groups = 4 * n_blocks / in_group;
+    typedef float          Floats4 __attribute__((vector_size(16)));
+    typedef double DoubleGroup __attribute__((vector_size(32 * in_group)));
+    typedef float  SingleGroup __attribute__((vector_size(16 * in_group)));
+    typedef float  Blocks __attribute__((vector_size(16 * n_blocks)));
+
+    /** The first cell of a group; two cells of a group are four apart. */
+    constexpr unsigned int
+    first_of_group(const unsigned int group)
+    {
+      return group / 4 * 8 + group % 4;
+    }
+
 
     Doubles4
     load(const double *entries)
@@ -24,20 +38,70 @@ namespace Voussoir
     }
 
 
-    // Places of the cells' entries in a buffer with four entries per cell.
-    constexpr std::array<unsigned int, 2 * width>
-    places_in_buffer()
+    /** The groups @p j and @p j + 4 in single precision, if there are so many.
+     */
+    template <typename Group>
+    Blocks
+    blocks_of(const unsigned int j, const Group &group)
     {
-      std::array<unsigned int, 2 * width> places{};
-      for (unsigned int lane = 0; lane < 2 * width; ++lane)
-        places[lane] = 4 * lane;
-      return places;
+      const auto single = [&](const unsigned int k) {
+        return __builtin_convertvector(group(k), SingleGroup);
+      };
+      if constexpr (n_blocks == in_group)
+        return single(j);
+      else
+        return __builtin_shufflevector(single(j),
+                                       single(j + 4),
+                                       0,
+                                       1,
+                                       2,
+                                       3,
+                                       4,
+                                       5,
+                                       6,
+                                       7,
+                                       8,
+                                       9,
+                                       10,
+                                       11,
+                                       12,
+                                       13,
+                                       14,
+                                       15);
     }
-    constexpr auto places = places_in_buffer();
 
 
-    // Four values of each cell, for each of the eight nodes.
-    using Buffers = std::array<std::array<float, 8 * width>, 8>;
+    template <unsigned int i, unsigned int k, std::size_t... n>
+    Blocks
+    two_of_each(const Blocks &a, const Blocks &b, std::index_sequence<n...>)
+    {
+      return __builtin_shufflevector(
+        a, b, (n / 4 * 4 + (n % 2 == 0 ? i : k) + n % 4 / 2 * 4 * n_blocks)...);
+    }
+
+    /** Entries @p i and @p k of each block of @p a, and then of @p b. */
+    template <unsigned int i, unsigned int k>
+    Blocks
+    two_of_each(const Blocks &a, const Blocks &b)
+    {
+      return two_of_each<i, k>(a, b, std::make_index_sequence<4 * n_blocks>());
+    }
+
+
+    /** Transposes entry k of block b of vector j to entry j of block b of
+     * vector k. */
+    std::array<Blocks, 4>
+    transposed(const std::array<Blocks, 4> &a)
+    {
+      const Blocks low    = two_of_each<0, 1>(a[0], a[1]),
+                   low_2  = two_of_each<0, 1>(a[2], a[3]),
+                   high   = two_of_each<2, 3>(a[0], a[1]),
+                   high_2 = two_of_each<2, 3>(a[2], a[3]);
+      return {{two_of_each<0, 2>(low, low_2),
+               two_of_each<1, 3>(low, low_2),
+               two_of_each<0, 2>(high, high_2),
+               two_of_each<1, 3>(high, high_2)}};
+    }
   } // namespace
 
 
@@ -95,32 +159,37 @@ namespace Voussoir
                                  halves[1][k] - halves[1][k / 8 * 8]);
         return;
       }
-    alignas(64) Buffers buffers;
-    for (unsigned int lane = 0; lane < 2 * width; ++lane)
+    if constexpr (has_singles)
       {
-        const unsigned int *of_lane = entries[lane / width] + lane % width;
-        const Doubles4      first   = load(of_lane[0]);
+        const auto group = [&](const unsigned int k, const unsigned int v) {
+          const auto node = [&](const unsigned int lane) {
+            return load(entries[lane / width][v * width + lane % width]);
+          };
+          const unsigned int lane = first_of_group(k);
+          if constexpr (in_group == 1)
+            return node(lane);
+          else
+            return __builtin_shufflevector(
+              node(lane), node(lane + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+        };
+        std::array<DoubleGroup, n_groups> first;
+        for (unsigned int k = 0; k < n_groups; ++k)
+          first[k] = group(k, 0);
+        for (unsigned int d = 0; d < 3; ++d)
+          values[8 * d] = 0.f;
         for (unsigned int v = 1; v < 8; ++v)
           {
-            const Floats4 difference =
-              __builtin_convertvector(load(of_lane[v * width]) - first,
-                                      Floats4);
-            std::memcpy(buffers[v].data() + 4 * lane,
-                        &difference,
-                        sizeof(difference));
+            const auto difference = [&](const unsigned int k) {
+              return group(k, v) - first[k];
+            };
+            const std::array<Blocks, 4> components =
+              transposed({{blocks_of(0, difference),
+                           blocks_of(1, difference),
+                           blocks_of(2, difference),
+                           blocks_of(3, difference)}});
+            for (unsigned int d = 0; d < 3; ++d)
+              values[8 * d + v].data = components[d];
           }
-      }
-    for (unsigned int d = 0; d < 3; ++d)
-      values[8 * d] = 0.f;
-    for (unsigned int v = 1; v < 8; ++v)
-      {
-        std::array<Singles, 4> components;
-        vectorized_load_and_transpose(4,
-                                      buffers[v].data(),
-                                      places.data(),
-                                      components.data());
-        for (unsigned int d = 0; d < 3; ++d)
-          values[8 * d + v] = components[d];
       }
   }
 
@@ -179,25 +248,29 @@ namespace Voussoir
           add_half(vector, values, half);
         return;
       }
-    alignas(64) Buffers buffers;
-    for (unsigned int v = 0; v < 8; ++v)
+    if constexpr (has_singles)
       {
-        const std::array<Singles, 4> components{
-          {values[v], values[8 + v], values[16 + v], Singles(0.f)}};
-        vectorized_transpose_and_store(
-          false, 4, components.data(), places.data(), buffers[v].data());
+        std::array<std::array<Blocks, 4>, 8> of_nodes;
+        for (unsigned int v = 0; v < 8; ++v)
+          of_nodes[v] = transposed({{values[v].data,
+                                     values[8 + v].data,
+                                     values[16 + v].data,
+                                     Blocks{}}});
+        double    *sums     = vector.begin();
+        const auto of_batch = entries;
+        for (unsigned int lane = 0; lane < 2 * width; ++lane)
+          for (unsigned int v = 0; v < 8; ++v)
+            {
+              Floats4 force;
+              std::memcpy(&force,
+                          reinterpret_cast<const float *>(
+                            &of_nodes[v][lane % 4]) +
+                            lane / 4 * 4,
+                          sizeof(force));
+              add_to_node(sums +
+                            of_batch[lane / width][v * width + lane % width],
+                          __builtin_convertvector(force, Doubles4));
+            }
       }
-    // In the order of the nodes, so that no entry is read that has just been
-    // stored; and without the fourth entry, whose node may have just been
-    // stored.
-    double *sums = vector.begin();
-    for (unsigned int v = 0; v < 8; ++v)
-      for (unsigned int lane = 0; lane < 2 * width; ++lane)
-        {
-          double *node = sums + entries[lane / width][v * width + lane % width];
-          const float *force = buffers[v].data() + 4 * lane;
-          for (unsigned int d = 0; d < 3; ++d)
-            node[d] += force[d];
-        }
   }
 } // namespace Voussoir

@@ -9,10 +9,7 @@ namespace Voussoir
   TrilinearCells<Shape>::reinit(const unsigned int batch)
   {
     nodes.reinit(batch);
-    std::array<Lanes, 24> corners;
-    for (unsigned int v = 0; v < 8; ++v)
-      for (unsigned int d = 0; d < 3; ++d)
-        corners[8 * d + v] = matrix_free.corners[batch][v][d];
+    auto corners = nodes.corners();
     Shape<Lanes>::reinit(corners);
   }
 

@@ -92,6 +92,16 @@ namespace Voussoir
     void
     find_equilibrium(const StaticLoads &loads, const bool is_trial);
 
+    /** Number of equal increments of the loads of a stage, over all of them, in
+     *  which the materials remain elastic on a straight path from the
+     *  displacement @p before with the internal variables @p memory to the
+     *  present one. */
+    double
+    elastic_share(const Vector         &before,
+                  const MaterialMemory &memory,
+                  const StaticLoads    &start,
+                  const StaticLoads    &end) const;
+
     /** Difference of the forces of the materials at the end of an increment
      *  between one step of the laws and two, over the loads.
      *  @param before displacement, @p memory before the increment
@@ -166,15 +176,15 @@ namespace Voussoir
     const Damping                           damping; // none
     std::unique_ptr<ElasticSolver>          solver;
     std::unique_ptr<Relaxation>
-                          relaxation;  // with contact or internal variables
-    SecantSteps           secants;     // along this stage
-    std::string           stage;       // its loads
-    unsigned int          number = 0;  // of this stage
-    Vector                before;      // displacement before it [m]
-    Effort                effort;      // of this stage
-    dealii::Timer         since_start; // of its path
-    std::array<double, 2> increment;   // of its loads
-    bool                  is_last       = true;  // increment
+                          relaxation;    // with contact or internal variables
+    SecantSteps           secants;       // along this stage
+    std::string           stage;         // its loads
+    unsigned int          number = 0;    // of this stage
+    Vector                before;        // displacement before it [m]
+    Effort                effort;        // of this stage
+    dealii::Timer         since_start;   // of its path
+    std::array<double, 2> increment;     // of its loads
+    double                accuracy = 0.; // residual over loads; 0: of a stage
     bool                  may_be_halved = false; // the increment
 
     // false if the increment is to be halved, as the search has found no

@@ -124,12 +124,23 @@ namespace Voussoir
 
     struct MatrixFree : dealii::MatrixFree<3, double, Lanes>
     {
-      /** Corners of the cells of each batch, which are all the geometry that
-       *  trilinear cells need; none if cells are of higher degree. */
-      dealii::AlignedVector<std::array<dealii::Point<3, Lanes>, 8>> corners;
+      /** Whether cells are trilinear: their corners are all the geometry that
+       *  they need. */
+      bool trilinear = false;
 
-      /** The same in single precision, relative to the first corner, component
-       *  by component. */
+      /** Positions of the nodes, in the layout of vectors with ghost entries
+       *  [m]; see BatchNodes::corners. */
+      dealii::AlignedVector<double> positions;
+
+      /** Corners of the batches that cannot read them from there, and for each
+       *  batch its place among these, or an invalid number. Component d of
+       *  corner v is entry 8 d + v [m]. */
+      using Corners = std::array<Lanes, 24>;
+      dealii::AlignedVector<Corners> own_corners;
+      std::vector<unsigned int>      place_of_own_corners;
+
+      /** Corners of each batch in single precision, relative to the first one.
+       */
       using SingleCorners = dealii::AlignedVector<std::array<HalfSingles, 24>>;
 
       /** Result of Discretization::single_corners(), as long as a caller holds

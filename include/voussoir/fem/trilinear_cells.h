@@ -18,7 +18,6 @@ namespace Voussoir
 
     explicit TrilinearCells(const MatrixFree &matrix_free)
       : Shape<Lanes>(matrix_free)
-      , matrix_free(matrix_free)
       , nodes(matrix_free)
     {}
 
@@ -78,8 +77,7 @@ namespace Voussoir
     }
 
   private:
-    const MatrixFree &matrix_free;
-    BatchNodes        nodes;
+    BatchNodes nodes;
   };
 
 

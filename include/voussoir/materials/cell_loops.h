@@ -32,7 +32,7 @@ namespace Voussoir
     {
       if (cells.one_point)
         work(TrilinearCells<OnePointShape>(cells.matrix_free));
-      else if (!cells.matrix_free.corners.empty())
+      else if (cells.matrix_free.trilinear)
         work(TrilinearCells<EightPointShape>(cells.matrix_free));
       else
         work(Evaluation(cells.matrix_free));

@@ -51,6 +51,66 @@ namespace Voussoir
         }
       return 2. / std::sqrt(eigenvalue);
     }
+
+
+    /** The material with the largest area of side faces at a height; each
+     *  height must not be below the one before. */
+    class MaterialOfHeight
+    {
+    public:
+      explicit MaterialOfHeight(const std::vector<SideFace> &faces)
+        : by_lower(faces)
+        , by_upper(faces)
+        , begin(by_lower.begin())
+        , end(by_upper.begin())
+      {
+        std::sort(by_lower.begin(),
+                  by_lower.end(),
+                  [](const auto &a, const auto &b) {
+                    return a.lower < b.lower;
+                  });
+        std::sort(by_upper.begin(),
+                  by_upper.end(),
+                  [](const auto &a, const auto &b) {
+                    return a.upper < b.upper;
+                  });
+      }
+
+      unsigned int
+      operator()(const double z)
+      {
+        for (; begin != by_lower.end() && begin->lower <= z; ++begin)
+          {
+            Faces &here = at[begin->material];
+            ++here.n;
+            here.area += begin->area;
+          }
+        for (; end != by_upper.end() && end->upper < z; ++end)
+          {
+            Faces &here = at[end->material];
+            here.area -= end->area;
+            if (--here.n == 0)
+              at.erase(end->material);
+          }
+        return std::max_element(at.begin(),
+                                at.end(),
+                                [](const auto &a, const auto &b) {
+                                  return a.second.area < b.second.area;
+                                })
+          ->first;
+      }
+
+    private:
+      struct Faces
+      {
+        unsigned int n    = 0;
+        double       area = 0.;
+      };
+
+      std::vector<SideFace>                 by_lower, by_upper;
+      std::vector<SideFace>::const_iterator begin, end;
+      std::map<unsigned int, Faces>         at;
+    };
   } // namespace
 
 
@@ -71,20 +131,7 @@ namespace Voussoir
     std::sort(levels.begin(), levels.end());
     const double tolerance = 1e-9 * (levels.back() - levels.front());
 
-    // the material at a height is that of the largest area of side faces there
-    const auto material_at = [&](const double z) {
-      std::map<unsigned int, double> areas;
-      for (const SideFace &face : faces)
-        if (face.lower <= z && z <= face.upper)
-          areas[face.material] += face.area;
-      return std::max_element(areas.begin(),
-                              areas.end(),
-                              [](const auto &a, const auto &b) {
-                                return a.second < b.second;
-                              })
-        ->first;
-    };
-
+    MaterialOfHeight               material_of(faces);
     const double                   limit = element_limit(degree);
     std::vector<WaveColumn::Layer> layers;
     double                         lower = levels.front();
@@ -92,7 +139,7 @@ namespace Voussoir
       {
         if (level - lower <= tolerance)
           continue;
-        const unsigned int material = material_at(0.5 * (lower + level));
+        const unsigned int material = material_of(0.5 * (lower + level));
         const double       factor   = damping_factors[material];
         const double       speed =
           constants[material].p_wave_speed() *

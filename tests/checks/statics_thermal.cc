@@ -103,8 +103,9 @@ namespace Voussoir
       {
         const Discretization &discretization =
           simulation.model.solid.discretization;
-        const Vector &displacement =
-          simulation.static_state.initial.displacement;
+        const Vector displacement = // also of hanging nodes
+          with_ghosts(discretization,
+                      simulation.static_state.initial.displacement);
         const unsigned int n = discretization.n_owned_nodes();
         // the plate is not supported across: its mean is set to the exact one
         std::vector<double> sums(2);

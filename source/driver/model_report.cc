@@ -32,11 +32,64 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    struct Range
+    {
+      double smallest = std::numeric_limits<double>::max(), largest = 0.;
+    };
+
+
+    /** Cube roots of the volumes of the cells of each material [m]. */
+    std::vector<Range>
+    cell_sizes(const Grid &grid, const unsigned int n_materials)
+    {
+      std::vector<Range> sizes(n_materials);
+      for (const auto &cell : grid.triangulation().active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            Range       &of_material = sizes[grid.material(cell)];
+            const double size        = std::cbrt(cell->measure());
+            of_material.smallest     = std::min(of_material.smallest, size);
+            of_material.largest      = std::max(of_material.largest, size);
+          }
+      for (Range &of_material : sizes)
+        {
+          of_material.smallest =
+            Utilities::MPI::min(of_material.smallest, grid.communicator());
+          of_material.largest =
+            Utilities::MPI::max(of_material.largest, grid.communicator());
+        }
+      return sizes;
+    }
+
+
+    std::string
+    remark_on_tips(const Material &material, const Range &sizes)
+    {
+      // 1 / sqrt(1 + h / length)
+      const double share  = material.tip_strength(1.),
+                   length = share * share / (1. - share * share);
+      std::ostringstream text;
+      text << std::setprecision(3)
+           << "at tips of cracks the tensile strength is lowered to "
+           << 100. * material.tip_strength(sizes.largest)
+           << " % in the largest cells, of " << sizes.largest << " m, and to "
+           << 100. * material.tip_strength(sizes.smallest)
+           << " % in the smallest, of " << sizes.smallest
+           << " m; it is below half in cells larger than " << 3. * length
+           << " m.";
+      return text.str();
+    }
+  } // namespace
+
+
   void
   Model::report_materials(Log &log) const
   {
     const std::vector<double> carried = carried_frequencies(),
                               widest  = widest_crack_bands();
+    const auto sizes = cell_sizes(grid, solid.materials.size());
     for (unsigned int m = 0; m < solid.materials.size(); ++m)
       {
         const ElasticConstants c = solid.materials[m]->elastic_constants();
@@ -52,6 +105,8 @@ namespace Voussoir
         if (const std::string remark = solid.materials[m]->remark(widest[m]);
             !remark.empty())
           log.line("  note: ", remark);
+        if (solid.materials[m]->tip_strength(1.) < 1. && sizes[m].largest > 0.)
+          log.line("  note: ", remark_on_tips(*solid.materials[m], sizes[m]));
         if (solid.materials[m]->n_history() > 0 &&
             solid.discretization.degree > 2)
           log.line(

@@ -474,6 +474,11 @@ namespace Voussoir
       text << "Contact: " << 100. * summary.march->contact_share.value_or(0.)
            << " % of the loop, " << run.contact->effort().paths
            << " clusters by path following\n";
+    for (const auto &[name, material] : summary.march->materials.items())
+      if (const char *cells = "cells at tips of cracks";
+          material.contains(cells))
+        text << "Material " << name << ": " << material.at(cells).get<double>()
+             << " cells at tips of cracks had a lower tensile strength\n";
     for (const auto &[name, table] : tables_of(summary))
       text << description(name, *table);
     text << "Verdict: " << summary.verdict() << '\n';

@@ -255,7 +255,7 @@ namespace Voussoir
         if (history == nullptr)
           continue;
         const auto          names = names_of(*run.solid.materials[m]);
-        std::vector<double> largest(names.size()), volumes(3);
+        std::vector<double> largest(names.size()), volumes(4);
         for_each_point(*run.solid.materials[m],
                        *history,
                        [&](const Discretization::Cell &cell,
@@ -270,13 +270,18 @@ namespace Voussoir
                            largest[i] = std::max(largest[i], outputs[i]);
                        });
         volumes[2] = history->losses.material;
-        volumes    = sum_over_ranks(volumes, communicator);
+        for (const auto &[cell, place] : history->cells())
+          if (history->tip_strength(place.batch)[place.lane] < 1.)
+            ++volumes[3];
+        volumes = sum_over_ranks(volumes, communicator);
         if (volumes[0] == 0.) // a class of a random field without cells
           continue;
         auto &item = result[material_names[m]];
         item["share of the volume that left the elastic range"] =
           volumes[1] / volumes[0];
         item["energy lost [J]"] = volumes[2];
+        if (run.solid.materials[m]->tip_strength(1.) < 1.)
+          item["cells at tips of cracks"] = volumes[3];
         for (unsigned int i = 0; i < names.size(); ++i)
           item[summary_name(names[i])] =
             Utilities::MPI::max(largest[i], communicator);

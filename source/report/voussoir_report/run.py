@@ -24,7 +24,8 @@ SUMMARY = Group(
          ("largest opening from face to face at one moment [mm]", "at the time [s]",
           "opening from face to face at the end [mm]"), NUMBER)),
      "materials": Group(others=Group(optional=dict.fromkeys(
-         ("largest crack opening [mm]", "share of the volume that left the elastic range"), NUMBER))),
+         ("largest crack opening [mm]", "share of the volume that left the elastic range",
+          "cells at tips of cracks"), NUMBER))),
      "histories": Group(others=Group(
          dict.fromkeys(("largest displacement [m]", "filtered at [Hz]"), NUMBER),
          {"largest filtered acceleration [m/s2]": NUMBER})),

@@ -117,6 +117,39 @@ namespace Voussoir
     };
 
 
+    /** A node by one of its cells on a side of an interface. */
+    struct KeyedNode
+    {
+      NodeKey  key;
+      Point<3> position;
+    };
+
+
+    /** The nodes of the faces of a set, those of neighbouring cells, too. */
+    std::map<types::global_dof_index, KeyedNode>
+    nodes_of_faces(const Discretization &discretization,
+                   FaceNodes            &face_nodes,
+                   const std::string    &set)
+    {
+      std::map<types::global_dof_index, KeyedNode> result;
+      for (const auto &[cell, face] : discretization.grid.faces(set))
+        {
+          const auto nodes =
+            discretization.cell_nodes(discretization.dof_cell(cell));
+          for (const FaceNode &node : face_nodes.of(cell, face))
+            {
+              const KeyedNode found{{Grid::global_key(cell), node.number},
+                                    node.position};
+              const auto [known, is_new] =
+                result.emplace(nodes[node.number], found);
+              if (!is_new && found.key < known->second.key)
+                known->second = found;
+            }
+        }
+      return result;
+    }
+
+
     std::vector<Record>
     records_of_owned_faces(const Discretization           &discretization,
                            const std::vector<std::string> &interfaces)
@@ -126,23 +159,52 @@ namespace Voussoir
       std::vector<Record> records;
       for (unsigned int i = 0; i < interfaces.size(); ++i)
         for (const unsigned int side : {0, 1})
-          discretization.grid.for_each_face(
-            interfaces[i] + (side == 0 ? "" : other_side),
-            [&](const auto &cell, const unsigned int face) {
-              const auto nodes =
-                discretization.cell_nodes(discretization.dof_cell(cell));
-              for (const FaceNode &node : face_nodes.of(cell, face))
-                records.push_back({node.position,
-                                   cell->face(face)->center(),
-                                   node.area * node.normal,
-                                   {Grid::global_key(cell), node.number},
-                                   nodes[node.number],
-                                   i,
-                                   side,
-                                   face,
-                                   discretization.hanging_nodes.is_constrained(
-                                     3 * nodes[node.number])});
-            });
+          {
+            const std::string set =
+              interfaces[i] + (side == 0 ? "" : other_side);
+            const auto known = nodes_of_faces(discretization, face_nodes, set);
+            discretization.grid.for_each_face(
+              set, [&](const auto &cell, const unsigned int face) {
+                const auto nodes =
+                  discretization.cell_nodes(discretization.dof_cell(cell));
+                for (const FaceNode &node : face_nodes.of(cell, face))
+                  {
+                    Record     record{node.position,
+                                  cell->face(face)->center(),
+                                  node.area * node.normal,
+                                  {Grid::global_key(cell), node.number},
+                                  nodes[node.number],
+                                  i,
+                                  side,
+                                  face,
+                                  false};
+                    const auto carriers = discretization.carriers(record.node);
+                    record.hanging =
+                      carriers.size() > 1 &&
+                      (discretization.degree > 1 ||
+                       std::any_of(carriers.begin(),
+                                   carriers.end(),
+                                   [&](const auto &carrier) {
+                                     return known.count(carrier.node) == 0;
+                                   }));
+                    if (carriers.size() == 1 || record.hanging)
+                      {
+                        records.push_back(record);
+                        continue;
+                      }
+                    // its gap is the mean of those of its carriers, which take
+                    // its area
+                    for (const auto &[carrier, weight] : carriers)
+                      {
+                        record.node     = carrier;
+                        record.key      = known.at(carrier).key;
+                        record.position = known.at(carrier).position;
+                        record.area     = weight * node.area * node.normal;
+                        records.push_back(record);
+                      }
+                  }
+              });
+          }
       return records;
     }
 
@@ -173,8 +235,9 @@ namespace Voussoir
              << record.position[0] << ", " << record.position[1] << ", "
              << record.position[2]
              << ") m, so that not every node has a partner on the other side; "
-                "refine all cells on both sides of it equally by \"Local "
-                "refinement\" in section \"Mesh\", or none.";
+                "refine all cells at it equally by \"Local refinement\" in "
+                "section \"Mesh\", or none, or set \"Degree = 1\" in section "
+                "\"Discretization\".";
         const auto problem = std::make_pair(record.key, text.str());
         if (first.second.empty() || problem < first)
           first = problem;
@@ -258,8 +321,15 @@ namespace Voussoir
           number[key] = cluster.nodes.size();
           cluster.nodes.push_back(node);
         }
-      for (const auto &[connection, shares] : areas)
+      for (auto &[connection, shares] : areas)
         {
+          // in an order that does not depend on ranks
+          std::sort(shares.begin(),
+                    shares.end(),
+                    [](const Tensor<1, 3> &a, const Tensor<1, 3> &b) {
+                      return std::tie(a[0], a[1], a[2]) <
+                             std::tie(b[0], b[1], b[2]);
+                    });
           ContactPair pair{std::get<0>(connection),
                            number[std::get<1>(connection)],
                            number[std::get<2>(connection)],

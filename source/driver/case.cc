@@ -6,6 +6,7 @@
 #include <voussoir/base/text.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/driver/case.h>
+#include <voussoir/driver/crack_refinement.h>
 #include <voussoir/driver/random_classes.h>
 #include <voussoir/mesh/mesh_check.h>
 #include <voussoir/mesh/mesh_report.h>
@@ -283,6 +284,7 @@ namespace Voussoir
     ground_motion.check();
     damping.check(modes.number);
     check_reproducible();
+    check_refinement(*this);
     study.check();
     acceptance.check();
     const bool rigid_base = wave.enters_through == WaveEntrance::rigid_base;

@@ -1,6 +1,8 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/text.h>
 #include <voussoir/driver/case_identity.h>
+#include <voussoir/driver/crack_refinement.h>
+#include <voussoir/files/tension_file.h>
 
 #include <dlfcn.h>
 
@@ -191,7 +193,14 @@ namespace Voussoir
   nlohmann::json
   identity_of(const Case &parameters)
   {
-    return identity_without(parameters, is_free_of_restart);
+    nlohmann::json result = identity_without(parameters, is_free_of_restart);
+    // the mesh depends on what the other run has left
+    if (const std::string &run = parameters.grid.refine_where.demand_of;
+        !run.empty())
+      result.push_back(
+        "Mesh/Refine where/Demand of" + (with_file + run) + of_checksum +
+        checksum_of_file(tension_file(demand_folder(parameters))));
+    return result;
   }
 
 

@@ -3,6 +3,7 @@
 #include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/command_line.h>
+#include <voussoir/driver/crack_refinement.h>
 #include <voussoir/driver/shipped_cases.h>
 #include <voussoir/driver/simulation.h>
 #include <voussoir/driver/study.h>
@@ -144,7 +145,8 @@ namespace Voussoir
       double                   time_step = 0., seconds = 0., megabytes = 0.;
       unsigned long long       steps = 0;
       std::vector<std::string> warnings;
-      nlohmann::json           checks; // numerical ones
+      nlohmann::json           checks;  // numerical ones
+      std::string              refined; // where cracks are expected
     };
 
 
@@ -167,7 +169,9 @@ namespace Voussoir
               Utilities::MPI::max(memory.VmHWM / 1024., communicator),
               run.n_steps(),
               simulation.log.warnings(),
-              numerical_checks(*run.setup)};
+              numerical_checks(*run.setup),
+              describe_refinement(parameters,
+                                  simulation.model.grid.refinement())};
     }
 
 
@@ -183,6 +187,9 @@ namespace Voussoir
         std::cout << "note: " << note << '\n';
       for (const std::string &warning : found.warnings)
         std::cout << "Warning: " << warning << '\n';
+      if (!found.refined.empty())
+        std::cout << "Refined where cracks are expected: " << found.refined
+                  << '\n';
       std::cout << description("Numerical checks known before", found.checks);
       std::cout << "Valid: " << found.unknowns << " unknowns, time step "
                 << found.time_step << " s, " << found.steps << " steps"
@@ -224,6 +231,8 @@ namespace Voussoir
             add("note: " + note + '\n');
           for (const std::string &warning : found.warnings)
             add("Warning: " + warning + '\n');
+          if (!found.refined.empty())
+            add("Refined where cracks are expected: " + found.refined + '\n');
           nlohmann::json missed;
           for (const std::string &name : not_met(found.checks))
             missed[name] = found.checks.at(name);

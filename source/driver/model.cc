@@ -1,4 +1,5 @@
 #include <voussoir/base/first_rank.h>
+#include <voussoir/driver/crack_refinement.h>
 #include <voussoir/driver/mesh_against_case.h>
 #include <voussoir/driver/model.h>
 #include <voussoir/driver/model_checks.h>
@@ -57,9 +58,15 @@ namespace Voussoir
 
 
     Grid::Materials
-    materials_of_grid(const Case &parameters, std::vector<unsigned int> of_cell)
+    materials_of_grid(const Case                         &parameters,
+                      std::vector<unsigned int>           of_cell,
+                      std::shared_ptr<const CellsAndRing> stressed)
     {
-      Grid::Materials result{std::move(of_cell), {}, {}};
+      Grid::Materials result{std::move(of_cell),
+                             {},
+                             {},
+                             crack_edges(parameters),
+                             std::move(stressed)};
       for (const Material *material : parameters.material_list())
         {
           result.costs.push_back(
@@ -108,16 +115,13 @@ namespace Voussoir
 
     // Makes a grid of the mesh and frees the mesh.
     Grid
-    make_grid(const Case               &parameters,
-              CoarseMesh              &&mesh,
-              std::vector<unsigned int> materials,
-              const MPI_Comm            communicator)
+    make_grid(const GridParameters  &parameters,
+              CoarseMesh           &&mesh,
+              const Grid::Materials &materials,
+              const MPI_Comm         communicator)
     {
       const CoarseMesh   coarse = std::move(mesh);
-      Grid               grid(coarse,
-                parameters.grid,
-                materials_of_grid(parameters, std::move(materials)),
-                communicator);
+      Grid               grid(coarse, parameters, materials, communicator);
       const auto         n_cells = grid.triangulation().n_global_active_cells();
       const unsigned int n_ranks =
         Utilities::MPI::n_mpi_processes(communicator);
@@ -249,7 +253,10 @@ namespace Voussoir
 
 
   Model::Meshes::Meshes(const Case &parameters, Log &log)
+    : grid(parameters.grid)
   {
+    if (awaits_linear_run(parameters, log.communicator()))
+      grid.refine_where = {};
     const RanksOfMachine machine(log.communicator());
     if (!machine.is_group() || parameters.generator ||
         parameters.grid.partition == Partition::p4est ||
@@ -276,6 +283,8 @@ namespace Voussoir
     check_parts(parameters, solid, surfaces, log);
     report_sets_on_interfaces(parameters, solid, surfaces, log);
     check_mesh_against_case(parameters, solid, surfaces, materials, log);
+    if (grid.refine_where.wanted())
+      stressed = stressed_cells(parameters, solid);
   }
 
 
@@ -313,9 +322,11 @@ namespace Voussoir
 
   Model::Model(const Case &parameters, Meshes &&meshes, Log &log)
     : parameters(parameters)
-    , grid(make_grid(parameters,
+    , grid(make_grid(meshes.grid,
                      std::move(meshes.solid),
-                     std::move(meshes.materials),
+                     materials_of_grid(parameters,
+                                       std::move(meshes.materials),
+                                       std::move(meshes.stressed)),
                      log.communicator()))
     , solid(grid,
             parameters.discretization,
@@ -393,7 +404,8 @@ namespace Voussoir
              ", at most ",
              solid.discretization.largest_interface(),
              " ghost nodes of a rank");
-    const std::vector<double> costs = materials_of_grid(parameters, {}).costs;
+    const std::vector<double> costs =
+      materials_of_grid(parameters, {}, {}).costs;
     for (const unsigned int n_ranks : parameters.grid.counted_ranks)
       log.line("Partition into ",
                count_partition(
@@ -403,6 +415,14 @@ namespace Voussoir
                  },
                  n_ranks)
                  .describe());
+    if (const std::string refined =
+          describe_refinement(parameters, grid.refinement());
+        !refined.empty())
+      log.line("Refined where cracks are expected: ", refined);
+    if (grid.refinement().before > 0 && grid.refinement().chosen == 0)
+      log.warn("\"Refine where\" in section \"Mesh\" refines nothing, as "
+               "no cell is stressed so much; take a smaller \"Threshold\", or "
+               "leave it out");
     log.line("Unknowns: ",
              solid.discretization.dof_handler.n_dofs(),
              " of degree ",

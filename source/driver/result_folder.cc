@@ -3,6 +3,7 @@
 #include <voussoir/driver/case_identity.h>
 #include <voussoir/driver/result_folder.h>
 #include <voussoir/driver/run_summary.h>
+#include <voussoir/files/tension_file.h>
 #include <voussoir/output/checkpoint.h>
 
 #include <unistd.h>
@@ -18,6 +19,18 @@ namespace Voussoir
 {
   using namespace dealii;
   namespace fs = std::filesystem;
+
+  std::string
+  name_of_results(const Case &parameters)
+  {
+    std::string name = parameters.output.folder.empty() ?
+                         "output/" + parameters.file.name() :
+                         parameters.output.folder;
+    while (name.size() > 1 && name.back() == '/')
+      name.pop_back();
+    return name;
+  }
+
 
   namespace
   {
@@ -53,18 +66,6 @@ namespace Voussoir
     numbered(const std::string &name, const unsigned int n)
     {
       return n == 1 ? name : name + "-" + std::to_string(n);
-    }
-
-
-    std::string
-    name_in(const Case &parameters)
-    {
-      std::string name = parameters.output.folder.empty() ?
-                           "output/" + parameters.file.name() :
-                           parameters.output.folder;
-      while (name.size() > 1 && name.back() == '/')
-        name.pop_back();
-      return name;
     }
 
 
@@ -145,7 +146,7 @@ namespace Voussoir
     std::string
     new_folder(const Case &parameters, const RunOptions &options)
     {
-      const std::string name = name_in(parameters);
+      const std::string name = name_of_results(parameters);
       const std::string folder =
         numbered(name, options.overwrite ? 1 : count(name) + 1);
       check_writable(folder);
@@ -179,7 +180,7 @@ namespace Voussoir
       const std::string name = file.filename(), kind = file.extension();
       return name == "log.txt" || name == "parameters.prm" ||
              name == "summary.json" || kind == ".csv" || kind == ".vtu" ||
-             kind == ".pvd" ||
+             kind == ".pvd" || name == fs::path(tension_file("")).filename() ||
              (kind == ".txt" &&
               is_there(fs::path(file).replace_extension("pvd")));
     }
@@ -258,7 +259,7 @@ namespace Voussoir
   void
   ResultFolder::find_checkpoint(Log &log)
   {
-    const std::string  name = name_in(parameters);
+    const std::string  name = name_of_results(parameters);
     const unsigned int n =
       Utilities::MPI::broadcast(log.communicator(), count(name));
     std::vector<std::string> damaged, finished;
@@ -344,7 +345,7 @@ namespace Voussoir
         for (unsigned int n = 2; !made;
              ++n) // another run has claimed this folder first
           {
-            chosen = numbered(name_in(parameters), n);
+            chosen = numbered(name_of_results(parameters), n);
             made   = make_folder(chosen);
           }
       if (!lock.take(lock_in(chosen)))

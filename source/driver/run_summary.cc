@@ -1,6 +1,7 @@
 #include <voussoir/base/json_entries.h>
 #include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
+#include <voussoir/driver/crack_refinement.h>
 #include <voussoir/driver/run.h>
 #include <voussoir/driver/run_summary.h>
 #include <voussoir/driver/verdict_tables.h>
@@ -40,6 +41,7 @@ namespace Voussoir
     entry("degree", part.degree);
     entry("peak memory of a rank [MB]", part.peak_memory);
     entry("names", part.names);
+    entry("refined where cracks are expected", part.refinement);
   }
 
 
@@ -393,7 +395,8 @@ namespace Voussoir
             ResultNames(model.parameters.material_names(),
                         model.grid,
                         model.contact.get())
-              .json()};
+              .json(),
+            summary_of_refinement(model.parameters, model.grid.refinement())};
   }
 
 

@@ -1,5 +1,6 @@
 #include <voussoir/analysis/lost_equilibrium.h>
 #include <voussoir/base/version.h>
+#include <voussoir/driver/crack_refinement.h>
 #include <voussoir/driver/kept_states.h>
 #include <voussoir/driver/simulation.h>
 #include <voussoir/driver/stored_static_state.h>
@@ -217,6 +218,15 @@ namespace Voussoir
 
   Simulation::Simulation(const Case       &parameters,
                          const RunOptions &options,
+                         const MPI_Comm    communicator)
+    : Simulation(after_linear_run(parameters, options, communicator),
+                 parameters,
+                 communicator)
+  {}
+
+
+  Simulation::Simulation(const RunOptions &options,
+                         const Case       &parameters,
                          const MPI_Comm    communicator)
     : log(opened_log(parameters, options, communicator))
     , folder(parameters, options, log)

@@ -16,6 +16,7 @@ namespace Voussoir
     without_local_refinement(GridParameters parameters)
     {
       parameters.local_refinement.clear();
+      parameters.refine_where = {};
       return parameters;
     }
   } // namespace

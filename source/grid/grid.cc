@@ -1,6 +1,8 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/parameter_file.h>
 #include <voussoir/base/text.h>
 #include <voussoir/grid/chart_vertices.h>
+#include <voussoir/grid/coarse_faces.h>
 #include <voussoir/grid/grid.h>
 #include <voussoir/mesh/mesh_check.h>
 
@@ -13,59 +15,10 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <unordered_map>
 
 namespace Voussoir
 {
   using namespace dealii;
-
-  namespace
-  {
-    // Index in the coarse mesh of the coarse cell that a cell lies in.
-    unsigned int
-    coarse_cell(const Grid::Cell &cell)
-    {
-      // p4est numbers the coarse cells in a way of its own, and a fully
-      // distributed mesh holds some of them only
-      if (dynamic_cast<const parallel::fullydistributed::Triangulation<3> *>(
-            &cell->get_triangulation()) != nullptr)
-        return cell->id().get_coarse_cell_id();
-      Grid::Cell coarse = cell;
-      while (coarse->level() > 0)
-        coarse = coarse->parent();
-      return coarse->index();
-    }
-
-
-    // The path of a refined cell below its coarse cell, one child number per
-    // level, finest first.
-    std::vector<unsigned int>
-    children_upwards(const Grid::Cell &cell)
-    {
-      std::vector<unsigned int> path;
-      for (Grid::Cell child = cell; child->level() > 0; child = child->parent())
-        {
-          const auto parent = child->parent();
-          for (unsigned int i = 0; i < 8; ++i)
-            if (parent->child(i) == child)
-              path.push_back(i);
-        }
-      return path;
-    }
-
-
-    // Face 2d+s of a child lies on that face of its parent if the child sits on
-    // that side, that is, if bit d of its number is s.
-    bool
-    lies_on_coarse_face(const std::vector<unsigned int> &path,
-                        const unsigned int               face)
-    {
-      return std::all_of(path.begin(), path.end(), [&](const auto child) {
-        return ((child >> (face / 2)) & 1) == face % 2;
-      });
-    }
-  } // namespace
-
 
   double
   longest_edge(const Triangulation<3>::cell_iterator &cell)
@@ -91,6 +44,8 @@ namespace Voussoir
     for (const LocalRefinement &item : parameters.local_refinements())
       if (!item.set.empty())
         check_cell_set(item.set, "\"Local refinement\" in section \"Mesh\"");
+    for (const std::string &set : split_list(parameters.refine_where.cell_sets))
+      check_cell_set(set, "\"Cell sets\" in section \"Mesh/Refine where\"");
     const auto tags = make_tags(coarse, materials.of_cell);
     if (parameters.partition == Partition::metis)
       create_metis(coarse, tags, parameters, materials);
@@ -107,6 +62,7 @@ namespace Voussoir
            parameters,
            {std::vector<unsigned int>(coarse.cells.size(), 0),
             {1.},
+            {std::numeric_limits<double>::infinity()},
             {std::numeric_limits<double>::infinity()}},
            communicator)
   {}
@@ -186,11 +142,11 @@ namespace Voussoir
     });
     check_copies(coarse.cells.size(), mpi_communicator);
     create_coarse(coarse, tags, *triangulation);
-    refine(*triangulation,
-           coarse.chart,
-           parameters,
-           materials,
-           n_machines(mpi_communicator));
+    refined_where = refine(*triangulation,
+                           coarse,
+                           parameters,
+                           materials,
+                           n_machines(mpi_communicator));
     triangulation->repartition();
     triangulation->signals.weight.disconnect_all_slots();
     place_vertices(coarse.chart, *triangulation);
@@ -221,7 +177,7 @@ namespace Voussoir
     const double machines  = n_machines(mpi_communicator);
     const auto   make_mesh = [&](dealii::Triangulation<3> &serial) {
       create_coarse(coarse, tags, serial);
-      refine(serial, coarse.chart, parameters, materials, machines);
+      refined_where = refine(serial, coarse, parameters, materials, machines);
     };
     const auto deal_cells = [&](dealii::Triangulation<3> &serial,
                                 const MPI_Comm           &communicator,
@@ -248,6 +204,8 @@ namespace Voussoir
         std::ceil(n_ranks / machines),
         dealii::Triangulation<3>::limit_level_difference_at_vertices);
 
+    refined_where = Utilities::MPI::broadcast(mpi_communicator, refined_where);
+
     auto triangulation =
       std::make_unique<parallel::fullydistributed::Triangulation<3>>(
         mpi_communicator);
@@ -261,35 +219,20 @@ namespace Voussoir
   void
   Grid::find_faces(const CoarseMesh &coarse)
   {
-    struct FaceInSet
-    {
-      unsigned int face, set;
-    };
-    std::unordered_map<unsigned int, std::vector<FaceInSet>> sets_of_cell;
-    unsigned int                                             number = 0;
+    CoarseFaces  faces;
+    unsigned int number = 0;
     for (const auto &set : coarse.face_sets)
       {
         for (const CoarseMesh::Face &face : set.second)
-          if (auto &list = sets_of_cell[face.cell];
-              std::none_of(list.begin(), list.end(), [&](const auto &known) {
-                return known.face == face.face && known.set == number;
-              }))
-            list.push_back({face.face, number});
+          faces.add(face, number);
         ++number;
       }
-    for (const auto &cell : mesh->active_cell_iterators())
-      if (!cell->is_artificial())
-        {
-          const auto sets = sets_of_cell.find(coarse_cell(cell));
-          if (sets == sets_of_cell.end())
-            continue;
-          const auto path = children_upwards(cell);
-          for (const unsigned int face : cell->face_indices())
-            if (lies_on_coarse_face(path, face))
-              for (const FaceInSet &item : sets->second)
-                if (item.face == face)
-                  faces_of_set[item.set].push_back({cell, face});
-        }
+    faces.for_each(*mesh,
+                   [&](const ActiveCell  &cell,
+                       const unsigned int face,
+                       const unsigned int set) {
+                     faces_of_set[set].push_back({cell, face});
+                   });
   }
 
 
@@ -419,6 +362,13 @@ namespace Voussoir
       throw UserError(place + " names the face set \"" + name +
                       "\", which the mesh does not have" +
                       known_names(name, face_sets) + ".");
+  }
+
+
+  const RefinementSummary &
+  Grid::refinement() const
+  {
+    return refined_where;
   }
 
 

@@ -56,6 +56,9 @@ namespace Voussoir
       "partition by p4est: balance, neighbours of a rank and nodes that it "
       "exchanges with them. The run itself may have another number of ranks.",
       Patterns::List(Patterns::Integer(1, 1000000)));
+    prm.enter_subsection("Refine where");
+    refine_where.declare(prm);
+    prm.leave_subsection();
   }
 
 

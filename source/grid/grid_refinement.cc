@@ -1,9 +1,11 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/mpi.h>
+#include <voussoir/base/parameter_file.h>
 #include <voussoir/grid/chart_vertices.h>
-#include <voussoir/grid/grid.h>
+#include <voussoir/grid/coarse_faces.h>
+#include <voussoir/grid/refine_where.h>
+#include <voussoir/mesh/interfaces.h>
 #include <voussoir/mesh/mesh_check.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,22 +16,139 @@ namespace Voussoir
 
   namespace
   {
+    using Places = std::vector<Point<3>>; // of the vertices
+
+
     // A serial triangulation is on one rank.
-    unsigned int
-    sum_of_ranks(const Triangulation<3> &triangulation, const unsigned int mine)
+    MPI_Comm
+    communicator_of(const Triangulation<3> &triangulation)
     {
       const auto *distributed =
         dynamic_cast<const Grid::Triangulation *>(&triangulation);
-      return distributed == nullptr ?
-               mine :
-               Utilities::MPI::sum(mine, distributed->get_communicator());
+      return distributed == nullptr ? MPI_COMM_SELF :
+                                      distributed->get_communicator();
+    }
+
+
+    CellFrame
+    frame_of(const Grid::ActiveCell &cell, const Places &places)
+    {
+      return Voussoir::frame_of(
+        [&](const unsigned int v) { return places[cell->vertex_index(v)]; });
+    }
+
+
+    double
+    longest_edge(const Grid::ActiveCell &cell, const Places &places)
+    {
+      double longest = 0.;
+      for (const unsigned int line : cell->line_indices())
+        longest = std::max(longest,
+                           places[cell->line(line)->vertex_index(0)].distance(
+                             places[cell->line(line)->vertex_index(1)]));
+      return longest;
+    }
+
+
+    /** A face by its centre. */
+    struct FacePlace
+    {
+      FacePlace(const Grid::Cell  &cell,
+                const unsigned int face,
+                const Places      &places)
+      {
+        std::array<Point<3>, 4> corners;
+        for (unsigned int i = 0; i < 4; ++i)
+          {
+            corners[i] = places[cell->vertex_index(
+              GeometryInfo<3>::face_to_cell_vertices(face, i))];
+            centre += 0.25 * corners[i];
+          }
+        size = corners[0].distance(corners[3]);
+      }
+
+      Point<3> centre;
+      double   size = 0.;
+    };
+
+
+    /** The faces of a mesh on interfaces, from both sides. */
+    CoarseFaces
+    faces_on_interfaces(const CoarseMesh &coarse)
+    {
+      CoarseFaces faces;
+      for (const auto &[name, set] : coarse.face_sets)
+        if (const auto other = coarse.face_sets.find(name + other_side);
+            other != coarse.face_sets.end())
+          for (const auto *side : {&set, &other->second})
+            for (const CoarseMesh::Face &face : *side)
+              faces.add(face, 0);
+      return faces;
+    }
+
+
+    /** Flags own cells whose face on an interface has been refined on its other
+     *  side; returns whether there are any. */
+    bool
+    flag_partners(Triangulation<3>        &triangulation,
+                  const CoarseMesh::Chart &chart,
+                  const CoarseFaces       &on_interfaces)
+    {
+      const MPI_Comm communicator = communicator_of(triangulation);
+      const Places   places       = positions(triangulation, chart);
+      std::vector<std::pair<Grid::ActiveCell, FacePlace>> whole;
+      std::vector<std::array<double, 3>>                  refined;
+      on_interfaces.for_each(
+        triangulation,
+        [&](const Grid::ActiveCell &cell,
+            const unsigned int      face,
+            const unsigned int) {
+          if (!cell->is_locally_owned())
+            return;
+          whole.emplace_back(cell, FacePlace(cell, face, places));
+          if (cell->level() == 0)
+            return;
+          const Point<3> of_parent =
+            FacePlace(cell->parent(), face, places).centre;
+          refined.push_back({{of_parent[0], of_parent[1], of_parent[2]}});
+        });
+      Places centres;
+      for (const auto &x : join_over_ranks(refined, communicator))
+        centres.emplace_back(x[0], x[1], x[2]);
+      const auto   tree    = pack_rtree(centres);
+      unsigned int flagged = 0;
+      for (const auto &[cell, face] : whole)
+        {
+          Places nearest;
+          tree.query(boost::geometry::index::nearest(face.centre, 1),
+                     std::back_inserter(nearest));
+          if (!nearest.empty() &&
+              nearest[0].distance(face.centre) < 1e-6 * face.size)
+            {
+              cell->set_refine_flag();
+              ++flagged;
+            }
+        }
+      return Utilities::MPI::sum(flagged, communicator) > 0;
+    }
+
+
+    /** The box around the boxes of all ranks. */
+    void
+    join_boxes(Point<3> &lower, Point<3> &upper, const MPI_Comm communicator)
+    {
+      for (unsigned int d = 0; d < 3; ++d)
+        {
+          lower[d] = Utilities::MPI::min(lower[d], communicator);
+          upper[d] = Utilities::MPI::max(upper[d], communicator);
+        }
     }
   } // namespace
 
 
-  void
+  RefinementSummary
   Grid::refine(dealii::Triangulation<3> &triangulation,
-               const CoarseMesh::Chart  &chart,
+               const CoarseMesh         &coarse,
                const GridParameters     &parameters,
                const Materials          &materials,
                const double              machines) const
@@ -40,51 +159,73 @@ namespace Voussoir
                "\"Global refinement\" in section \"Mesh\"",
                machines);
     triangulation.refine_global(parameters.global_refinement);
+    const std::string place = "\"Local refinement\" in section \"Mesh\"";
     for (const LocalRefinement &item : parameters.local_refinements())
       {
         const std::vector<bool> tagged = tags_in({item.set});
         for (unsigned int level = 0; level < item.levels; ++level)
           {
-            const auto   places  = item.set.empty() ?
-                                     positions(triangulation, chart) :
-                                     std::vector<Point<3>>();
-            unsigned int flagged = 0;
-            for (const auto &cell : triangulation.active_cell_iterators())
-              if (cell->is_locally_owned())
-                {
-                  bool inside = true;
-                  if (!item.set.empty())
-                    inside = tagged[cell->material_id()];
-                  else
-                    {
-                      Point<3> centre;
-                      for (const unsigned int v : cell->vertex_indices())
-                        centre += 0.125 * places[cell->vertex_index(v)];
-                      for (unsigned int d = 0; d < 3; ++d)
-                        inside = inside && centre[d] >= item.lower[d] &&
-                                 centre[d] <= item.upper[d];
-                    }
-                  if (inside)
-                    {
-                      cell->set_refine_flag();
-                      ++flagged;
-                    }
-                }
-            if (sum_of_ranks(triangulation, flagged) == 0)
-              throw UserError(
-                "\"Local refinement\" in section \"Mesh\" names a box in which "
-                "no cell has its centre; make it larger, or leave it out.");
-            triangulation.execute_coarsening_and_refinement();
+            const Places places    = item.set.empty() ?
+                                       positions(triangulation, coarse.chart) :
+                                       Places();
+            const auto   is_inside = [&](const ActiveCell &cell) {
+              if (!item.set.empty())
+                return bool(tagged[cell->material_id()]);
+              return BoundingBox<3>({item.lower, item.upper})
+                .point_inside(frame_of(cell, places).centre);
+            };
+            if (!refine_cells(
+                  triangulation, coarse, is_inside, place, machines))
+              throw UserError(place +
+                              " names a box in which no cell has its centre; "
+                              "make it larger, or leave it out.");
           }
       }
-    while (refine_for_waves(triangulation, chart, materials, machines))
+    while (refine_for_waves(triangulation, coarse, materials, machines))
       {}
+    return parameters.refine_where.wanted() ?
+             refine_where(triangulation,
+                          coarse,
+                          parameters.refine_where,
+                          materials,
+                          machines) :
+             RefinementSummary();
+  }
+
+
+  bool
+  Grid::refine_cells(dealii::Triangulation<3> &triangulation,
+                     const CoarseMesh         &coarse,
+                     const ActiveCells        &are_wanted,
+                     const std::string        &place,
+                     const double              machines) const
+  {
+    unsigned int flagged = 0;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned() && are_wanted(cell))
+        {
+          cell->set_refine_flag();
+          ++flagged;
+        }
+    flagged = Utilities::MPI::sum(flagged, communicator_of(triangulation));
+    if (flagged == 0)
+      return false;
+    check_size(triangulation.n_global_active_cells() + 7. * flagged,
+               1,
+               place,
+               machines);
+    const CoarseFaces on_interfaces = faces_on_interfaces(coarse);
+    do
+      triangulation.execute_coarsening_and_refinement();
+    while (!on_interfaces.empty() &&
+           flag_partners(triangulation, coarse.chart, on_interfaces));
+    return true;
   }
 
 
   bool
   Grid::refine_for_waves(dealii::Triangulation<3> &triangulation,
-                         const CoarseMesh::Chart  &chart,
+                         const CoarseMesh         &coarse,
                          const Materials          &materials,
                          const double              machines) const
   {
@@ -92,30 +233,103 @@ namespace Voussoir
                     materials.longest_edges.end(),
                     [](const double edge) { return std::isinf(edge); }))
       return false;
-    const auto places    = positions(triangulation, chart);
-    const auto is_longer = [&](const auto &cell, const double edge) {
-      for (const unsigned int line : cell->line_indices())
-        if (places[cell->line(line)->vertex_index(0)].distance(
-              places[cell->line(line)->vertex_index(1)]) > edge)
-          return true;
-      return false;
+    const Places places = positions(triangulation, coarse.chart);
+    return refine_cells(
+      triangulation,
+      coarse,
+      [&](const ActiveCell &cell) {
+        return longest_edge(cell, places) >
+               materials.longest_edges[material(cell)];
+      },
+      "\"Nodes per wavelength\" in section \"Mesh\"",
+      machines);
+  }
+
+
+  RefinementSummary
+  Grid::refine_where(dealii::Triangulation<3>    &triangulation,
+                     const CoarseMesh            &coarse,
+                     const RefineWhereParameters &parameters,
+                     const Materials             &materials,
+                     const double                 machines) const
+  {
+    const MPI_Comm          communicator = communicator_of(triangulation);
+    const auto              sets         = split_list(parameters.cell_sets);
+    const std::vector<bool> tagged       = tags_in(sets);
+    const auto              is_named     = parameters.place();
+
+    // of the current cells
+    Places     places;
+    const auto is_in_place = [&](const ActiveCell &cell) {
+      return (sets.empty() || tagged[cell->material_id()]) &&
+             is_named(frame_of(cell, places).centre);
     };
-    unsigned int flagged = 0;
+    const auto may_crack = [&](const ActiveCell &cell) {
+      return !std::isinf(materials.crack_edges[material(cell)]) &&
+             is_in_place(cell) &&
+             (!materials.stressed ||
+              materials.stressed->reach(frame_of(cell, places)));
+    };
+    const auto is_too_long = [&](const ActiveCell &cell) {
+      return longest_edge(cell, places) > materials.crack_edges[material(cell)];
+    };
+
+    RefinementSummary summary;
+    constexpr double  far = std::numeric_limits<double>::max();
+    summary.before        = triangulation.n_global_active_cells();
+    summary.lower         = Point<3>(far, far, far);
+    summary.upper         = -summary.lower;
+    places                = positions(triangulation, coarse.chart);
+    unsigned int n_named  = 0;
     for (const auto &cell : triangulation.active_cell_iterators())
-      if (cell->is_locally_owned() &&
-          is_longer(cell, materials.longest_edges[material(cell)]))
+      if (cell->is_locally_owned())
         {
-          cell->set_refine_flag();
-          ++flagged;
+          n_named += is_in_place(cell) ? 1 : 0;
+          if (!may_crack(cell))
+            continue;
+          ++summary.chosen;
+          for (const unsigned int v : cell->vertex_indices())
+            for (unsigned int d = 0; d < 3; ++d)
+              {
+                const double x   = places[cell->vertex_index(v)][d];
+                summary.lower[d] = std::min(summary.lower[d], x);
+                summary.upper[d] = std::max(summary.upper[d], x);
+              }
         }
-    flagged = sum_of_ranks(triangulation, flagged);
-    if (flagged == 0)
-      return false;
-    check_size(triangulation.n_global_active_cells() + 7. * flagged,
-               1,
-               "\"Nodes per wavelength\" in section \"Mesh\"",
-               machines);
-    triangulation.execute_coarsening_and_refinement();
-    return true;
+    if (Utilities::MPI::sum(n_named, communicator) == 0)
+      throw UserError("\"Expression\" in section \"Mesh/Refine where\" is \"" +
+                      parameters.expression +
+                      "\", which is positive at the centre of no cell" +
+                      (sets.empty() ? "" : " of its \"Cell sets\"") +
+                      "; correct it, or leave it out.");
+    summary.chosen = Utilities::MPI::sum(summary.chosen, communicator);
+    join_boxes(summary.lower, summary.upper, communicator);
+
+    for (unsigned int level = 0;
+         level < parameters.levels && refine_cells(
+                                        triangulation,
+                                        coarse,
+                                        [&](const ActiveCell &cell) {
+                                          return is_too_long(cell) &&
+                                                 may_crack(cell);
+                                        },
+                                        "Section \"Mesh/Refine where\"",
+                                        machines);
+         ++level)
+      places = positions(triangulation, coarse.chart);
+
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned() && may_crack(cell))
+        {
+          ++summary.fine;
+          summary.too_long += is_too_long(cell) ? 1 : 0;
+          summary.longest =
+            std::max(summary.longest, longest_edge(cell, places));
+        }
+    summary.fine     = Utilities::MPI::sum(summary.fine, communicator);
+    summary.too_long = Utilities::MPI::sum(summary.too_long, communicator);
+    summary.longest  = Utilities::MPI::max(summary.longest, communicator);
+    summary.after    = triangulation.n_global_active_cells();
+    return summary;
   }
 } // namespace Voussoir

@@ -258,7 +258,7 @@ namespace Voussoir
         text << "At (" << x
              << ") m a node of the solid on the wall of the reservoir meets "
                 "no node of the water; do not refine cells at the water by "
-                "\"Local refinement\" in section \"Mesh\".";
+                "\"Local refinement\" or \"Refine where\" in section \"Mesh\".";
         throw UserError(text.str());
       }
 

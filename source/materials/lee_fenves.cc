@@ -134,6 +134,14 @@ namespace Voussoir
         hardening = 2. * ratio - 1. + 2. * std::sqrt(ratio * (ratio - 1.));
       }
 
+      TensileFailure
+      tensile_failure() const
+      {
+        return {tensile_strength,
+                young_modulus * fracture_energy /
+                  (tensile_strength * tensile_strength)};
+      }
+
       /** Strengths and stiffness left of the uniaxial curves. */
       struct Strengths
       {

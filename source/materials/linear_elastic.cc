@@ -40,6 +40,12 @@ namespace Voussoir
                             usually(Usual::tensile_strength_or_none),
                           Patterns::Double(0.));
       }
+
+      TensileFailure
+      tensile_failure() const
+      {
+        return {tensile_strength, 0.};
+      }
     };
 
     const Registry<Material>::Add<MaterialOf<LinearElastic>>

@@ -73,6 +73,12 @@ namespace Voussoir
         tension = tension.of_static_state(young_modulus);
       }
 
+      TensileFailure
+      tensile_failure() const
+      {
+        return tension.failure();
+      }
+
       /** Stress and inelastic strain are kept, as in SplitDamage. */
       SymmetricTensor3<double>
       hand_over(const SymmetricTensor3<double> &strain,

@@ -1,4 +1,5 @@
 #include <voussoir/base/parameter_file.h>
+#include <voussoir/files/tension_file.h>
 #include <voussoir/output/field_writer.h>
 #include <voussoir/output/tension_summary.h>
 
@@ -156,6 +157,7 @@ namespace Voussoir
                            {&values[2], "time_of_largest_s"},
                            {&values[3], "time_of_smallest_s"}};
             summarise_stress(summary["envelopes"]);
+            write_tension();
             summary["stress samples"] = {{"interval [s]", sampling_interval},
                                          {"extremes hold to 1.2 % up to [Hz]",
                                           0.05 / sampling_interval}};
@@ -173,6 +175,62 @@ namespace Voussoir
                      "envelopes",
                      state.time,
                      cell_fields);
+      }
+
+      /** Cells with tension, for "Refine where" of a later run. */
+      void
+      write_tension()
+      {
+        const Grid      &grid = run().solid.grid();
+        TensionFile      tension{run().names.materials, {}, {}, {}};
+        constexpr double far = std::numeric_limits<double>::max();
+        tension.lower        = Point<3>(far, far, far);
+        tension.upper        = -tension.lower;
+        for (const auto &cell : grid.triangulation().active_cell_iterators())
+          if (cell->is_locally_owned())
+            for (const unsigned int v : cell->vertex_indices())
+              for (unsigned int d = 0; d < 3; ++d)
+                {
+                  tension.lower[d] =
+                    std::min(tension.lower[d], cell->vertex(v)[d]);
+                  tension.upper[d] =
+                    std::max(tension.upper[d], cell->vertex(v)[d]);
+                }
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            tension.lower[d] =
+              Utilities::MPI::min(tension.lower[d], communicator());
+            tension.upper[d] =
+              Utilities::MPI::max(tension.upper[d], communicator());
+          }
+        stress->for_each_cell([&](const auto &cell, const auto &extremes) {
+          const bool   is_beyond = has_left_elastic_range(cell);
+          const double largest =
+            is_beyond ? std::numeric_limits<double>::infinity() : extremes[0];
+          if (largest > 0.)
+            tension.cells.push_back(
+              {frame_of([&](const unsigned int v) { return cell->vertex(v); }),
+               largest,
+               grid.material(cell)});
+        });
+        const std::string file = tension_file(run().folder);
+        run().log.attempted(
+          file, ::Voussoir::write_tension(file, tension, communicator()));
+      }
+
+      bool
+      has_left_elastic_range(const Discretization::Cell &cell) const
+      {
+        const auto         &solid = run().solid;
+        const PointHistory *history =
+          run().material_memory.of(solid.grid().material(cell));
+        if (history == nullptr)
+          return false;
+        const auto place = solid.discretization.place_of(cell);
+        for (unsigned int q = 0; q < history->n_points(); ++q)
+          if (history->band({place.batch, place.lane}, q) > 0.)
+            return true;
+        return false;
       }
 
       void
@@ -285,6 +343,8 @@ namespace Voussoir
     const Registry<Observer>::Add<Envelopes> registered_envelopes(
       "envelopes",
       "Largest displacement, velocity and acceleration of each node and "
-      "principal stresses of each cell over the run, in envelopes.vtu.");
+      "principal stresses of each cell over the run, in envelopes.vtu; cells "
+      "with tension for \"Refine where\" of a later run in "
+      "largest_tension.h5.");
   } // namespace
 } // namespace Voussoir

@@ -117,9 +117,16 @@ namespace Voussoir
               known.local_element(3 * node) =
                 std::max(known.local_element(3 * node), record.values[e]);
           known.update_ghost_values();
+          const bool is_state = e + 1 == n_envelopes;
           for (unsigned int i = 0; i < nodes.size(); ++i)
             if (nodes[i].first == s)
-              values[n_envelopes * i + e] = known(3 * nodes[i].second);
+              for (const auto &[node, weight] :
+                   discretization.carriers(nodes[i].second))
+                {
+                  double &value = values[n_envelopes * i + e];
+                  value         = is_state ? std::max(value, known(3 * node)) :
+                                             value + weight * known(3 * node);
+                }
         }
     mesh.write(
       run,

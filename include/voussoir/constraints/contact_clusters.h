@@ -48,8 +48,11 @@ namespace Voussoir
    * pair's normal is the mean over its area. Where an interface ends inside the
    * body its two sides share one node, which makes no pair.
    *
-   * Throws UserError, on all ranks, if a node has no partner on the other side
-   * or is a hanging node.
+   * A hanging node in an interface makes no pair: its gap is the mean of those
+   * of the nodes that constrain it, which take its area.
+   *
+   * Throws UserError, on all ranks, if a node has no partner on the other side,
+   * or hangs between cells of degree above one.
    */
   std::vector<ContactCluster>
   find_contact_clusters(const Discretization           &discretization,

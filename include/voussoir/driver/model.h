@@ -58,9 +58,12 @@ namespace Voussoir
       void
       share_sets(const MPI_Comm communicator);
 
+      GridParameters            grid; // without what a linear run must tell
       CoarseMesh                solid, water;
       InterfaceSurfaces         surfaces;
       std::vector<unsigned int> materials; // of the solid's cells
+
+      std::shared_ptr<const CellsAndRing> stressed; // see Grid::Materials
     };
 
   public:

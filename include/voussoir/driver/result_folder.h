@@ -15,6 +15,10 @@ namespace Voussoir
   void
   remove_unfinished(const std::string &folder, const std::string &start = "");
 
+  /** Folder that a case names for its results, without a number. */
+  std::string
+  name_of_results(const Case &parameters);
+
   /** Options of a run from the command line. */
   struct RunOptions
   {

@@ -25,6 +25,7 @@ namespace Voussoir
     std::map<std::string, CellQuality> mesh_quality; // by material
     double                             peak_memory;  // of a rank [MB]
     nlohmann::json                     names;        // see ResultNames
+    nlohmann::json                     refinement; // where cracks are expected
   };
 
   struct DampingSummary

@@ -7,7 +7,8 @@ namespace Voussoir
 {
   /**
    * A case and one earthquake: everything from the parameter file to the run,
-   * made in the order of dependence, which is the order of the members.
+   * made in the order of dependence, which is the order of the members. The
+   * linear run that the case may need for its mesh comes first.
    */
   class Simulation
   {
@@ -25,6 +26,11 @@ namespace Voussoir
     Model        model;
 
   private:
+    /** After the linear run that the case may need. */
+    Simulation(const RunOptions &options,
+               const Case       &parameters,
+               const MPI_Comm    communicator);
+
     RunPlan                   plan;  // until the setup has it
     std::unique_ptr<RunSetup> early; // null if damping waits for the modes
     StaticState               found; // of the static stages

@@ -12,6 +12,8 @@
 
 namespace Voussoir
 {
+  class CellsAndRing;
+
   /** The longest edge of a cell [m]. */
   double
   longest_edge(const dealii::Triangulation<3>::cell_iterator &cell);
@@ -21,6 +23,23 @@ namespace Voussoir
   {
     unsigned int              material; // number
     std::vector<unsigned int> sets;     // numbers of cell sets, ascending
+  };
+
+  /** The cells that "Refine where" has refined; zeros: it is not given. */
+  struct RefinementSummary
+  {
+    unsigned long long before = 0, after = 0;  // cells of the mesh
+    unsigned long long chosen = 0;             // before refinement
+    unsigned long long fine = 0, too_long = 0; // in the place of these
+    double             longest = 0.;           // edge of those [m]
+    dealii::Point<3>   lower, upper; // of the box around the chosen ones [m]
+
+    template <typename Archive>
+    void
+    serialize(Archive &archive, const unsigned int)
+    {
+      archive &before &after &chosen &fine &too_long &longest &lower &upper;
+    }
   };
 
   /**
@@ -50,6 +69,12 @@ namespace Voussoir
       std::vector<double>       costs;   // of a cell of each, to balance ranks
       std::vector<double>
         longest_edges; // of the edges that cells of each may have [m]
+
+      /** The same where cracks are expected; infinite: any [m]. */
+      std::vector<double> crack_edges = {};
+
+      /** Where cracks are expected by another run; null: anywhere. */
+      std::shared_ptr<const CellsAndRing> stressed = nullptr;
     };
 
     /** With METIS only the first rank of each machine needs the cells of the
@@ -131,6 +156,9 @@ namespace Voussoir
     void
     check_face_set(const std::string &name, const std::string &place) const;
 
+    const RefinementSummary &
+    refinement() const;
+
     /** Cells per rank (smallest, mean, largest), for the log. */
     std::string
     describe_balance() const;
@@ -176,20 +204,39 @@ namespace Voussoir
                   dealii::Triangulation<3> &triangulation) const;
 
     /** @param machines whose memory the mesh must fit into */
-    void
+    RefinementSummary
     refine(dealii::Triangulation<3> &triangulation,
-           const CoarseMesh::Chart  &chart,
+           const CoarseMesh         &coarse,
            const GridParameters     &parameters,
            const Materials          &materials,
            const double              machines) const;
+
+    using ActiveCells = std::function<bool(const ActiveCell &)>;
+
+    /** Refines own cells, and cells at interfaces so that both sides have the
+     *  same faces; returns whether there were any.
+     *  @param place names the entry that wants it */
+    bool
+    refine_cells(dealii::Triangulation<3> &triangulation,
+                 const CoarseMesh         &coarse,
+                 const ActiveCells        &are_wanted,
+                 const std::string        &place,
+                 const double              machines) const;
 
     /** Refines the cells whose edges are too long for their material; returns
      *  whether there were any. */
     bool
     refine_for_waves(dealii::Triangulation<3> &triangulation,
-                     const CoarseMesh::Chart  &chart,
+                     const CoarseMesh         &coarse,
                      const Materials          &materials,
                      const double              machines) const;
+
+    RefinementSummary
+    refine_where(dealii::Triangulation<3>    &triangulation,
+                 const CoarseMesh            &coarse,
+                 const RefineWhereParameters &parameters,
+                 const Materials             &materials,
+                 const double                 machines) const;
 
     MPI_Comm                       mpi_communicator;
     std::unique_ptr<Triangulation> mesh;
@@ -197,6 +244,8 @@ namespace Voussoir
     std::vector<std::string>       cell_sets, face_sets;
     std::vector<CellTag>           all_tags;
     std::vector<std::vector<Face>> faces_of_set; // the last: of no set
+
+    RefinementSummary refined_where;
   };
 } // namespace Voussoir
 

@@ -6,6 +6,7 @@
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/point.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,31 @@ namespace Voussoir
   };
 
 
+  /** The entries of the section "Mesh/Refine where". */
+  struct RefineWhereParameters
+  {
+    std::string  demand_of, cell_sets, expression;
+    double       threshold = 0.8, share = 0.75;
+    unsigned int levels = 3;
+
+    void
+    declare(dealii::ParameterHandler &prm);
+
+    bool
+    wanted() const;
+
+    /** Whether the demand is that of a linear run which the program makes
+     *  itself. */
+    bool
+    wants_linear_run() const;
+
+    /** Whether a point is one that "Expression" names; any is, if there is
+     *  none. Throws UserError if the expression is no formula. */
+    std::function<bool(const dealii::Point<3> &)>
+    place() const;
+  };
+
+
   /** The entries of the section "Mesh" that do not depend on the source of the
    *  mesh. */
   struct GridParameters
@@ -40,6 +66,8 @@ namespace Voussoir
     unsigned int global_refinement = 0;
     std::string  local_refinement;
     Partition    partition = Partition::p4est;
+
+    RefineWhereParameters refine_where;
 
     /** Nodes per length of the S waves of this frequency [Hz], down to which
      *  cells are refined; zero: no refinement. */

@@ -13,6 +13,14 @@ namespace Voussoir
   template <typename Number>
   struct PointResponse;
 
+  /** Failure in tension. */
+  struct TensileFailure
+  {
+    double strength     = 0.; // ft [Pa]; 0: none
+    double crack_length = 0.; // E Gf / ft^2 [m]; 0: no fracture energy
+  };
+
+
   /**
    * The contract of a stress law, for those who add one. A law is a struct
    * without mesh, clock and ranks, in one file of its own with the line
@@ -119,6 +127,12 @@ namespace Voussoir
      *  range. */
     std::vector<double>
     outputs(const double * /*history*/, const double /*element_length*/) const
+    {
+      return {};
+    }
+
+    TensileFailure
+    tensile_failure() const
     {
       return {};
     }

@@ -116,6 +116,9 @@ namespace Voussoir
                    const double                    temperature,
                    const double                    stress_factor) const;
 
+    virtual TensileFailure
+    tensile_failure() const = 0;
+
     /** Whether the law has no directions of its own. */
     virtual bool
     isotropic() const = 0;

@@ -65,6 +65,12 @@ namespace Voussoir
       return response;
     }
 
+    TensileFailure
+    tensile_failure() const override
+    {
+      return law.tensile_failure();
+    }
+
     bool
     isotropic() const override
     {

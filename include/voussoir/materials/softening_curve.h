@@ -1,7 +1,7 @@
 #ifndef voussoir_materials_softening_curve_h
 #define voussoir_materials_softening_curve_h
 
-#include <voussoir/fem/simd.h>
+#include <voussoir/materials/law.h>
 
 #include <deal.II/base/parameter_handler.h>
 
@@ -179,7 +179,13 @@ namespace Voussoir
     double
     tip_strength(const double cell_size) const
     {
-      return 1. / std::sqrt(1. + snap_back * cell_size / widest);
+      return 1. / std::sqrt(1. + cell_size / failure().crack_length);
+    }
+
+    TensileFailure
+    failure() const
+    {
+      return {nodes[peak].stress, widest / snap_back};
     }
 
     /**

@@ -99,6 +99,12 @@ namespace Voussoir
         "of any size.");
     }
 
+    TensileFailure
+    tensile_failure() const
+    {
+      return tension.failure();
+    }
+
     double
     tip_strength(const double cell_size) const
     {

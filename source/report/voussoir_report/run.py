@@ -19,6 +19,11 @@ SUMMARY = Group(
      "static state": Group(optional={"seconds": NUMBER, "stages": [Group(
          optional={"sum of loads so far [N]": [NUMBER], "sum of reactions [N]": [NUMBER],
                    "largest displacement [m]": NUMBER, "names": [TEXT]})]}),
+     "refined where cracks are expected": Group(
+         {"chosen": TEXT, **dict.fromkeys(("cells before", "cells chosen", "cells after"), NUMBER)},
+         {"longest edge asked for [m]": Group(others=NUMBER),
+          **dict.fromkeys(("chosen from [m]", "chosen to [m]"), [NUMBER]),
+          **dict.fromkeys(("cells in their place", "longest edge there [m]", "cells that stay longer"), NUMBER)}),
      "damping": Group(optional={"moduli hold at [Hz]": NUMBER, "relaxed modulus over the given one": NUMBER}),
      "through cracks": Group(optional=dict.fromkeys(
          ("largest opening from face to face at one moment [mm]", "at the time [s]",

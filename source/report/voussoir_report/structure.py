@@ -75,9 +75,10 @@ def section_picture(run):
 
 
 def mesh_section(runs):
+    why_refined = [text for text in map(refined, runs) if text]
     runs = [run for run in runs if dam_of(run)]
     if not runs:
-        return None
+        return Section("Mesh", why_refined) if why_refined else None
 
     def of(of_dam, function):
         def text(run):
@@ -109,8 +110,25 @@ def mesh_section(runs):
     # one picture for runs on the same mesh
     pictures = {len(dam_of(run).grid.cells): (mesh_picture(run), section_picture(run)) for run in reversed(runs)}
     pictures = [picture for pair in reversed(pictures.values()) for picture in pair if picture]
-    parts = [text, comparison(runs, rows), waves_table(runs), Pictures(pictures, 2)]
+    parts = [text, *why_refined, comparison(runs, rows), waves_table(runs), Pictures(pictures, 2)]
     return Section("Mesh", [part for part in parts if part])
+
+
+def refined(run):
+    """Which cells were refined where cracks are expected, and why."""
+    found = run.summary.get("refined where cracks are expected")
+    if not found:
+        return None
+    text = (f"{run.prefix}Refined where cracks are expected: {number(found['cells chosen'])} of "
+            f"{number(found['cells before'])} cells, {found['chosen']}")
+    if "cells in their place" not in found:
+        return f"{text}."
+    low, high = (", ".join(number(x) for x in found[f"chosen {end} [m]"]) for end in ("from", "to"))
+    asked = "; ".join(f"{name}: {number(edge)} m" for name, edge in found["longest edge asked for [m]"].items())
+    return (f"{text}; they lie between ({low}) and ({high}) m. In their place are "
+            f"{number(found['cells in their place'])} cells with edges of up to {number(found['longest edge there [m]'])} m "
+            f"(asked for: {asked}), of which {number(found['cells that stay longer'])} stay longer. The mesh has "
+            f"{number(found['cells after'])} cells.")
 
 
 def extents(run):

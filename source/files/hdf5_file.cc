@@ -149,13 +149,18 @@ namespace Voussoir
                     const unsigned int width)
   {
     // all ranks continue or none does, as the next call is collective
-    const Selection  selection(rows, width, not_written);
+    const Selection selection(rows, width, not_written);
+    // the same results make the same file, at any time
+    const HDF5Handle undated(H5Pcreate(H5P_DATASET_CREATE),
+                             H5Pclose,
+                             not_written);
+    check(H5Pset_obj_track_times(undated, false), not_written);
     const HDF5Handle data(H5Dcreate2(file,
                                      name.c_str(),
                                      type,
                                      selection.in_file,
                                      H5P_DEFAULT,
-                                     H5P_DEFAULT,
+                                     undated,
                                      H5P_DEFAULT),
                           H5Dclose,
                           not_written);

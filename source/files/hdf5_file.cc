@@ -1,7 +1,9 @@
 #include <voussoir/files/hdf5_file.h>
 
 #include <filesystem>
+#include <iomanip>
 #include <numeric>
+#include <sstream>
 
 namespace Voussoir
 {
@@ -80,6 +82,25 @@ namespace Voussoir
     }
 
 
+    /** Checks for disk space, where the system reports it, also for a small
+     *  file: cutting it would not make the room in which it can be closed. */
+    void
+    check_room(const std::string &file, const double bytes)
+    {
+      constexpr double of_library = 65536.; // beside the numbers
+      std::error_code  none;
+      const auto       space =
+        std::filesystem::space(std::filesystem::path(file).parent_path(), none);
+      if (none || bytes + of_library <= space.available)
+        return;
+      std::ostringstream problem;
+      problem << std::fixed << std::setprecision(1) << "it needs "
+              << 1e-6 * (bytes + of_library) << " MB, and the disk has "
+              << 1e-6 * space.available << " MB left";
+      throw FileProblem{problem.str()};
+    }
+
+
     /** Rows of a dataset in the file and in memory, for a transfer. */
     struct Selection
     {
@@ -109,10 +130,12 @@ namespace Voussoir
   } // namespace
 
 
-  HDF5Writer::HDF5Writer(const std::string &name, const MPI_Comm communicator)
+  HDF5Writer::HDF5Writer(const std::string &name,
+                         const MPI_Comm     communicator,
+                         const double       bytes)
     : name(name)
     , communicator(communicator)
-    , file(create(name, communicator), H5Fclose, not_written)
+    , file(create(name, communicator, bytes), H5Fclose, not_written)
   {}
 
 
@@ -132,8 +155,11 @@ namespace Voussoir
 
 
   hid_t
-  HDF5Writer::create(const std::string &name, const MPI_Comm communicator)
+  HDF5Writer::create(const std::string &name,
+                     const MPI_Comm     communicator,
+                     const double       bytes)
   {
+    check_room(name, Utilities::MPI::sum(bytes, communicator));
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     const HDF5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, not_written);
     check(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), not_written);

@@ -64,27 +64,14 @@ namespace Voussoir
     }
 
 
-    /** Checks for disk space for the rows, where the system reports it. */
-    void
-    check_room(const std::string  &file,
-               const StateContent &content,
-               const MPI_Comm      communicator)
+    /** Bytes of the rows of this rank. */
+    double
+    size_of_rows(const StateContent &content)
     {
       double bytes = 0.;
       for (const auto &[name, values] : content.values)
         bytes += n_kept_rows(values) * 8. * (values.width + 1.);
-      bytes = Utilities::MPI::sum(bytes, communicator);
-      std::error_code none;
-      const auto      space =
-        std::filesystem::space(std::filesystem::path(file).parent_path(), none);
-      if (!none && bytes > space.available)
-        {
-          std::ostringstream problem;
-          problem << std::fixed << std::setprecision(1) << "it needs "
-                  << 1e-6 * bytes << " MB, and the disk has "
-                  << 1e-6 * space.available << " MB left";
-          throw FileProblem{problem.str()};
-        }
+      return bytes;
     }
 
 
@@ -125,12 +112,11 @@ namespace Voussoir
     MPI_Barrier(communicator);
 
     std::string problem = problem_of(communicator, [&] {
-      check_room(file, content, communicator);
       nlohmann::json contents{{"format", format},
                               {"header", header},
                               {"values", nlohmann::json::array()},
                               {"documents", nlohmann::json::array()}};
-      HDF5Writer     writer(unfinished, communicator);
+      HDF5Writer     writer(unfinished, communicator, size_of_rows(content));
       for (const auto &[name, values] : content.values)
         {
           const std::string number = std::to_string(contents["values"].size());

@@ -43,7 +43,7 @@ namespace Voussoir
     return problem_of(communicator, [&] {
       const RowRange rows = own_rows(tension.cells.size(), communicator);
       {
-        HDF5Writer writer(unfinished, communicator);
+        HDF5Writer writer(unfinished, communicator, 8. * numbers.size());
         writer.write(
           "head",
           nlohmann::json::to_cbor(

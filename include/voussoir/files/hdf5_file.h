@@ -69,7 +69,11 @@ namespace Voussoir
   class HDF5Writer
   {
   public:
-    HDF5Writer(const std::string &name, const MPI_Comm communicator);
+    /** @param bytes that this rank will write; refused where the disk has no
+     *   room for those of all ranks */
+    HDF5Writer(const std::string &name,
+               const MPI_Comm     communicator,
+               const double       bytes);
 
     template <typename Number>
     void
@@ -87,7 +91,9 @@ namespace Voussoir
 
   private:
     static hid_t
-    create(const std::string &name, const MPI_Comm communicator);
+    create(const std::string &name,
+           const MPI_Comm     communicator,
+           const double       bytes);
 
     void
     write(const std::string &name,

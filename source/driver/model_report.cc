@@ -67,9 +67,6 @@ namespace Voussoir
     std::string
     remark_on_tips(const Material &material, const Range &sizes)
     {
-      // 1 / sqrt(1 + h / length)
-      const double share  = material.tip_strength(1.),
-                   length = share * share / (1. - share * share);
       std::ostringstream text;
       text << std::setprecision(3)
            << "at tips of cracks the tensile strength is lowered to "
@@ -77,8 +74,8 @@ namespace Voussoir
            << " % in the largest cells, of " << sizes.largest << " m, and to "
            << 100. * material.tip_strength(sizes.smallest)
            << " % in the smallest, of " << sizes.smallest
-           << " m; it is below half in cells larger than " << 3. * length
-           << " m.";
+           << " m; it is below half in cells larger than "
+           << 3. * material.tensile_failure().crack_length << " m.";
       return text.str();
     }
   } // namespace
@@ -89,7 +86,7 @@ namespace Voussoir
   {
     const std::vector<double> carried = carried_frequencies(),
                               widest  = widest_crack_bands();
-    const auto sizes = cell_sizes(grid, solid.materials.size());
+    std::vector<Range> sizes; // once a material needs them
     for (unsigned int m = 0; m < solid.materials.size(); ++m)
       {
         const ElasticConstants c = solid.materials[m]->elastic_constants();
@@ -105,8 +102,14 @@ namespace Voussoir
         if (const std::string remark = solid.materials[m]->remark(widest[m]);
             !remark.empty())
           log.line("  note: ", remark);
-        if (solid.materials[m]->tip_strength(1.) < 1. && sizes[m].largest > 0.)
-          log.line("  note: ", remark_on_tips(*solid.materials[m], sizes[m]));
+        if (solid.materials[m]->tip_strength(1.) < 1.)
+          {
+            if (sizes.empty())
+              sizes = cell_sizes(grid, solid.materials.size());
+            if (sizes[m].largest > 0.)
+              log.line("  note: ",
+                       remark_on_tips(*solid.materials[m], sizes[m]));
+          }
         if (solid.materials[m]->n_history() > 0 &&
             solid.discretization.degree > 2)
           log.line(

@@ -1,3 +1,4 @@
+#include <voussoir/base/box_of_ranks.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
@@ -131,18 +132,6 @@ namespace Voussoir
         }
       return Utilities::MPI::sum(flagged, communicator) > 0;
     }
-
-
-    /** The box around the boxes of all ranks. */
-    void
-    join_boxes(Point<3> &lower, Point<3> &upper, const MPI_Comm communicator)
-    {
-      for (unsigned int d = 0; d < 3; ++d)
-        {
-          lower[d] = Utilities::MPI::min(lower[d], communicator);
-          upper[d] = Utilities::MPI::max(upper[d], communicator);
-        }
-    }
   } // namespace
 
 
@@ -275,12 +264,10 @@ namespace Voussoir
     };
 
     RefinementSummary summary;
-    constexpr double  far = std::numeric_limits<double>::max();
-    summary.before        = triangulation.n_global_active_cells();
-    summary.lower         = Point<3>(far, far, far);
-    summary.upper         = -summary.lower;
-    places                = positions(triangulation, coarse.chart);
-    unsigned int n_named  = 0;
+    BoxOfRanks        box;
+    summary.before       = triangulation.n_global_active_cells();
+    places               = positions(triangulation, coarse.chart);
+    unsigned int n_named = 0;
     for (const auto &cell : triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
         {
@@ -289,12 +276,7 @@ namespace Voussoir
             continue;
           ++summary.chosen;
           for (const unsigned int v : cell->vertex_indices())
-            for (unsigned int d = 0; d < 3; ++d)
-              {
-                const double x   = places[cell->vertex_index(v)][d];
-                summary.lower[d] = std::min(summary.lower[d], x);
-                summary.upper[d] = std::max(summary.upper[d], x);
-              }
+            box.add(places[cell->vertex_index(v)]);
         }
     if (Utilities::MPI::sum(n_named, communicator) == 0)
       throw UserError("\"Expression\" in section \"Mesh/Refine where\" is \"" +
@@ -303,7 +285,9 @@ namespace Voussoir
                       (sets.empty() ? "" : " of its \"Cell sets\"") +
                       "; correct it, or leave it out.");
     summary.chosen = Utilities::MPI::sum(summary.chosen, communicator);
-    join_boxes(summary.lower, summary.upper, communicator);
+    box.join(communicator);
+    summary.lower = box.lower;
+    summary.upper = box.upper;
 
     for (unsigned int level = 0;
          level < parameters.levels && refine_cells(

@@ -1,3 +1,4 @@
+#include <voussoir/base/box_of_ranks.h>
 #include <voussoir/base/error.h>
 #include <voussoir/base/mpi.h>
 #include <voussoir/base/parameter_file.h>
@@ -159,23 +160,14 @@ namespace Voussoir
     std::pair<Point<3>, Point<3>>
     find_extent(const BoundaryFaces &faces)
     {
-      FaceNodes face_nodes(faces.solid.discretization.mapping, faces.scalar());
-      Point<3>  lower(1e300, 1e300, 1e300), upper(-1e300, -1e300, -1e300);
+      FaceNodes  face_nodes(faces.solid.discretization.mapping, faces.scalar());
+      BoxOfRanks box;
       faces.visit([&](const Cell &cell, const unsigned int face) {
         for (const FaceNode &node : face_nodes.of(cell, face))
-          for (unsigned int d = 0; d < 3; ++d)
-            {
-              lower[d] = std::min(lower[d], node.position[d]);
-              upper[d] = std::max(upper[d], node.position[d]);
-            }
+          box.add(node.position);
       });
-      const MPI_Comm communicator = faces.solid.grid().communicator();
-      for (unsigned int d = 0; d < 3; ++d)
-        {
-          lower[d] = Utilities::MPI::min(lower[d], communicator);
-          upper[d] = Utilities::MPI::max(upper[d], communicator);
-        }
-      return {lower, upper};
+      box.join(faces.solid.grid().communicator());
+      return {box.lower, box.upper};
     }
 
 

@@ -1,3 +1,4 @@
+#include <voussoir/base/box_of_ranks.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/files/tension_file.h>
 #include <voussoir/output/field_writer.h>
@@ -181,28 +182,14 @@ namespace Voussoir
       void
       write_tension()
       {
-        const Grid      &grid = run().solid.grid();
-        TensionFile      tension{run().names.materials, {}, {}, {}};
-        constexpr double far = std::numeric_limits<double>::max();
-        tension.lower        = Point<3>(far, far, far);
-        tension.upper        = -tension.lower;
+        const Grid &grid = run().solid.grid();
+        BoxOfRanks  box;
         for (const auto &cell : grid.triangulation().active_cell_iterators())
           if (cell->is_locally_owned())
             for (const unsigned int v : cell->vertex_indices())
-              for (unsigned int d = 0; d < 3; ++d)
-                {
-                  tension.lower[d] =
-                    std::min(tension.lower[d], cell->vertex(v)[d]);
-                  tension.upper[d] =
-                    std::max(tension.upper[d], cell->vertex(v)[d]);
-                }
-        for (unsigned int d = 0; d < 3; ++d)
-          {
-            tension.lower[d] =
-              Utilities::MPI::min(tension.lower[d], communicator());
-            tension.upper[d] =
-              Utilities::MPI::max(tension.upper[d], communicator());
-          }
+              box.add(cell->vertex(v));
+        box.join(communicator());
+        TensionFile tension{run().names.materials, box.lower, box.upper, {}};
         stress->for_each_cell([&](const auto &cell, const auto &extremes) {
           const bool   is_beyond = has_left_elastic_range(cell);
           const double largest =

@@ -1,4 +1,5 @@
 #include "folders.h"
+#include "quiet_options.h"
 #include "same.h"
 #include "with_files.h"
 
@@ -34,7 +35,7 @@ namespace Voussoir
           verdicts.is_true("before the linear run: the mesh as given",
                            unrefined.grid.refinement().before == 0);
         }
-        Simulation straight(once, options(false), communicator);
+        Simulation straight(once, quiet_options(false), communicator);
         straight.run.march();
         const RefinementSummary refined = straight.model.grid.refinement();
         verdicts.is_true("a part of the cells is chosen",
@@ -52,7 +53,7 @@ namespace Voussoir
         const auto made =
           std::filesystem::last_write_time("once-linear/largest_tension.h5");
         MPI_Barrier(communicator);
-        Simulation again(once, options(false), communicator);
+        Simulation again(once, quiet_options(false), communicator);
         verdicts.is_true("a second run takes the linear run",
                          std::filesystem::last_write_time(
                            "once-linear/largest_tension.h5") == made);
@@ -63,9 +64,9 @@ namespace Voussoir
         const Case   shorter(
           file.with({"Output/Folder=halves",
                        "Time/End time=" + std::to_string(0.6 * end)}));
-        Simulation(shorter, options(false), communicator).run.march();
+        Simulation(shorter, quiet_options(false), communicator).run.march();
         const Case longer(file.with({"Output/Folder=halves"}));
-        Simulation going_on(longer, options(true), communicator);
+        Simulation going_on(longer, quiet_options(true), communicator);
         verdicts.is_true("a restart goes on",
                          going_on.run.state.time > 0.3 * end);
         going_on.run.march();
@@ -74,16 +75,6 @@ namespace Voussoir
                               going_on.run.state.displacement));
         verdicts.is_true("  which is not zero",
                          straight.run.state.displacement.linfty_norm() > 1e-4);
-      }
-
-    private:
-      static RunOptions
-      options(const bool restart)
-      {
-        RunOptions result;
-        result.restart = restart;
-        result.quiet   = true;
-        return result;
       }
     };
 

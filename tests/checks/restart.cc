@@ -8,6 +8,7 @@
 
 #include "check.h"
 #include "folders.h"
+#include "quiet_options.h"
 #include "same.h"
 #include "test_observer.h"
 
@@ -62,7 +63,7 @@ namespace Voussoir
           communicator);
 
         const auto straight = make_case(folder(file, "straight", false));
-        Simulation uninterrupted(*straight, options(false), communicator);
+        Simulation uninterrupted(*straight, quiet_options(false), communicator);
         uninterrupted.run.march();
 
         // on the same ranks
@@ -82,7 +83,7 @@ namespace Voussoir
           std::ofstream(of_user) << "!";
         });
         const auto continued = make_case(folder(file, "together", false));
-        Simulation going_on(*continued, options(true), communicator);
+        Simulation going_on(*continued, quiet_options(true), communicator);
         verdicts.is_true("it continues from a time between start and end",
                          going_on.run.state.time > 0. &&
                            going_on.run.state.time < continued->time.end_time);
@@ -149,7 +150,7 @@ namespace Voussoir
         // the newest checkpoint is damaged, so it continues from the one before
         damage("older", communicator);
         const auto older = make_case(folder(file, "older", false));
-        Simulation older_run(*older, options(true), communicator);
+        Simulation older_run(*older, quiet_options(true), communicator);
         verdicts.is_true("with a damaged checkpoint it continues from t = 0",
                          older_run.run.state.step == 0);
         older_run.run.march();
@@ -170,7 +171,7 @@ namespace Voussoir
         });
         copy("alone", "metis", communicator);
         const auto shared = make_case(folder(file, "alone", false));
-        Simulation shared_run(*shared, options(true), communicator);
+        Simulation shared_run(*shared, quiet_options(true), communicator);
         shared_run.run.march();
         verdicts.below("difference after a change of ranks",
                        difference(uninterrupted.run.state.displacement,
@@ -185,7 +186,7 @@ namespace Voussoir
         // and by cells distributed otherwise
         const auto dealt = make_case(
           folder(file, "metis", false).with({"Mesh/Partition=METIS"}));
-        Simulation dealt_run(*dealt, options(true), communicator);
+        Simulation dealt_run(*dealt, quiet_options(true), communicator);
         dealt_run.run.march();
         compare_tables("straight", "metis", verdicts);
 
@@ -216,16 +217,6 @@ namespace Voussoir
       }
 
 
-      static RunOptions
-      options(const bool restart)
-      {
-        RunOptions result;
-        result.restart = restart;
-        result.quiet   = true;
-        return result;
-      }
-
-
       static void
       interrupt(Case          &parameters,
                 const MPI_Comm communicator,
@@ -235,7 +226,8 @@ namespace Voussoir
         listen_to_signals(); // a second SIGINT would kill
         try
           {
-            Simulation(parameters, options(false), communicator).run.march();
+            Simulation(parameters, quiet_options(false), communicator)
+              .run.march();
           }
         catch (const Stopped &)
           {
@@ -289,7 +281,7 @@ namespace Voussoir
         std::string sentence   = "accepted";
         try
           {
-            Simulation(*parameters, options(true), communicator);
+            Simulation(*parameters, quiet_options(true), communicator);
           }
         catch (const UserError &error)
           {

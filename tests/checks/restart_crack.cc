@@ -2,6 +2,7 @@
 
 #include "check.h"
 #include "folders.h"
+#include "quiet_options.h"
 #include "same.h"
 
 namespace Voussoir
@@ -27,15 +28,15 @@ namespace Voussoir
         const double closing = time_of_closing(file, communicator);
         const auto   whole =
           make_case(with(file, "straight", closing, 2.5 * closing));
-        Simulation straight(*whole, options(false), communicator);
+        Simulation straight(*whole, quiet_options(false), communicator);
         straight.run.march();
 
         const auto first =
           make_case(with(file, "in_two", closing, 1.5 * closing));
-        Simulation(*first, options(false), communicator).run.march();
+        Simulation(*first, quiet_options(false), communicator).run.march();
         const auto second =
           make_case(with(file, "in_two", closing, 2.5 * closing));
-        Simulation going_on(*second, options(true), communicator);
+        Simulation going_on(*second, quiet_options(true), communicator);
         verdicts.near(
           "continues from the time at which the crack closes, over it",
           going_on.run.state.time / closing,
@@ -93,16 +94,6 @@ namespace Voussoir
         return file.with({"Output/Folder=" + folder,
                           "Output/Checkpoint time=" + every.str(),
                           "Time/End time=" + last.str()});
-      }
-
-
-      static RunOptions
-      options(const bool restart)
-      {
-        RunOptions result;
-        result.restart = restart;
-        result.quiet   = true;
-        return result;
       }
 
 

@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "folders.h"
+#include "quiet_options.h"
 #include "same.h"
 
 namespace Voussoir
@@ -32,14 +33,14 @@ namespace Voussoir
 
         const double end = make_case(with(file, "at_once", 0.))->time.end_time;
         const auto   at_once = make_case(with(file, "at_once", end));
-        Simulation   straight(*at_once, options(false), communicator);
+        Simulation   straight(*at_once, quiet_options(false), communicator);
         straight.run.march();
 
         const auto shorter = make_case(with(file, "in_two", 0.6 * end));
-        Simulation(*shorter, options(false), communicator).run.march();
+        Simulation(*shorter, quiet_options(false), communicator).run.march();
         const auto longer = make_case(with(file, "in_two", end));
         {
-          Simulation going_on(*longer, options(true), communicator);
+          Simulation going_on(*longer, quiet_options(true), communicator);
           verdicts.is_true("continues from between start and end",
                            going_on.run.state.time > 0.3 * end &&
                              going_on.run.state.time < 0.6 * end);
@@ -65,7 +66,7 @@ namespace Voussoir
         std::string sentence = "accepted";
         try
           {
-            Simulation(*changed, options(true), communicator);
+            Simulation(*changed, quiet_options(true), communicator);
           }
         catch (const UserError &error)
           {
@@ -89,16 +90,6 @@ namespace Voussoir
         if (end_time > 0.)
           changes.push_back("Time/End time=" + std::to_string(end_time));
         return file.with(changes);
-      }
-
-
-      static RunOptions
-      options(const bool restart)
-      {
-        RunOptions result;
-        result.restart = restart;
-        result.quiet   = true;
-        return result;
       }
 
 

@@ -7,7 +7,7 @@ namespace Voussoir
 
   template <typename Number>
   void
-  EightPointShape<Number>::reinit(Values &corners)
+  EightPointShape<Number>::reinit(const Values &corners)
   {
     find_derivatives(corners.data(), edges);
     point = 8;
@@ -16,7 +16,7 @@ namespace Voussoir
 
   template <typename Number>
   void
-  EightPointShape<Number>::evaluate_gradients(Number *values)
+  EightPointShape<Number>::evaluate_gradients(const Number *values)
   {
     find_derivatives(values, displacements);
   }
@@ -45,13 +45,13 @@ namespace Voussoir
 
   template <typename Number>
   void
-  EightPointShape<Number>::find_derivatives(Number      *values,
-                                            Derivatives &derivatives) const
+  EightPointShape<Number>::find_derivatives(const Number *values,
+                                            Derivatives  &derivatives) const
   {
     for (unsigned int d = 0; d < 3; ++d)
       {
-        Number *u = values + 8 * d;
-        to_modes(u);
+        std::array<Number, 8> u;
+        to_modes(values + 8 * d, u);
         for (unsigned int k = 0; k < 3; ++k)
           {
             // u_k + v_m xi_l + v_l xi_m + v_3 xi_l xi_m with l < m
@@ -79,8 +79,8 @@ namespace Voussoir
   {
     for (unsigned int d = 0; d < 3; ++d)
       {
-        Number *f = forces_of_nodes + 8 * d;
-        std::fill(f, f + 8, Number(0.));
+        std::array<Number, 8> f;
+        f.fill(0.);
         // the transpose of `find_derivatives`
         for (unsigned int k = 0; k < 3; ++k)
           {
@@ -95,7 +95,9 @@ namespace Voussoir
             f[along | 1 << m] += 0.125 * coordinate * (high - low);
             f[7] += 0.125 * coordinate * coordinate * (slope_high - slope_low);
           }
-        to_corners(f);
+        to_corners(f.data());
+        for (unsigned int v = 0; v < 8; ++v)
+          forces_of_nodes[8 * d + v] = f[v];
       }
   }
 

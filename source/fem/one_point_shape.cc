@@ -8,16 +8,17 @@ namespace Voussoir
 
   template <typename Number>
   void
-  OnePointShape<Number>::reinit(Values &x)
+  OnePointShape<Number>::reinit(const Values &corners)
   {
-    for (Number &entry : x)
-      entry *= 0.125;
     for (unsigned int d = 0; d < 3; ++d)
-      to_modes(x.data() + 8 * d);
-    for (unsigned int k = 0; k < 3; ++k)
-      edges[k] = mode(x.data(), linear[k]);
-    for (unsigned int k = 0; k < 4; ++k)
-      warps[k] = mode(x.data(), hourglass[k]);
+      {
+        std::array<Number, 8> modes;
+        to_modes(corners.data() + 8 * d, modes);
+        for (unsigned int k = 0; k < 3; ++k)
+          edges[k][d] = 0.125 * modes[linear[k]];
+        for (unsigned int k = 0; k < 4; ++k)
+          warps[k][d] = 0.125 * modes[hourglass[k]];
+      }
 
     // Means of the cofactors of the Jacobian matrix times the derivatives of
     // the modes; those of the last one vanish.
@@ -32,8 +33,9 @@ namespace Voussoir
                          Number(1. / 3.);
         trace += edges[k] * b_linear[k] + warps[k] * b_hourglass[k];
       }
-    // a linear displacement has its gradient: three times the mean determinant
-    const Number scale = 3. / trace;
+    // a linear displacement has its gradient: three times the mean determinant;
+    // an eighth of it, as `to_modes` gives eight times the parts
+    const Number scale = 0.375 / trace;
     volume             = (8. / 3.) * trace;
     for (unsigned int k = 0; k < 3; ++k)
       {
@@ -82,8 +84,8 @@ namespace Voussoir
     Tensor<2, 3, Number> gradient;
     for (unsigned int d = 0; d < 3; ++d)
       for (unsigned int k = 0; k < 3; ++k)
-        gradient[d] += 0.125 * (u[8 * d + linear[k]] * b_linear[k] +
-                                u[8 * d + hourglass[k]] * b_hourglass[k]);
+        gradient[d] += u[8 * d + linear[k]] * b_linear[k] +
+                       u[8 * d + hourglass[k]] * b_hourglass[k];
     mean_strain = symmetrize(gradient);
 
     std::array<Vector3, 4> q;
@@ -180,15 +182,18 @@ namespace Voussoir
 
     for (unsigned int d = 0; d < 3; ++d)
       {
-        f[8 * d] = 0.;
+        std::array<Number, 8> modes;
+        modes[0] = 0.;
         for (unsigned int k = 0; k < 3; ++k)
           {
-            f[8 * d + linear[k]] = 0.125 * (total[d] * b_linear[k]);
-            f[8 * d + hourglass[k]] =
-              0.125 * (total[d] * b_hourglass[k] + force[k][d]);
+            modes[linear[k]] = total[d] * b_linear[k];
+            modes[hourglass[k]] =
+              total[d] * b_hourglass[k] + 0.125 * force[k][d];
           }
-        f[8 * d + hourglass[3]] = 0.125 * force[3][d];
-        to_corners(f + 8 * d);
+        modes[hourglass[3]] = 0.125 * force[3][d];
+        to_corners(modes.data());
+        for (unsigned int v = 0; v < 8; ++v)
+          f[8 * d + v] = modes[v];
       }
   }
 

@@ -29,15 +29,12 @@ namespace Voussoir
      *  is entry 8 d + v. */
     using Values = std::array<Number, 24>;
 
-    /** Finds the shape of the cells with these corners [m], which are
-     *  overwritten.
-     */
+    /** Finds the shape of the cells with these corners [m]. */
     void
-    reinit(Values &corners);
+    reinit(const Values &corners);
 
-    /** Evaluates the gradients of these values, which are overwritten. */
     void
-    evaluate_gradients(Number *values);
+    evaluate_gradients(const Number *values);
 
     /** Evaluates values at the points, and overwrites those of the nodes. */
     void
@@ -123,7 +120,7 @@ namespace Voussoir
     }
 
     void
-    find_derivatives(Number *values, Derivatives &derivatives) const;
+    find_derivatives(const Number *values, Derivatives &derivatives) const;
 
     const double           coordinate; // of the points, positive [1]
     Derivatives            edges, displacements, forces;

@@ -48,11 +48,9 @@ namespace Voussoir
      *  is entry 8 d + v. */
     using Values = std::array<Number, 24>;
 
-    /** Finds the shape of the cells with these corners [m], which are
-     *  overwritten.
-     */
+    /** Finds the shape of the cells with these corners [m]. */
     void
-    reinit(Values &corners);
+    reinit(const Values &corners);
 
     /** Evaluates the gradient of these values, which are overwritten. */
     void
@@ -131,7 +129,7 @@ namespace Voussoir
     // the cells' shape
     std::array<Vector3, 3>                edges; // half the mean edges
     std::array<Vector3, 4>                warps; // x_k
-    std::array<Vector3, 3>                b_linear, b_hourglass; // of G
+    std::array<Vector3, 3>                b_linear, b_hourglass; // of 8 G
     std::array<typename Fields::Plane, 3> inverse_metric;
     std::array<Number, 3>                 inverse_length_square;
     Number                                volume;

@@ -160,17 +160,26 @@ namespace Voussoir
       result[d][d] += mean;
     if (all_are_elastic)
       return result;
-    const bool none_begins =
-      common != nullptr && !any_above(common->yield_ratio(result, bands), 1.);
-    for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-      if (none_begins)
-        {
-          if (laws[lane] && laws[lane]->is_active())
+    if (common == nullptr)
+      {
+        for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+          if (laws[lane] && (!laws[lane]->law().isotropic() ||
+                             !laws[lane]->is_elastic(lane_of(result, lane))))
             set_lane(result, lane, (*laws[lane])(lane_of(of_law, lane)));
+        return result;
+      }
+    const Lanes                   ratio = common->yield_ratio(result, bands);
+    const SymmetricTensor3<Lanes> beyond =
+      any_above(ratio, 1.) ? common->stress_of_elastic_points(of_law, bands) :
+                             result;
+    for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+      if (laws[lane])
+        {
+          if (laws[lane]->is_active())
+            set_lane(result, lane, (*laws[lane])(lane_of(of_law, lane)));
+          else if (ratio[lane] > 1.)
+            set_lane(result, lane, lane_of(beyond, lane));
         }
-      else if (laws[lane] && (!laws[lane]->law().isotropic() ||
-                              !laws[lane]->is_elastic(lane_of(result, lane))))
-        set_lane(result, lane, (*laws[lane])(lane_of(of_law, lane)));
     return result;
   }
 

@@ -91,6 +91,13 @@ namespace Voussoir
             double                         *history,
             const PointSituation<double>   &situation) const = 0;
 
+    /** Stress of points that have been elastic so far [Pa]; as many points as
+     *  there are lanes.
+     *  @param element_length as in PointSituation [m] */
+    virtual SymmetricTensor3<Lanes>
+    stress_of_elastic_points(const SymmetricTensor3<Lanes> &strain,
+                             const Lanes &element_length) const = 0;
+
     /** See LawDefaults::yield_ratio; 0 for a law without internal variables. */
     virtual double
     yield_ratio(const SymmetricTensor3<double> &elastic_stress,

@@ -65,6 +65,23 @@ namespace Voussoir
       return response;
     }
 
+    SymmetricTensor3<Lanes>
+    stress_of_elastic_points(const SymmetricTensor3<Lanes> &strain,
+                             const Lanes &element_length) const override
+    {
+      if constexpr (has_memory)
+        {
+          std::array<Lanes, Law::n_history> history{};
+          return law
+            .respond(strain,
+                     history.data(),
+                     PointSituation<Lanes>{element_length, 0.})
+            .stress;
+        }
+      else
+        return law.stress(strain);
+    }
+
     TensileFailure
     tensile_failure() const override
     {

@@ -46,7 +46,10 @@ namespace Voussoir
       return {0U, 8U};
     }
 
-    SymmetricTensor3<Number>
+    using Strain = SymmetricTensor3<Number>;
+
+    // Calls of this function and the next took a fifth of the step.
+    DEAL_II_ALWAYS_INLINE Strain
     get_symmetric_gradient(const unsigned int q)
     {
       go_to(q);
@@ -73,7 +76,7 @@ namespace Voussoir
       return volume;
     }
 
-    void
+    DEAL_II_ALWAYS_INLINE void
     submit_symmetric_gradient(const SymmetricTensor3<Number> &stress,
                               const unsigned int              q)
     {
@@ -104,7 +107,7 @@ namespace Voussoir
     }
 
     /** Computes the cofactors of a point. */
-    void
+    DEAL_II_ALWAYS_INLINE void
     go_to(const unsigned int q)
     {
       if (q == point)

@@ -144,7 +144,7 @@ namespace Voussoir
       types::global_dof_index  unknowns  = 0;
       double                   time_step = 0., seconds = 0., megabytes = 0.;
       unsigned long long       steps = 0;
-      std::vector<std::string> warnings;
+      std::vector<std::string> notes, warnings;
       nlohmann::json           checks;  // numerical ones
       std::string              refined; // where cracks are expected
     };
@@ -163,11 +163,18 @@ namespace Voussoir
       const double seconds = double(run.n_steps()) * seconds_per_step(run);
       Utilities::System::MemoryStats memory;
       Utilities::System::get_memory_stats(memory);
+      std::vector<std::string>       notes   = parameters.notes;
+      const std::vector<std::string> of_tips = simulation.model.notes_on_tips();
+      for (unsigned int m = 0; m < of_tips.size(); ++m)
+        if (!of_tips[m].empty())
+          notes.push_back("in " + parameters.materials.objects[m].first + ", " +
+                          of_tips[m]);
       return {simulation.model.solid.discretization.dof_handler.n_dofs(),
               run.time_step.length,
               seconds,
               Utilities::MPI::max(memory.VmHWM / 1024., communicator),
               run.n_steps(),
+              notes,
               simulation.log.warnings(),
               numerical_checks(*run.setup),
               describe_refinement(parameters,
@@ -183,7 +190,7 @@ namespace Voussoir
       const Estimate found = estimate(parameters, options, communicator);
       if (Utilities::MPI::this_mpi_process(communicator) > 0)
         return;
-      for (const std::string &note : parameters.notes)
+      for (const std::string &note : found.notes)
         std::cout << "note: " << note << '\n';
       for (const std::string &warning : found.warnings)
         std::cout << "Warning: " << warning << '\n';
@@ -227,7 +234,7 @@ namespace Voussoir
           const Case     run(runs[i]);
           const Estimate found = estimate(run, options, communicator);
           seconds += found.seconds * runs.size() / n_tried;
-          for (const std::string &note : run.notes)
+          for (const std::string &note : found.notes)
             add("note: " + note + '\n');
           for (const std::string &warning : found.warnings)
             add("Warning: " + warning + '\n');

@@ -2,6 +2,7 @@
 
 #include <voussoir/driver/model.h>
 
+#include <algorithm>
 #include <iomanip>
 
 namespace Voussoir
@@ -81,12 +82,30 @@ namespace Voussoir
   } // namespace
 
 
+  std::vector<std::string>
+  Model::notes_on_tips() const
+  {
+    const auto              &materials = solid.materials;
+    std::vector<std::string> notes(materials.size());
+    const auto               grows = [](const auto &material) {
+      return material->tip_strength(1.) < 1.;
+    };
+    if (std::none_of(materials.begin(), materials.end(), grows))
+      return notes;
+    const std::vector<Range> sizes = cell_sizes(grid, materials.size());
+    for (unsigned int m = 0; m < materials.size(); ++m)
+      if (grows(materials[m]) && sizes[m].largest > 0.)
+        notes[m] = remark_on_tips(*materials[m], sizes[m]);
+    return notes;
+  }
+
+
   void
   Model::report_materials(Log &log) const
   {
-    const std::vector<double> carried = carried_frequencies(),
-                              widest  = widest_crack_bands();
-    std::vector<Range> sizes; // once a material needs them
+    const std::vector<double> carried      = carried_frequencies(),
+                              widest       = widest_crack_bands();
+    const std::vector<std::string> of_tips = notes_on_tips();
     for (unsigned int m = 0; m < solid.materials.size(); ++m)
       {
         const ElasticConstants c = solid.materials[m]->elastic_constants();
@@ -102,14 +121,8 @@ namespace Voussoir
         if (const std::string remark = solid.materials[m]->remark(widest[m]);
             !remark.empty())
           log.line("  note: ", remark);
-        if (solid.materials[m]->tip_strength(1.) < 1.)
-          {
-            if (sizes.empty())
-              sizes = cell_sizes(grid, solid.materials.size());
-            if (sizes[m].largest > 0.)
-              log.line("  note: ",
-                       remark_on_tips(*solid.materials[m], sizes[m]));
-          }
+        if (!of_tips[m].empty())
+          log.line("  note: ", of_tips[m]);
         if (solid.materials[m]->n_history() > 0 &&
             solid.discretization.degree > 2)
           log.line(

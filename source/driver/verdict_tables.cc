@@ -135,7 +135,9 @@ namespace Voussoir
              " m keep it (\"Local refinement = " + join(items, "; ") +
              "\" in section \"Mesh\"), with about " + number_text(more) +
              " times as many cells in all and up to " +
-             number_text(std::ldexp(1., n)) + " times as many steps";
+             number_text(std::ldexp(1., n)) +
+             " times as many steps; section \"Mesh/Refine where\" refines only "
+             "those that a linear run, a cell set or a formula chooses";
     }
 
 

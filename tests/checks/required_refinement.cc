@@ -22,7 +22,9 @@ namespace Voussoir
         const Found given = evaluate(file, communicator);
         verdicts.is_true("cells as given: not met",
                          given.line.at("met") == false);
-        const std::string remedy  = given.line.at("remedy");
+        const std::string remedy = given.line.at("remedy");
+        verdicts.is_true("a remedy for some of the cells",
+                         remedy.find("Refine where") != remedy.npos);
         const std::string wanted  = "Local refinement = dam: ";
         const int         levels  = std::stoi(after(remedy, wanted));
         const auto        refined = [&](const int by) {

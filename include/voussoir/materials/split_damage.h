@@ -253,11 +253,12 @@ namespace Voussoir
       using Comparison  = dealii::SIMDComparison;
       const Number zero = 0., one = 1.;
       // A tip may arrive where the stress is higher already; there the crack
-      // begins at this stress, so that no energy gets lost.
-      const Number now =
-        std::min(std::max(situation.tip_strength,
-                          Number(0.99 * tension.yield_ratio(equivalent, zero))),
-                 one);
+      // begins just below this stress, so that neither energy nor stress jumps.
+      constexpr double just_below = 1. - 1e-9;
+      const Number     now        = std::min(
+        std::max(situation.tip_strength,
+                 Number(just_below * tension.yield_ratio(equivalent, zero))),
+        one);
       Number      &kept = history[strength_at];
       const Number factor =
         compare_and_apply_mask<Comparison::equal>(kept, zero, now, kept);

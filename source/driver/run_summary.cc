@@ -109,6 +109,7 @@ namespace Voussoir
     entry("loop time [s]", part.loop_time);
     entry("MDOF-steps/s", part.throughput);
     entry("contact share of the loop", part.contact_share);
+    entry("time of cells, largest over mean of the ranks", part.balance);
     entry("target spectrum", part.target_spectrum);
     entry("spectrum fit", part.fits);
     entry("static state", part.static_state);
@@ -416,6 +417,22 @@ namespace Voussoir
   }
 
 
+  namespace
+  {
+    // None on one rank, or before the first step.
+    std::optional<double>
+    balance_of_cells(const CentralDifference &scheme,
+                     const MPI_Comm           communicator)
+    {
+      const auto times =
+        Utilities::MPI::min_max_avg(scheme.seconds_of_cells(), communicator);
+      if (times.avg == 0. || Utilities::MPI::n_mpi_processes(communicator) == 1)
+        return {};
+      return times.max / times.avg;
+    }
+  } // namespace
+
+
   RunSummary
   summary_of(const Run &run)
   {
@@ -434,6 +451,7 @@ namespace Voussoir
       march.contact_share =
         Utilities::MPI::min(run.contact->seconds(), communicator) /
         march.loop_time;
+    march.balance         = balance_of_cells(run.scheme, communicator);
     march.target_spectrum = target_spectrum(run.model.parameters.ground_motion);
     march.fits            = summary_of(run.setup->plan.motion.fits);
     march.static_state    = run.static_state.summary;
@@ -477,6 +495,9 @@ namespace Voussoir
       text << "Contact: " << 100. * summary.march->contact_share.value_or(0.)
            << " % of the loop, " << run.contact->effort().paths
            << " clusters by path following\n";
+    if (summary.march->balance)
+      text << "Time of the cells: largest " << *summary.march->balance
+           << " of the mean of the ranks\n";
     for (const auto &[name, material] : summary.march->materials.items())
       if (const char *cells = "cells at tips of cracks";
           material.contains(cells))

@@ -1,5 +1,6 @@
 #include <voussoir/fem/internal_force.h>
 
+#include <chrono>
 #include <numeric>
 
 namespace Voussoir
@@ -210,7 +211,8 @@ namespace Voussoir
                        const SweepInput &input,
                        MaterialMemory   &memory,
                        const RangeWork  &before,
-                       const RangeWork  &after) const
+                       const RangeWork  &after,
+                       double           *seconds) const
   {
     using Damping  = SweepInput::Damping;
     const auto run = [&](const unsigned int material,
@@ -223,12 +225,24 @@ namespace Voussoir
         kernels[material]->add_force(cells, input, dst);
     };
     Rounding rounding(discretization.reproducible ? limit_of_sweep(input) : 0.);
-    const CellLoop loop =
+    const CellLoop of_cells =
       on_runs(discretization,
               factors,
               run,
               discretization.reproducible ? &rounding : nullptr,
               input.single_precision);
+
+    using Clock = std::chrono::steady_clock;
+    std::chrono::duration<double> time_of_cells{};
+
+    const CellLoop loop = [&](const auto   &matrix_free,
+                              Vector       &dst,
+                              const Vector &src,
+                              const auto   &range) {
+      const auto start = Clock::now();
+      of_cells(matrix_free, dst, src, range);
+      time_of_cells += Clock::now() - start;
+    };
 
     // the initial value of a sum must be in quanta, too
     const auto begin_sums = [&](const unsigned int begin,
@@ -257,6 +271,8 @@ namespace Voussoir
       }
     if (reads_undamped)
       input.displacement.zero_out_ghost_values();
+    if (seconds != nullptr)
+      *seconds += time_of_cells.count();
     return !rounding.exceeded();
   }
 

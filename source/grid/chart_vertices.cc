@@ -4,9 +4,12 @@
 #include <deal.II/grid/manifold.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <tuple>
+#include <utility>
 
 namespace Voussoir
 {
@@ -14,12 +17,12 @@ namespace Voussoir
 
   namespace
   {
-    // New vertices of faces on a curved surface, in the coordinates of a chart.
+    // New vertices on a curved surface or edge, in the coordinates of a chart.
     class CurvedSurface : public FlatManifold<3>
     {
     public:
-      explicit CurvedSurface(const CoarseMesh::Chart &chart)
-        : onto_surface(chart.onto_surface)
+      explicit CurvedSurface(const CoarseMesh::Chart::Move &onto)
+        : onto(onto)
       {}
 
       std::unique_ptr<Manifold<3>>
@@ -32,12 +35,48 @@ namespace Voussoir
       get_new_point(const ArrayView<const Point<3>> &points,
                     const ArrayView<const double>   &weights) const override
       {
-        return onto_surface(FlatManifold<3>::get_new_point(points, weights));
+        return onto(FlatManifold<3>::get_new_point(points, weights));
       }
 
     private:
-      std::function<Point<3>(const Point<3> &)> onto_surface;
+      CoarseMesh::Chart::Move onto;
     };
+
+
+    // A surface and the edges of two of them.
+    types::manifold_id
+    manifold_of_surface(const unsigned int number)
+    {
+      return number + 1;
+    }
+
+
+    types::manifold_id
+    manifold_of_edges(const CoarseMesh::Chart &chart)
+    {
+      return chart.surfaces.size() + 1;
+    }
+
+
+    using Edge = std::array<double, 6>; // its ends, in their order
+
+    Edge
+    edge(const Triangulation<3>::line_iterator &line)
+    {
+      Edge            result;
+      constexpr auto  n = Point<3>::dimension;
+      const Point<3> &a = line->vertex(0), &b = line->vertex(1);
+      for (unsigned int d = 0; d < n; ++d)
+        {
+          result[d]     = a[d];
+          result[n + d] = b[d];
+        }
+      const auto middle = result.begin() + n;
+      if (std::lexicographical_compare(
+            middle, result.end(), result.begin(), middle))
+        std::rotate(result.begin(), middle, result.end());
+      return result;
+    }
 
 
     // Coarse edges before fine ones, since an edge with a hanging vertex may
@@ -74,11 +113,48 @@ namespace Voussoir
 
 
   void
-  attach_curved_surface(const CoarseMesh::Chart &chart,
-                        Triangulation<3>        &triangulation)
+  attach_surfaces(const CoarseMesh::Chart &chart,
+                  Triangulation<3>        &triangulation)
   {
-    if (!chart.curved_faces.empty())
-      triangulation.set_manifold(curved_surface, CurvedSurface(chart));
+    for (unsigned int i = 0; i < chart.surfaces.size(); ++i)
+      triangulation.set_manifold(manifold_of_surface(i),
+                                 CurvedSurface(chart.surfaces[i].onto));
+    if (chart.onto_edge)
+      triangulation.set_manifold(manifold_of_edges(chart),
+                                 CurvedSurface(chart.onto_edge));
+  }
+
+
+  void
+  mark_surfaces(const CoarseMesh::Chart &chart, Triangulation<3> &triangulation)
+  {
+    // surface and face
+    std::vector<std::vector<std::pair<unsigned int, unsigned int>>> faces(
+      triangulation.n_cells());
+    for (unsigned int i = 0; i < chart.surfaces.size(); ++i)
+      for (const CoarseMesh::Face &face : chart.surfaces[i].faces)
+        faces[face.cell].emplace_back(i, face.face);
+    const auto for_each_face = [&](const auto &visit) {
+      for (const auto &cell : triangulation.cell_iterators())
+        for (const auto &[surface, face] : faces[cell->index()])
+          visit(cell->face(face), manifold_of_surface(surface));
+    };
+
+    // by the places of their ends, since the sides of an interface have edges
+    // of their own
+    std::map<Edge, types::manifold_id> edges;
+    for_each_face([&](const auto &face, const auto id) {
+      for (const unsigned int line : face->line_indices())
+        if (auto &of_edge =
+              edges.try_emplace(edge(face->line(line)), id).first->second;
+            of_edge != id)
+          of_edge = manifold_of_edges(chart);
+    });
+    for_each_face([&](const auto &face, const auto id) {
+      face->set_manifold_id(id);
+      for (const unsigned int line : face->line_indices())
+        face->line(line)->set_manifold_id(edges.at(edge(face->line(line))));
+    });
   }
 
 

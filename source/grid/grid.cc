@@ -115,13 +115,8 @@ namespace Voussoir
                                          chart.vertices,
                                        cells,
                                        SubCellData());
-    attach_curved_surface(chart, triangulation);
-    std::vector<std::vector<unsigned int>> faces(cells.size());
-    for (const CoarseMesh::Face &face : chart.curved_faces)
-      faces[face.cell].push_back(face.face);
-    for (const auto &cell : triangulation.cell_iterators())
-      for (const unsigned int face : faces[cell->index()])
-        cell->face(face)->set_all_manifold_ids(curved_surface);
+    attach_surfaces(chart, triangulation);
+    mark_surfaces(chart, triangulation);
   }
 
 
@@ -209,7 +204,7 @@ namespace Voussoir
     auto triangulation =
       std::make_unique<parallel::fullydistributed::Triangulation<3>>(
         mpi_communicator);
-    attach_curved_surface(coarse.chart, *triangulation);
+    attach_surfaces(coarse.chart, *triangulation);
     triangulation->create_triangulation(description);
     place_vertices(coarse.chart, *triangulation);
     mesh = std::move(triangulation);

@@ -150,8 +150,8 @@ namespace Voussoir
     part(const CoarseMesh &mesh, const std::vector<bool> &kept)
     {
       CoarseMesh result;
-      result.chart.positions    = mesh.chart.positions;
-      result.chart.onto_surface = mesh.chart.onto_surface;
+      result.chart.positions = mesh.chart.positions;
+      result.chart.onto_edge = mesh.chart.onto_edge;
       std::vector<unsigned int> vertex_number(mesh.vertices.size(), none),
         cell_number(mesh.cells.size(), none);
       for (unsigned int c = 0; c < mesh.cells.size(); ++c)
@@ -181,10 +181,14 @@ namespace Voussoir
           if (kept[face.cell])
             result.face_sets[name].push_back(
               {cell_number[face.cell], face.face});
-      for (const CoarseMesh::Face &face : mesh.chart.curved_faces)
-        if (kept[face.cell])
-          result.chart.curved_faces.push_back(
-            {cell_number[face.cell], face.face});
+      for (const auto &surface : mesh.chart.surfaces)
+        {
+          result.chart.surfaces.push_back({{}, surface.onto});
+          for (const CoarseMesh::Face &face : surface.faces)
+            if (kept[face.cell])
+              result.chart.surfaces.back().faces.push_back(
+                {cell_number[face.cell], face.face});
+        }
       for (const auto &[name, vertices] : mesh.vertex_sets)
         for (const unsigned int vertex : vertices)
           if (vertex_number[vertex] != none)

@@ -147,6 +147,7 @@ namespace Voussoir
                           CoarseMesh                      &mesh) const
   {
     const std::string                                  name = this->name();
+    const std::string                                  base = " base";
     std::vector<std::pair<unsigned int, unsigned int>> place(mesh.cells.size());
     std::vector<bool> is_rock(mesh.cells.size()), is_wedge(mesh.cells.size());
     for (unsigned int i = 0; i < cell_number.size(); ++i)
@@ -179,9 +180,13 @@ namespace Voussoir
               const auto       &quad = section.quads[place[other].first];
               const std::string plane =
                 place[other].second >= end ? " rear plane" :
-                row(quad) < ledge.row      ? " base" :
+                row(quad) < ledge.row      ? base :
                                              " lateral plane";
               mesh.face_sets[name + plane].push_back({cell, face});
+              if (plane == base)
+                for (const auto &side :
+                     {CoarseMesh::Face{cell, face}, neighbours[cell][face]})
+                  mesh.chart.surfaces[1].faces.push_back(side);
             }
         }
   }

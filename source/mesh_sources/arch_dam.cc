@@ -340,11 +340,7 @@ namespace Voussoir
       mesh.remarks.push_back(cells.str());
       for (const AbutmentWedge &wedge : wedges)
         mesh.remarks.push_back(describe_wedge(wedge, *sweep, section, mesh));
-      // the base planes of wedges are plane in space, not in the chart
-      if (wedges.empty())
-        add_surfaces(sections, sweep, mesh.chart);
-      else
-        mesh.chart = {};
+      add_surfaces(sections, sweep, mesh.chart);
       return mesh;
     }
 
@@ -360,9 +356,16 @@ namespace Voussoir
                          sweep](const CoarseMesh::Chart::Points &coordinates) {
         return sweep->positions(coordinates);
       };
-      // the dam's faces, joints and ends of the rock are planes of the chart
-      chart.onto_surface = [sections](const Point<3> &at) {
+      // the dam's faces, joints and ends of the rock are planes of the chart,
+      // the bases of wedges are planes in space
+      chart.surfaces[0].onto = [sections](const Point<3> &at) {
         return Point<3>(at[0], at[1], sections->contour(at[0]));
+      };
+      chart.surfaces[1].onto = [sections, sweep](const Point<3> &at) {
+        return sweep->onto_ledge(at);
+      };
+      chart.onto_edge = [sections, sweep](const Point<3> &at) {
+        return sweep->onto_foot(at);
       };
     }
 

@@ -27,7 +27,9 @@ namespace Voussoir
         , water_end(water_end)
         , vertex_number(section.vertices.size() * (n_layers + 1), none)
         , cell_number(section.quads.size() * n_layers, none)
-      {}
+      {
+        mesh.chart.surfaces.resize(2);
+      }
 
       CoarseMesh
       run()
@@ -299,9 +301,10 @@ namespace Voussoir
         name_faces("canyon", rock, dam_end, n_layers);
         name_faces("canyon downstream", rock, 0, dam_begin);
         name_faces("canyon upstream", rock, dam_end, n_layers);
+        auto &walls_of_canyon = mesh.chart.surfaces[0].faces;
         for (const Side &side : {dam, rock})
           for_each_face(side, 0, n_layers, [&](const CoarseMesh::Face &face) {
-            mesh.chart.curved_faces.push_back(face);
+            walls_of_canyon.push_back(face);
           });
       }
 

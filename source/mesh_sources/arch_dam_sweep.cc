@@ -66,6 +66,7 @@ namespace Voussoir
                            cell_size,
                            rock.growth,
                            rock.largest_cell))
+    , ledges(section.ledges)
     , vertices(section.vertices)
   {
     for (const auto &vertex : vertices)
@@ -79,7 +80,7 @@ namespace Voussoir
 
     first_in_dam = points.size() - 1;
     n_layers     = 2 * first_in_dam + n_thickness;
-    if (section.ledges[0].dips() || section.ledges[1].dips())
+    if (ledges[0].dips() || ledges[1].dips())
       lay_ledges(section, relative_step * cell_size);
   }
 
@@ -169,8 +170,8 @@ namespace Voussoir
   {
     std::array<unsigned int, 2> begin{{first_in_dam, first_in_dam}};
     for (const unsigned int bank : {0, 1})
-      if (section.ledges[bank].dips())
-        begin[bank] -= layers_along(section.ledges[bank].length);
+      if (ledges[bank].dips())
+        begin[bank] -= layers_along(ledges[bank].length);
     const unsigned int middle = first_in_dam + n_thickness / 2,
                        end    = first_in_dam + n_thickness;
     first_moved               = std::min(begin[0], begin[1]);
@@ -186,10 +187,10 @@ namespace Voussoir
             LedgeLines next = lines;
             double     way  = 0.;
             for (const unsigned int bank : {0, 1})
-              if (section.ledges[bank].dips() && layer >= begin[bank])
+              if (ledges[bank].dips() && layer >= begin[bank])
                 {
                   next[bank] =
-                    ledge_line(section.ledges[bank], layer, lines[bank].foot);
+                    ledge_line(ledges[bank], layer, lines[bank].foot);
                   way =
                     std::max(way, std::abs(next[bank].foot - lines[bank].foot));
                 }
@@ -206,21 +207,49 @@ namespace Voussoir
   }
 
 
+  const ArchDamCrossSection::Ledge &
+  ArchDamSweep::ledge_at(const double s) const
+  {
+    return ledges[s < 0. ? 0 : 1];
+  }
+
+
+  double
+  ArchDamSweep::level(const ArchDamCrossSection::Ledge &ledge,
+                      const double                      layer,
+                      const double                      s) const
+  {
+    return ledge.level(point(sections.line(s, 0.), layer));
+  }
+
+
+  Point<3>
+  ArchDamSweep::onto_ledge(const Point<3> &at) const
+  {
+    return {at[0], at[1], level(ledge_at(at[0]), at[1], at[0])};
+  }
+
+
+  Point<3>
+  ArchDamSweep::onto_foot(const Point<3> &at) const
+  {
+    const double s = ledge_line(ledge_at(at[0]), at[1], at[0]).foot;
+    return {s, at[1], sections.contour(s)};
+  }
+
+
   // The foot is where the contour meets the plane: Newton's method from a place
   // nearby.
   ArchDamCrossSection::LedgeLine
   ArchDamSweep::ledge_line(const ArchDamCrossSection::Ledge &ledge,
-                           const unsigned int                layer,
+                           const double                      layer,
                            const double                      near) const
   {
     constexpr double probe = 0.1, accuracy = 1e-8, largest_step = 10.; // [m]
     constexpr double least_slope = 0.1;
 
-    const auto level = [this, &ledge, layer](const double s) {
-      return ledge.level(point(sections.line(s, 0.), layer));
-    };
     const auto above = [&](const double s) {
-      return sections.contour(s) - level(s);
+      return sections.contour(s) - level(ledge, layer, s);
     };
     double       foot = near;
     const double side = near < 0. ? -1. : 1.;
@@ -232,7 +261,9 @@ namespace Voussoir
         if (slope * side < least_slope)
           break;
         if (std::abs(height) < accuracy)
-          return {foot, level};
+          return {foot, [this, &ledge, layer](const double s) {
+                    return level(ledge, layer, s);
+                  }};
         foot -= std::clamp(height / slope, -largest_step, largest_step);
       }
     throw UserError(

@@ -173,7 +173,8 @@ namespace Voussoir
       },
       [&](const unsigned int begin, const unsigned int end) {
         update_motion(state, base, begin, end);
-      });
+      },
+      &time_of_cells);
     if (!is_reproducible) // the next line of the energy balance ends the run
       state.velocity = std::numeric_limits<double>::quiet_NaN();
 
@@ -189,6 +190,13 @@ namespace Voussoir
       load->end_step(state);
     if (equation.crack_tips != nullptr)
       equation.crack_tips->update(state.step, state.material_memory);
+  }
+
+
+  double
+  CentralDifference::seconds_of_cells() const
+  {
+    return time_of_cells;
   }
 
 

@@ -13,7 +13,9 @@ namespace Voussoir
   {
     /**
      * The dam of CylinderDam in coarse cells that are refined: where the new
-     * nodes lie.
+     * nodes lie. With a wedge in the left bank also those on its base plane,
+     * which by the wedge's entries passes through a point of the bank on the
+     * dam's middle surface; joints beside a wedge have other places.
      */
     class CurvedRefinement : public Check
     {
@@ -24,6 +26,9 @@ namespace Voussoir
         prm.add_parameter("Tolerance",
                           tolerance,
                           "Tolerance of the dam's volume.");
+        prm.add_parameter("Elevation", elevation, "Of a wedge [m].");
+        prm.add_parameter("Dip", dip, "Of its base plane [degrees].");
+        prm.add_parameter("Dip direction", direction, "[degrees]");
       }
 
       void
@@ -36,7 +41,8 @@ namespace Voussoir
         const Grid &grid       = simulation->model.grid;
 
         find_hanging(grid);
-        double of_faces = 0., of_joints = 0., of_canyon = 0., of_crest = 0.;
+        double of_faces = 0., of_joints = 0., of_canyon = 0., of_crest = 0.,
+               of_base = 0.;
         for_each_node(grid, "downstream face", [&](const Point<3> &x) {
           keep_largest(of_faces, std::abs(radius(x) - 115.));
         });
@@ -61,15 +67,25 @@ namespace Voussoir
         for_each_node(grid, "crest", [&](const Point<3> &x) {
           keep_largest(of_crest, std::abs(x[2] - 100.));
         });
+        const bool has_wedge = elevation > 0.;
+        if (has_wedge)
+          for_each_node(grid, "left wedge base", [&](const Point<3> &x) {
+            keep_largest(of_base, std::abs(base_plane() * (x - foot())));
+          });
         const auto largest = [&](const double value) {
           return Utilities::MPI::max(value, communicator);
         };
         verdicts.below("nodes from the dam's faces [m]",
                        largest(of_faces),
                        1e-9);
-        verdicts.below("from the planes of its joints [m]",
-                       largest(of_joints),
-                       1e-9);
+        if (has_wedge)
+          verdicts.below("from the base plane of its wedge [m]",
+                         largest(of_base),
+                         1e-6);
+        else
+          verdicts.below("from the planes of its joints [m]",
+                         largest(of_joints),
+                         1e-9);
         verdicts.below("from its crest [m]", largest(of_crest), 1e-9);
         // the elevation is found to 1e-9 of the dam's height
         verdicts.below("from the canyon [m]", largest(of_canyon), 1e-6);
@@ -94,6 +110,29 @@ namespace Voussoir
       angle(const Point<3> &x)
       {
         return std::atan2(x[0], x[1] - CylinderDam::centre);
+      }
+
+
+      /** Normal of the base plane. */
+      Tensor<1, 3>
+      base_plane() const
+      {
+        const double radians = numbers::PI / 180.;
+        return Tensor<1, 3>(
+          {-std::sin(dip * radians) * std::cos(direction * radians),
+           -std::sin(dip * radians) * std::sin(direction * radians),
+           std::cos(dip * radians)});
+      }
+
+
+      /** Where the base plane meets the bank on the middle surface. */
+      Point<3>
+      foot() const
+      {
+        const double x = 20. + 60. * elevation / 100.;
+        return Point<3>(x,
+                        CylinderDam::centre + std::sqrt(120. * 120. - x * x),
+                        elevation);
       }
 
 
@@ -155,6 +194,7 @@ namespace Voussoir
       }
 
       double                 tolerance = 0., of_hanging = 0.;
+      double                 elevation = 0., dip = 0., direction = 0.;
       std::set<unsigned int> hanging;
     };
 

@@ -38,6 +38,16 @@ namespace Voussoir
         verdicts.is_true("modes and a load: steps", pushed["steps"] > 0);
         verdicts.is_true("modes and a load: no warning",
                          pushed["warnings"].empty());
+
+        const char *balance = "time of cells, largest over mean of the ranks";
+        const bool  is_shared =
+          Utilities::MPI::n_mpi_processes(communicator) > 1;
+        verdicts.is_true(
+          "time of cells: compared where there are several ranks",
+          pushed.contains(balance) == is_shared);
+        if (is_shared)
+          verdicts.is_true("time of cells: from the mean to less than twice it",
+                           pushed[balance] >= 1. && pushed[balance] < 2.);
       }
 
     private:

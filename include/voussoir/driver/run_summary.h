@@ -69,10 +69,11 @@ namespace Voussoir
   /** Results of the time steps. */
   struct MarchSummary
   {
-    unsigned long long                n_steps;
-    double                            end_time, loop_time; // [s]
-    double                            throughput;          // [MDOF-steps/s]
-    std::optional<double>             contact_share;       // of the loop
+    unsigned long long    n_steps;
+    double                end_time, loop_time; // [s]
+    double                throughput;          // [MDOF-steps/s]
+    std::optional<double> contact_share;       // of the loop
+    std::optional<double> balance; // time of cells, largest over mean of ranks
     std::optional<TargetSpectrum>     target_spectrum;
     std::map<std::string, FitSummary> fits; // by component
     nlohmann::json                    static_state, modes;

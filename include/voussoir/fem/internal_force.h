@@ -65,6 +65,8 @@ namespace Voussoir
      * orders the exchange accordingly).
      * @p before may still change the vectors of the input.
      *
+     * @param seconds if not null, the time that this rank takes for its cells
+     *   is added, without the exchange with others
      * @return whether sums are exact and so reproducible: false if the strain
      * of a cell of this rank exceeds the bounds
      */
@@ -73,7 +75,8 @@ namespace Voussoir
           const SweepInput &input,
           MaterialMemory   &memory,
           const RangeWork  &before,
-          const RangeWork  &after) const;
+          const RangeWork  &after,
+          double           *seconds = nullptr) const;
 
     /** force = K (x + s w) with the elastic moduli. */
     void

@@ -9,12 +9,15 @@
 
 namespace Voussoir
 {
-  /** Manifold of the faces on a curved surface of a chart. */
-  constexpr dealii::types::manifold_id curved_surface = 1;
-
+  /** Attaches manifolds for the curved surfaces of a chart. */
   void
-  attach_curved_surface(const CoarseMesh::Chart  &chart,
-                        dealii::Triangulation<3> &triangulation);
+  attach_surfaces(const CoarseMesh::Chart  &chart,
+                  dealii::Triangulation<3> &triangulation);
+
+  /** Marks the faces and edges of a coarse triangulation that lie on them. */
+  void
+  mark_surfaces(const CoarseMesh::Chart  &chart,
+                dealii::Triangulation<3> &triangulation);
 
   /** Places in space of a triangulation's vertices, by their index. */
   std::vector<dealii::Point<3>>

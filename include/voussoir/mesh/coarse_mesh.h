@@ -48,12 +48,20 @@ namespace Voussoir
       /** Maps such coordinates to space [m]. */
       std::function<Points(const Points &)> positions;
 
-      /** Faces, from all their sides, on a surface that is curved in these
-       *  coordinates. */
-      std::vector<Face> curved_faces;
+      /** Moves the coordinates of a new vertex. */
+      using Move = std::function<dealii::Point<3>(const dealii::Point<3> &)>;
 
-      /** Moves the coordinates of a new vertex of such a face onto it. */
-      std::function<dealii::Point<3>(const dealii::Point<3> &)> onto_surface;
+      /** A surface that is curved in these coordinates. */
+      struct Surface
+      {
+        std::vector<Face> faces; // from all their sides
+        Move              onto;
+      };
+
+      std::vector<Surface> surfaces;
+
+      /** Onto the edge where two of the surfaces meet. */
+      Move onto_edge;
     };
 
     std::vector<dealii::Point<3>> vertices;

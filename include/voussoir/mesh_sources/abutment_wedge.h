@@ -83,7 +83,8 @@ namespace Voussoir
     /**
      * Adds the cell set "left wedge" or "right wedge", face sets of that name
      * with " base", " lateral plane" and " rear plane", all named from the
-     * wedge, and the faces of the cut to "ground".
+     * wedge, and the faces of the cut to "ground"; the base also to the second
+     * surface of the chart.
      *
      * @param cell_number of each quadrilateral and layer, the layers of one
      *   quadrilateral together; invalid_unsigned_int for none

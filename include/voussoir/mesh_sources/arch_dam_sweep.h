@@ -40,6 +40,14 @@ namespace Voussoir
     std::vector<dealii::Point<3>>
     positions(const std::vector<dealii::Point<3>> &coordinates) const;
 
+    /** Moves s, layer, z up or down onto the ledge of that bank. */
+    dealii::Point<3>
+    onto_ledge(const dealii::Point<3> &at) const;
+
+    /** Moves s, layer, z to the foot of the ledge of that bank. */
+    dealii::Point<3>
+    onto_foot(const dealii::Point<3> &at) const;
+
     /** Number of layers beside the dam whose length is nearest to this one [m].
      */
     unsigned int
@@ -74,9 +82,18 @@ namespace Voussoir
     void
     lay_ledges(const ArchDamCrossSection &section, const double step);
 
+    const ArchDamCrossSection::Ledge &
+    ledge_at(const double s) const;
+
+    /** Elevation of the plane of a ledge in the rock. */
+    double
+    level(const ArchDamCrossSection::Ledge &ledge,
+          const double                      layer,
+          const double                      s) const;
+
     ArchDamCrossSection::LedgeLine
     ledge_line(const ArchDamCrossSection::Ledge &ledge,
-               const unsigned int                layer,
+               const double                      layer,
                const double                      near) const;
 
     /** Offset, after a length, of a line that leaves the dam at an angle. */
@@ -91,6 +108,8 @@ namespace Voussoir
     std::vector<double>    points; // beside the dam, up to 1
 
     const dealii::QGauss<1> quadrature{8}; // over the turn
+
+    const std::array<ArchDamCrossSection::Ledge, 2> ledges;
 
     Vertices vertices; // at the middle of the dam
 

@@ -58,6 +58,10 @@ namespace Voussoir
     dealii::Tensor<1, 3>
     support_force(const State &state, const unsigned int node) const;
 
+    /** Time that this rank took for its cells, so far [s]. */
+    double
+    seconds_of_cells() const;
+
     const double time_step; // [s]
 
   private:
@@ -114,6 +118,8 @@ namespace Voussoir
     Vector      force;     // f(u_n) - F_0
     Vector      effective; // u + beta v and, if factors are uniform, the memory
     Vector      memory;    // of damping, where factors differ
+
+    double time_of_cells = 0.; // [s]
   };
 } // namespace Voussoir
 

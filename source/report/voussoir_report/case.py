@@ -350,6 +350,8 @@ def statistics_section(runs):
         ("static state [s]", of_summary("static state/seconds")),
         ("time loop [s]", of_summary("loop time [s]")),
         ("share of contact [%]", of_summary("contact share of the loop", 100.)),
+        ("time of the cells, largest over mean of the ranks",
+         of_summary("time of cells, largest over mean of the ranks")),
         ("speed [million unknowns · steps / s]", of_summary("MDOF-steps/s")),
         ("memory of the largest rank [MB]", of_summary("peak memory of a rank [MB]")),
     ])

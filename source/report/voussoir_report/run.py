@@ -15,7 +15,8 @@ SUMMARY = Group(
     {"version": TEXT, "warnings": [TEXT], "files not written": Group(), "end time [s]": NUMBER,
      **dict.fromkeys(("cells", "unknowns", "degree", "time step [s]", "largest stable step [s]", "steps",
                       "ranks", "SIMD bits", "loop time [s]", "contact share of the loop",
-                      "MDOF-steps/s", "peak memory of a rank [MB]"), NUMBER),
+                      "time of cells, largest over mean of the ranks", "MDOF-steps/s",
+                      "peak memory of a rank [MB]"), NUMBER),
      "static state": Group(optional={"seconds": NUMBER, "stages": [Group(
          optional={"sum of loads so far [N]": [NUMBER], "sum of reactions [N]": [NUMBER],
                    "largest displacement [m]": NUMBER, "names": [TEXT]})]}),

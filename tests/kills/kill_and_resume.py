@@ -27,6 +27,7 @@ VOLATILE = [re.compile(rb"<!--.*?-->", re.S), re.compile(rb"Date and time[^\n]*"
 NOT_COMPARED = {"log.txt"}
 # of summary.json: durations, memory
 VOLATILE_NUMBERS = {"seconds", "loop time [s]", "MDOF-steps/s", "contact share of the loop",
+                    "time of cells, largest over mean of the ranks",
                     "peak memory of a rank [MB]"}
 STOPPED = 75
 

@@ -33,6 +33,7 @@ namespace Voussoir
     void
     reinit(const Values &corners);
 
+    /** Evaluates the gradients of these values. */
     void
     evaluate_gradients(const Number *values);
 

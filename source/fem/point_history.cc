@@ -72,15 +72,6 @@ namespace Voussoir
   }
 
 
-  double
-  PointHistory::band(const Place &place, const unsigned int q) const
-  {
-    return is_active(place.batch, q) ?
-             active_point(place.batch, q).band[place.lane] :
-             0.;
-  }
-
-
   namespace
   {
     SymmetricTensor<2, 3>

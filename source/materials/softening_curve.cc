@@ -153,13 +153,28 @@ namespace Voussoir
   }
 
 
+  SofteningCurve::Point
+  SofteningCurve::OfBand::at_node(const unsigned int node,
+                                  const double       strain) const
+  {
+    return elastic(factor * curve.nodes[node].stress, strain);
+  }
+
+
   unsigned int
   SofteningCurve::OfBand::piece_at(const double at_strain) const
   {
-    unsigned int node = 0;
-    while (node < curve.nodes.size() && at_strain >= strain(node))
-      ++node;
-    return node;
+    // the strain grows along the curve
+    unsigned int below = 0, above = curve.nodes.size();
+    while (below < above)
+      {
+        const unsigned int middle = (below + above) / 2;
+        if (at_strain >= strain(middle))
+          below = middle + 1;
+        else
+          above = middle;
+      }
+    return below;
   }
 
 
@@ -212,7 +227,9 @@ namespace Voussoir
           is_followed_exactly && (is_last || end >= memory.largest);
         if (arrives)
           end = memory.largest;
-        const Point  far     = curve.on_piece(node, end);
+        // the piece ends in its node, whose strain is known
+        const Point  far     = arrives || is_last ? curve.on_piece(node, end) :
+                                                    curve.at_node(node, end);
         const double ds      = far.stress - now.stress,
                      de      = far.elastic - now.elastic,
                      dp      = far.irreversible - now.irreversible,

@@ -268,22 +268,27 @@ namespace Voussoir
       }
 
       static double
-      norm(const double *x)
+      square(const double *x)
       {
-        return std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+        return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
       }
 
       void
       evaluate_motion(const State &state)
       {
+        // no roots for nodes below their largest motion, as most are
         for (unsigned int i = 0; i < largest.locally_owned_size(); i += 3)
           {
-            const double displacement = norm(state.displacement.begin() + i);
             double      *m            = largest.begin() + i;
-            if (displacement > m[0])
-              accelerations.begin()[i + 1] = state.time;
-            m[0] = std::max(m[0], displacement);
-            m[1] = std::max(m[1], norm(state.velocity.begin() + i));
+            const double displacement = square(state.displacement.begin() + i),
+                         velocity     = square(state.velocity.begin() + i);
+            if (displacement > m[0] * m[0] && std::sqrt(displacement) > m[0])
+              {
+                m[0]                         = std::sqrt(displacement);
+                accelerations.begin()[i + 1] = state.time;
+              }
+            if (velocity > m[1] * m[1])
+              m[1] = std::sqrt(velocity);
           }
       }
 
@@ -298,7 +303,7 @@ namespace Voussoir
               const double change[3]{v[0] - before[0],
                                      v[1] - before[1],
                                      v[2] - before[2]};
-              return norm(change) / time;
+              return std::sqrt(square(change)) / time;
             };
             const double acceleration = mean(last_sample.begin() + i, sampled);
             double *m = largest.begin() + i, *a = accelerations.begin() + i;

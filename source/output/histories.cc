@@ -3,6 +3,8 @@
 #include <voussoir/output/point_recorder.h>
 #include <voussoir/output/table_observer.h>
 
+#include <bitset>
+
 namespace Voussoir
 {
   using namespace dealii;
@@ -96,6 +98,11 @@ namespace Voussoir
         filtered_at =
           filter_frequency > 0. ? filter_frequency : run().carried_frequency;
         recorder.prepare(run(), 0., 0.443 / filtered_at);
+        const auto list = split_list(quantities);
+        for (unsigned int k = 0; k < n_point_quantities; ++k)
+          wanted[k] =
+            std::find(list.begin(), list.end(), all_quantities[k].name) !=
+            list.end();
         keep("largest",
              largest,
              std::vector<std::array<double, n_point_quantities>>(
@@ -118,7 +125,7 @@ namespace Voussoir
         for (unsigned int p = 0; p < recorder.points().size(); ++p)
           for (unsigned int d = 0; d < 3; ++d)
             for (unsigned int k = 0; k < n_point_quantities; ++k)
-              if (wanted(k))
+              if (wanted[k])
                 columns.push_back(
                   recorder.points()[p].name + ' ' + all_quantities[k].name +
                   ' ' + "xyz"[d] +
@@ -146,7 +153,7 @@ namespace Voussoir
             point["largest filtered acceleration [m/s2]"] = largest[p][3];
             point["filtered at [Hz]"]                     = filtered_at;
             for (unsigned int k = n_recorded; k < n_point_quantities; ++k)
-              if (wanted(k))
+              if (wanted[k])
                 point["largest " + all_quantities[k].name + " [m]"] =
                   largest[p][k];
             if (is_relative(p))
@@ -169,14 +176,6 @@ namespace Voussoir
         return recorder.points()[recorder.reference()].name;
       }
 
-      bool
-      wanted(const unsigned int quantity) const
-      {
-        const auto list = split_list(quantities);
-        return std::find(list.begin(),
-                         list.end(),
-                         all_quantities[quantity].name) != list.end();
-      }
 
       /** Absolute. */
       Motion
@@ -220,7 +219,7 @@ namespace Voussoir
               }
             for (unsigned int d = 0; d < 3; ++d)
               for (unsigned int k = 0; k < n_point_quantities; ++k)
-                if (wanted(k))
+                if (wanted[k])
                   values.push_back(motion[k][d]);
           }
         if (has_line(line.step))
@@ -247,7 +246,8 @@ namespace Voussoir
 
       PointRecorder recorder{"Output/histories", "Relative to"};
 
-      double filtered_at = 0.; // [Hz]
+      std::bitset<n_point_quantities> wanted;           // of `quantities`
+      double                          filtered_at = 0.; // [Hz]
 
       // of each quantity and point: the displacement from which it counts [m]
       std::array<std::vector<Tensor<1, 3>>, n_point_quantities> origins;

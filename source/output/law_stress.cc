@@ -62,6 +62,23 @@ namespace Voussoir
   }
 
 
+  const ActivePoint *
+  LawStress::active_lanes() const
+  {
+    return history != nullptr && history->is_active(place.batch, q) ?
+             &history->active_point(place.batch, q) :
+             nullptr;
+  }
+
+
+  bool
+  LawStress::is_lane_beside(const LawStress &other) const
+  {
+    return history == other.history && place.batch == other.place.batch &&
+           q == other.q;
+  }
+
+
   double
   LawStress::widest_band() const
   {
@@ -122,11 +139,14 @@ namespace Voussoir
       std::none_of(laws.begin(), laws.end(), [](const auto &one) {
         return one.has_value();
       });
-    common      = law.law().isotropic() && (is_first || common == &law.law()) ?
-                    &law.law() :
-                    nullptr;
-    laws[lane]  = law;
-    bands[lane] = law.widest_band();
+    common = law.law().isotropic() && (is_first || common == &law.law()) ?
+               &law.law() :
+               nullptr;
+    for (const auto &other : laws)
+      are_in_one_batch =
+        are_in_one_batch && (!other || law.is_lane_beside(*other));
+    laws[lane]           = law;
+    bands[lane]          = law.widest_band();
     lame_lambda[lane]    = elastic.lame_lambda();
     shear_modulus[lane]  = elastic.shear_modulus();
     stress_factor[lane]  = law.stress_factor();
@@ -168,19 +188,49 @@ namespace Voussoir
             set_lane(result, lane, (*laws[lane])(lane_of(of_law, lane)));
         return result;
       }
-    const Lanes                   ratio = common->yield_ratio(result, bands);
-    const SymmetricTensor3<Lanes> beyond =
-      any_above(ratio, 1.) ? common->stress_of_elastic_points(of_law, bands) :
-                             result;
-    for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
-      if (laws[lane])
-        {
-          if (laws[lane]->is_active())
+    Lanes ratio = common->yield_ratio(result, bands);
+    if (are_in_one_batch)
+      take_active_lanes(ratio, result);
+    else
+      for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+        if (laws[lane] && laws[lane]->is_active())
+          {
             set_lane(result, lane, (*laws[lane])(lane_of(of_law, lane)));
-          else if (ratio[lane] > 1.)
+            ratio[lane] = 0.;
+          }
+    if (any_above(ratio, 1.))
+      {
+        const SymmetricTensor3<Lanes> beyond =
+          common->stress_of_elastic_points(of_law, bands);
+        for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+          if (laws[lane] && ratio[lane] > 1.)
             set_lane(result, lane, lane_of(beyond, lane));
-        }
+      }
     return result;
+  }
+
+
+  void
+  LawStressLanes::take_active_lanes(Lanes                   &ratio,
+                                    SymmetricTensor3<Lanes> &stress) const
+  {
+    const auto         law   = std::find_if(laws.begin(),
+                                  laws.end(),
+                                  [](const auto &one) { return one; });
+    const ActivePoint *point = (*law)->active_lanes();
+    if (point == nullptr)
+      return;
+    const auto where_elastic = [&](const Lanes &elastic, const Lanes &active) {
+      return compare_and_apply_mask<SIMDComparison::equal>(point->band,
+                                                           Lanes(0.),
+                                                           elastic,
+                                                           active);
+    };
+    const SymmetricTensor3<Lanes> of_point = point->total_stress();
+    for (unsigned int c = 0; c < 6; ++c)
+      stress.access_raw_entry(c) =
+        where_elastic(stress.access_raw_entry(c), of_point.access_raw_entry(c));
+    ratio = where_elastic(ratio, 0.);
   }
 
 

@@ -19,41 +19,6 @@ namespace Voussoir
     }
 
 
-    /**
-     * Opening of the crack of an active point at its last step [m]: the band
-     * times the largest principal value of e_in = e - C^-1 : sigma or the
-     * strain across the crack, n . e . n, if that is less; at most the largest
-     * opening so far, an internal variable. Where that strain is compressive
-     * the crack is closed, even if shear along an inclined strut gives an
-     * opening; the expansion of crushed concrete is no crack.
-     */
-    double
-    opening_of(const Material            &material,
-               const PointHistory        &history,
-               const PointHistory::Place &place,
-               const unsigned int         q,
-               const double               largest)
-    {
-      const ActivePoint &point = history.active_point(place.batch, q);
-      const Lanes across   = point.normal * (point.law_strain * point.normal),
-                  traction = point.normal * (point.stress * point.normal);
-      const ElasticConstants elastic       = material.elastic_constants();
-      const double           strain_across = across[place.lane];
-      if (!(strain_across > 0.) ||
-          traction[place.lane] < -1e-6 * elastic.young_modulus * strain_across)
-        return 0.;
-      const auto strain = history.inelastic_strain(place,
-                                                   q,
-                                                   elastic.young_modulus,
-                                                   elastic.poisson_ratio);
-      return std::max(0.,
-                      std::min(largest,
-                               history.band(place, q) *
-                                 std::min(strain_across,
-                                          eigenvalues(strain)[0])));
-    }
-
-
     /** The names of the outputs of a material, and of results computed from its
      *  internal variables. */
     std::vector<std::string>
@@ -99,16 +64,45 @@ namespace Voussoir
               {
                 values = material.outputs(history.read(place, q).data(), band);
                 if (cracks)
-                  values.push_back(1e3 * opening_of(material,
-                                                    history,
-                                                    place,
-                                                    q,
-                                                    1e-3 * values[largest]));
+                  values.push_back(
+                    1e3 *
+                    CrackOpening(material, history, place, q, largest).now());
               }
             visit(cell, band, band > 0. ? values : nothing);
           }
     }
   } // namespace
+
+
+  double
+  CrackOpening::now() const
+  {
+    const ActivePoint &point = history.active_point(place.batch, q);
+    const Lanes across       = point.normal * (point.law_strain * point.normal),
+                traction     = point.normal * (point.stress * point.normal);
+    const ElasticConstants elastic       = material.elastic_constants();
+    const double           strain_across = across[place.lane];
+    if (!(strain_across > 0.) ||
+        traction[place.lane] < -1e-6 * elastic.young_modulus * strain_across)
+      return 0.;
+    const auto strain = history.inelastic_strain(place,
+                                                 q,
+                                                 elastic.young_modulus,
+                                                 elastic.poisson_ratio);
+    return std::max(0.,
+                    std::min(largest(),
+                             history.band(place, q) *
+                               std::min(strain_across,
+                                        eigenvalues(strain)[0])));
+  }
+
+
+  double
+  CrackOpening::largest() const
+  {
+    return 1e-3 * material.outputs(history.read(place, q).data(),
+                                   history.band(place, q))[number];
+  }
 
 
   bool
@@ -177,14 +171,7 @@ namespace Voussoir
         if (&material != known)
           number = output_number(material, OutputName::largest_opening);
         known = &material;
-        const double largest =
-          1e-3 * material.outputs(history.read(place, q).data(), band)[number];
-        visit(cell,
-              q,
-              band,
-              {largest > 0. ? opening_of(material, history, place, q, largest) :
-                              0.,
-               largest});
+        visit(cell, q, band, {material, history, place, q, number});
       });
   }
 
@@ -229,7 +216,7 @@ namespace Voussoir
           const unsigned int,
           const double        band,
           const CrackOpening &opening) {
-        const double wide = ever ? opening.largest : opening.now;
+        const double wide = ever ? opening.largest() : opening.now();
         if (wide > widest[0] * band)
           {
             const Point<3> where = cell->center();

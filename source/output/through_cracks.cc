@@ -93,7 +93,7 @@ namespace Voussoir
         if (!is_due(state.step))
           return;
         const bool      lists    = has_line(state.step);
-        const Openings  openings = find_openings();
+        const Openings  openings = find_openings(lists);
         const CrackPath now = paths->widest(openings.now, lists ? 0. : most[0]);
         compare(now, state.time);
         if (lists)
@@ -121,7 +121,7 @@ namespace Voussoir
       void
       conclude(const State &state, nlohmann::json &summary) override
       {
-        const Openings  openings = find_openings();
+        const Openings  openings = find_openings(true);
         const CrackPath now      = paths->widest(openings.now, 0.),
                         ever     = paths->widest(openings.ever, 0.);
         compare(now, state.time);
@@ -169,33 +169,42 @@ namespace Voussoir
           most = {{opening, time, where[0], where[1], where[2]}};
       }
 
-      /** Openings of the eighths; zero where no path from face to face is
-       *  possible. */
+      /** Openings of the eighths, the largest ones only if @p with_largest;
+       *  zero where no path from face to face is possible. */
       Openings
-      find_openings()
+      find_openings(const bool with_largest)
       {
         const bool can_be_through = has_active_path();
         Openings   openings{std::vector<double>(paths->n_eighths()),
                           std::vector<double>(paths->n_eighths())};
-        if (can_be_through)
-          for_each_crack(run(),
-                         [&](const Discretization::Cell &cell,
-                             const unsigned int          q,
-                             const double,
-                             const CrackOpening &opening) {
-                           const unsigned int first =
-                             8 * paths->number_of(cell);
-                           const auto &share = shares_of(cell)[q];
-                           for (unsigned int corner = 0; corner < 8; ++corner)
-                             {
-                               const double factor = 1e3 * share[corner];
-                               openings.now[first + corner] +=
-                                 factor * opening.now;
-                               openings.ever[first + corner] +=
-                                 factor * opening.largest;
-                             }
-                         });
+        if (!can_be_through)
+          return openings;
+        for_each_crack(run(),
+                       [&](const Discretization::Cell &cell,
+                           const unsigned int          q,
+                           const double,
+                           const CrackOpening &opening) {
+                         const double now = opening.now();
+                         if (now > 0.)
+                           add(openings.now, cell, q, now);
+                         if (with_largest)
+                           add(openings.ever, cell, q, opening.largest());
+                       });
         return openings;
+      }
+
+      /** Adds the opening [m] of a point to the means of the eighths of its
+       *  cell. */
+      void
+      add(std::vector<double>        &eighths,
+          const Discretization::Cell &cell,
+          const unsigned int          q,
+          const double                opening)
+      {
+        const unsigned int first = 8 * paths->number_of(cell);
+        const auto        &share = shares_of(cell)[q];
+        for (unsigned int corner = 0; corner < 8; ++corner)
+          eighths[first + corner] += 1e3 * share[corner] * opening;
       }
 
       /** Whether points that have left the elastic range lead from face to

@@ -239,7 +239,12 @@ namespace Voussoir
     /** Width of the crack band of one point of one cell [m]; zero if it is
      *  elastic. */
     double
-    band(const Place &place, const unsigned int q) const;
+    band(const Place &place, const unsigned int q) const
+    {
+      return is_active(place.batch, q) ?
+               active_point(place.batch, q).band[place.lane] :
+               0.;
+    }
 
     /** Total stress of one point of one cell at its last step [Pa], if it has
      *  left the elastic range. */

@@ -241,6 +241,10 @@ namespace Voussoir
       Point
       on_piece(const unsigned int node, const double strain) const;
 
+      /** The point of a node at its own strain. */
+      Point
+      at_node(const unsigned int node, const double strain) const;
+
       Point
       elastic(const double stress, const double strain) const;
     };

@@ -50,6 +50,15 @@ namespace Voussoir
     bool
     is_active() const;
 
+    /** Lanes of the nearest integration point, if it has left the elastic range
+     *  in any of them; else null. */
+    const ActivePoint *
+    active_lanes() const;
+
+    /** Whether the nearest integration points of both are lanes of one. */
+    bool
+    is_lane_beside(const LawStress &other) const;
+
     /** Width of the widest crack band of the cell [m]; 0 for an elastic law. */
     double
     widest_band() const;
@@ -88,6 +97,12 @@ namespace Voussoir
     damping_factors() const;
 
   private:
+    /** Takes the stress at integration points that have left the elastic range,
+     *  if all nearest ones are in one batch of cells, and sets their ratio to
+     *  zero. */
+    void
+    take_active_lanes(Lanes &ratio, SymmetricTensor3<Lanes> &stress) const;
+
     std::array<std::optional<LawStress>, Lanes::size()> laws;
 
     // of the laws where they are isotropic and elastic [Pa]
@@ -104,6 +119,10 @@ namespace Voussoir
     // the width of the widest band of each lane [m]
     const Material *common = nullptr;
     Lanes           bands  = 1.;
+
+    // whether the nearest integration points of all lanes have one number in
+    // one batch of cells
+    bool are_in_one_batch = true;
   };
 } // namespace Voussoir
 

@@ -19,11 +19,43 @@ namespace Voussoir
   bool
   reports_cracks(const Material &material);
 
-  /** Opening of the crack of an integration point [m]. */
-  struct CrackOpening
+  /** Opening of the crack of an integration point that has left the elastic
+   *  range, evaluated when it is asked for. */
+  class CrackOpening
   {
-    double now     = 0.; // band width times the inelastic strain across it
-    double largest = 0.; // so far, an internal variable of the law
+  public:
+    /** @param number of the largest opening among the outputs of the material
+     */
+    CrackOpening(const Material            &material,
+                 const PointHistory        &history,
+                 const PointHistory::Place &place,
+                 const unsigned int         q,
+                 const std::size_t          number)
+      : material(material)
+      , history(history)
+      , place(place)
+      , q(q)
+      , number(number)
+    {}
+
+    /** At the last step [m]: the band times the largest principal value of e_in
+     *  = e - C^-1 : sigma or the strain across the crack, n . e . n, if that is
+     *  less; at most the largest opening so far. Where that strain is
+     *  compressive the crack is closed, even if shear along an inclined strut
+     *  gives an opening; the expansion of crushed concrete is no crack. */
+    double
+    now() const;
+
+    /** So far, an internal variable of the law [m]. */
+    double
+    largest() const;
+
+  private:
+    const Material            &material;
+    const PointHistory        &history;
+    const PointHistory::Place &place;
+    unsigned int               q;
+    std::size_t                number;
   };
 
   /** Visits the points of this rank's cells that have left the elastic range,

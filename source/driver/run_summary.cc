@@ -501,7 +501,8 @@ namespace Voussoir
     for (const auto &[name, material] : summary.march->materials.items())
       if (const char *cells = "cells at tips of cracks";
           material.contains(cells))
-        text << "Material " << name << ": " << material.at(cells).get<double>()
+        text << "Material " << name << ": "
+             << material.at(cells).get<unsigned long long>()
              << " cells at tips of cracks had a lower tensile strength\n";
     for (const auto &[name, table] : tables_of(summary))
       text << description(name, *table);

@@ -128,7 +128,7 @@ namespace Voussoir
                            const unsigned int,
                            const double,
                            const CrackOpening &crack) {
-                         keep_largest(reported, crack.now);
+                         keep_largest(reported, crack.now());
                        });
         reported = Utilities::MPI::max(
           reported, simulation.model.solid.discretization.grid.communicator());

@@ -9,6 +9,8 @@
 #include <voussoir/mesh/interfaces.h>
 #include <voussoir/mesh/reservoir_mesh.h>
 
+#include <deal.II/distributed/tria.h>
+
 #include <set>
 
 namespace Voussoir
@@ -130,6 +132,18 @@ namespace Voussoir
                         ", fewer than the " + std::to_string(n_ranks) +
                         " ranks; take fewer ranks, or smaller cells.");
       return grid;
+    }
+
+
+    std::string
+    describe_partition(const Partition partition, const Grid &grid)
+    {
+      const bool by_p4est =
+        dynamic_cast<const parallel::distributed::Triangulation<3> *>(
+          &grid.triangulation()) != nullptr;
+      return partition == Partition::p4est && !by_p4est ?
+               "along a Hilbert curve" :
+               "by " + option_name(partition);
     }
 
 
@@ -399,8 +413,8 @@ namespace Voussoir
     const MPI_Comm communicator = grid.communicator();
     log.line("Mesh: ",
              grid.describe_balance(),
-             ", partition by ",
-             option_name(parameters.grid.partition),
+             ", partition ",
+             describe_partition(parameters.grid.partition, grid),
              ", at most ",
              solid.discretization.largest_interface(),
              " ghost nodes of a rank");

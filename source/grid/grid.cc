@@ -3,6 +3,7 @@
 #include <voussoir/base/text.h>
 #include <voussoir/grid/chart_vertices.h>
 #include <voussoir/grid/coarse_faces.h>
+#include <voussoir/grid/curve_partition.h>
 #include <voussoir/grid/grid.h>
 #include <voussoir/mesh/mesh_check.h>
 
@@ -24,10 +25,50 @@ namespace Voussoir
   longest_edge(const Triangulation<3>::cell_iterator &cell)
   {
     double longest = 0.;
-    for (unsigned int line = 0; line < 12; ++line)
-      longest = std::max(longest, cell->line(line)->diameter());
+    // the vertices at the ends of an edge differ in one bit
+    for (unsigned int v = 0; v < 8; ++v)
+      for (unsigned int bit = 1; bit < 8; bit *= 2)
+        if ((v & bit) == 0)
+          longest =
+            std::max(longest, cell->vertex(v).distance(cell->vertex(v | bit)));
     return longest;
   }
+
+
+  namespace
+  {
+    // Whether cells are refined, or partitions by p4est counted.
+    bool
+    needs_p4est(const GridParameters &parameters)
+    {
+      return parameters.global_refinement > 0 ||
+             !parameters.local_refinement.empty() ||
+             parameters.nodes_per_wavelength > 0. ||
+             parameters.refine_where.wanted() ||
+             !parameters.counted_ranks.empty();
+    }
+
+
+    // Makes the own cells and those around them only, while p4est would hold
+    // the whole mesh on every rank.
+    std::unique_ptr<Grid::Triangulation>
+    unrefined(const CoarseMesh                      &coarse,
+              const std::vector<types::material_id> &tags,
+              const Grid::Materials                 &materials,
+              const MPI_Comm                         communicator)
+    {
+      std::vector<double> costs;
+      costs.reserve(coarse.cells.size());
+      for (const unsigned int material : materials.of_cell)
+        costs.push_back(materials.costs[material]);
+      auto mesh =
+        std::make_unique<parallel::fullydistributed::Triangulation<3>>(
+          communicator);
+      mesh->create_triangulation(
+        part_along_curve(coarse, tags, costs, communicator));
+      return mesh;
+    }
+  } // namespace
 
 
   Grid::Grid(const CoarseMesh     &coarse,
@@ -49,6 +90,8 @@ namespace Voussoir
     const auto tags = make_tags(coarse, materials.of_cell);
     if (parameters.partition == Partition::metis)
       create_metis(coarse, tags, parameters, materials);
+    else if (!needs_p4est(parameters))
+      mesh = unrefined(coarse, tags, materials, mpi_communicator);
     else
       create_p4est(coarse, tags, parameters, materials);
     find_faces(coarse);

@@ -46,9 +46,11 @@ namespace Voussoir
       "Partition",
       partition,
       "How the cells are distributed to the ranks; the results are the same. "
-      "With p4est every rank stores the mesh before refinement; with METIS one "
-      "rank of each machine makes the refined mesh, and sends the others their "
-      "parts, which takes less memory for a fine mesh from a file.");
+      "With p4est every rank stores the mesh before refinement; a mesh that is "
+      "not refined is distributed along a Hilbert curve instead, and a rank "
+      "stores its part only. With METIS one rank of each machine makes the "
+      "refined mesh, and sends the others their parts, which takes less memory "
+      "for a fine mesh from a file.");
     prm.add_parameter(
       "Count partitions",
       counted_ranks,

@@ -1,11 +1,10 @@
 #include <voussoir/mesh/mesh_geometry.h>
 
-#include <deal.II/base/geometry_info.h>
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/tensor.h>
 #include <deal.II/grid/grid_tools.h>
 
 #include <algorithm>
+#include <numeric>
 #include <sstream>
 #include <tuple>
 
@@ -16,11 +15,18 @@ namespace Voussoir
   std::array<unsigned int, 4>
   face_vertices(const CoarseMesh &mesh, const CoarseMesh::Face &face)
   {
+    // GeometryInfo<3>::face_to_cell_vertices, which is slow
+    constexpr std::array<std::array<unsigned int, 4>, 6> corners{
+      {{{0, 2, 4, 6}},
+       {{1, 3, 5, 7}},
+       {{0, 4, 1, 5}},
+       {{2, 6, 3, 7}},
+       {{0, 1, 2, 3}},
+       {{4, 5, 6, 7}}}};
+    const auto                 &cell = mesh.cells[face.cell];
     std::array<unsigned int, 4> vertices;
     for (unsigned int i = 0; i < 4; ++i)
-      vertices[i] =
-        mesh.cells[face.cell]
-                  [GeometryInfo<3>::face_to_cell_vertices(face.face, i)];
+      vertices[i] = cell[corners[face.face][i]];
     return vertices;
   }
 
@@ -28,20 +34,33 @@ namespace Voussoir
   std::vector<SortedFace>
   sorted_faces(const CoarseMesh &mesh)
   {
-    std::vector<SortedFace> faces;
-    faces.reserve(6 * mesh.cells.size());
-    for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
-      for (unsigned int face = 0; face < 6; ++face)
-        {
-          faces.push_back({face_vertices(mesh, {cell, face}), {cell, face}});
-          std::sort(faces.back().vertices.begin(), faces.back().vertices.end());
-        }
-    std::sort(faces.begin(),
-              faces.end(),
-              [](const SortedFace &a, const SortedFace &b) {
-                return std::tie(a.vertices, a.face.cell) <
-                       std::tie(b.vertices, b.face.cell);
-              });
+    const auto for_each_face = [&](const auto &visit) {
+      for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
+        for (unsigned int face = 0; face < 6; ++face)
+          visit(CoarseMesh::Face{cell, face},
+                face_vertices(mesh, {cell, face}));
+    };
+    // first by the lowest vertex, by counting, then the few faces of each
+    std::vector<std::size_t> end(mesh.vertices.size() + 1, 0);
+    for_each_face([&](const auto &, const auto &v) {
+      ++end[*std::min_element(v.begin(), v.end()) + 1];
+    });
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    std::vector<SortedFace> faces(6 * mesh.cells.size());
+    for_each_face([&](const auto &face, auto v) {
+      std::sort(v.begin(), v.end());
+      faces[end[v[0]]++] = {v, face};
+    });
+    auto first = faces.begin();
+    for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex)
+      {
+        const auto last = faces.begin() + end[vertex];
+        std::sort(first, last, [](const SortedFace &a, const SortedFace &b) {
+          return std::tie(a.vertices, a.face.cell) <
+                 std::tie(b.vertices, b.face.cell);
+        });
+        first = last;
+      }
     return faces;
   }
 
@@ -91,7 +110,15 @@ namespace Voussoir
   double
   face_area(const CoarseMesh &mesh, const CoarseMesh::Face &face)
   {
-    const QGauss<2> quadrature(4);
+    // of QGauss<1>(4), whose making takes longer than the sum
+    constexpr std::array<double, 4> points{{0.06943184420297371,
+                                            0.33000947820757187,
+                                            0.6699905217924281,
+                                            0.9305681557970262}},
+      weights{{0.17392742256872684,
+               0.3260725774312731,
+               0.3260725774312731,
+               0.17392742256872684}};
 
     const auto v = face_vertices(mesh, face);
     // The bilinear face is x0 + a s + b t + c s t.
@@ -100,12 +127,10 @@ namespace Voussoir
     const Tensor<1, 3> c = mesh.vertices[v[3]] - mesh.vertices[v[2]] - a;
 
     double area = 0;
-    for (unsigned int q = 0; q < quadrature.size(); ++q)
-      {
-        const Point<2> p = quadrature.point(q);
-        area += quadrature.weight(q) *
-                cross_product_3d(a + p[1] * c, b + p[0] * c).norm();
-      }
+    for (unsigned int i = 0; i < points.size(); ++i)
+      for (unsigned int j = 0; j < points.size(); ++j)
+        area += weights[i] * weights[j] *
+                cross_product_3d(a + points[i] * c, b + points[j] * c).norm();
     return area;
   }
 

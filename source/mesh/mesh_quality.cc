@@ -14,6 +14,7 @@ namespace Voussoir
   MeshQuality::take(const std::array<Point<3>, 8> &vertices)
   {
     double shortest = vertices[0].distance(vertices[1]), longest = shortest;
+    double largest_cosine = -1.;
     for (unsigned int v = 0; v < 8; ++v)
       {
         // along direction d lies the vertex that differs in bit d
@@ -32,12 +33,12 @@ namespace Voussoir
           std::min(scaled_jacobian,
                    sign * (edges[0] * cross_product_3d(edges[1], edges[2])));
         for (unsigned int d = 0; d < 3; ++d)
-          smallest_angle =
-            std::min(smallest_angle,
-                     std::acos(
-                       std::clamp(edges[d] * edges[(d + 1) % 3], -1., 1.)) *
-                       180. / numbers::PI);
+          largest_cosine =
+            std::max(largest_cosine, edges[d] * edges[(d + 1) % 3]);
       }
+    smallest_angle =
+      std::min(smallest_angle,
+               std::acos(std::min(largest_cosine, 1.)) * 180. / numbers::PI);
     aspect_ratio = std::max(aspect_ratio, longest / shortest);
   }
 

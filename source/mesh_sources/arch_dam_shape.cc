@@ -393,8 +393,14 @@ namespace Voussoir
     if (std::abs(s) <= std::abs(end))
       {
         double x = end / std::abs(end) * shape.crest_width[s < 0 ? 0 : 1];
-        for (unsigned int i = 0; i < 60 && std::abs(s) < std::abs(end); ++i)
-          x -= (shape.arc_length(x, H) - s) * std::cos(shape.angle(x, H));
+        // quadratic convergence: after such a step x is exact to round-off
+        const double small = 1e-9 * std::abs(x);
+        double       step  = std::abs(s) < std::abs(end) ? x : 0.;
+        for (unsigned int i = 0; i < 60 && std::abs(step) > small; ++i)
+          {
+            step = (shape.arc_length(x, H) - s) * std::cos(shape.angle(x, H));
+            x -= step;
+          }
         line.centre = {x, shape.centre_line(x, H)};
         line.angle  = shape.angle(x, H);
         return line;

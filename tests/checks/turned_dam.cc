@@ -1,5 +1,6 @@
 #include <voussoir/mesh_sources/generator.h>
 
+#include <deal.II/numerics/rtree.h>
 #include <deal.II/physics/transformations.h>
 
 #include "check.h"
@@ -94,6 +95,7 @@ namespace Voussoir
       {
         Vector                             pressure; // [N]
         std::vector<SymmetricTensor<2, 3>> masses;   // of each node
+        std::vector<Point<3>>              places;   // of each node
         double                             mass;     // along the river
         Tensor<1, 3>                       river;
       };
@@ -108,6 +110,7 @@ namespace Voussoir
         Water        water{model.solid.discretization.create_vector(),
                     std::vector<SymmetricTensor<2, 3>>(
                       model.solid.discretization.n_owned_nodes()),
+                    model.solid.discretization.node_positions,
                     model.added_mass.mass,
                     model.added_mass.river};
         for (const auto &load : model.loads)
@@ -125,18 +128,25 @@ namespace Voussoir
               const Tensor<2, 3> &rotation,
               Verdicts           &verdicts)
       {
-        double of_pressure = 0., pressure = 0., of_mass = 0., mass = 0.;
+        // the order of the nodes depends on their places
+        const auto tree        = pack_rtree_of_indices(turned.places);
+        double     of_pressure = 0., pressure = 0., of_mass = 0., mass = 0.,
+               of_place = 0.;
         for (unsigned int node = 0; node < along_y.masses.size(); ++node)
           {
+            const Point<3>     place(rotation * along_y.places[node]);
+            const unsigned int other =
+              *tree.qbegin(boost::geometry::index::nearest(place, 1));
+            keep_largest(of_place, place.distance(turned.places[other]));
             Tensor<1, 3> force, force_there;
             for (unsigned int d = 0; d < 3; ++d)
               {
                 force[d]       = along_y.pressure.local_element(3 * node + d);
-                force_there[d] = turned.pressure.local_element(3 * node + d);
+                force_there[d] = turned.pressure.local_element(3 * other + d);
               }
             keep_largest(of_pressure, (rotation * force - force_there).norm());
             keep_largest(pressure, force.norm());
-            const Tensor<2, 3> there(turned.masses[node]);
+            const Tensor<2, 3> there(turned.masses[other]);
             keep_largest(of_mass,
                          (rotation * Tensor<2, 3>(along_y.masses[node]) *
                             transpose(rotation) -
@@ -145,6 +155,7 @@ namespace Voussoir
             keep_largest(mass, along_y.masses[node].norm());
           }
         verdicts.is_true(name + "there is water", pressure > 0. && mass > 0.);
+        verdicts.below(name + "places of the nodes [m]", of_place, 1e-9);
         verdicts.below(name + "forces of the pressure",
                        of_pressure / pressure,
                        1e-9);

@@ -91,20 +91,24 @@ namespace Voussoir
               const std::string    &name,
               Verdicts             &verdicts)
       {
-        const auto a      = fine.at(observer).flatten(),
-                   b      = coarse.at(observer).flatten();
-        std::size_t n     = 0;
-        double      worst = 0.;
+        const auto a = fine.at(observer).flatten(),
+                   b = coarse.at(observer).flatten();
+        std::vector<std::array<double, 2>> pairs;
+        double                             scale = 0.;
         for (const auto &[path, value] : a.items())
           if (value.is_number() && (path.find("largest") != std::string::npos ||
                                     path.find("smallest") != std::string::npos))
             {
-              ++n;
-              const double x = value, y = b.at(path);
-              keep_largest(worst,
-                           std::abs(x - y) / std::max(std::abs(x), 1e-300));
+              pairs.push_back({{value, b.at(path)}});
+              keep_largest(scale, std::abs(pairs.back()[0]));
             }
-        verdicts.is_true(observer + ": there are numbers to compare", n > 0);
+        // numbers below this share of the largest are round-off of zero
+        double worst = 0.;
+        for (const auto &[x, y] : pairs)
+          keep_largest(worst,
+                       std::abs(x - y) / std::max(std::abs(x), 1e-12 * scale));
+        verdicts.is_true(observer + ": there are numbers to compare",
+                         !pairs.empty());
         verdicts.below(observer + ", " + name +
                          ": farthest from the finest lines (%)",
                        100. * worst,

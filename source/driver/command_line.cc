@@ -163,12 +163,12 @@ namespace Voussoir
       const double seconds = double(run.n_steps()) * seconds_per_step(run);
       Utilities::System::MemoryStats memory;
       Utilities::System::get_memory_stats(memory);
-      std::vector<std::string>       notes   = parameters.notes;
-      const std::vector<std::string> of_tips = simulation.model.notes_on_tips();
-      for (unsigned int m = 0; m < of_tips.size(); ++m)
-        if (!of_tips[m].empty())
+      std::vector<std::string> notes     = parameters.notes;
+      const auto               on_cracks = simulation.model.notes_on_cracks();
+      for (unsigned int m = 0; m < on_cracks.size(); ++m)
+        for (const std::string &note : on_cracks[m])
           notes.push_back("in " + parameters.materials.objects[m].first + ", " +
-                          of_tips[m]);
+                          note);
       return {simulation.model.solid.discretization.dof_handler.n_dofs(),
               run.time_step.length,
               seconds,

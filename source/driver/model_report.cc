@@ -82,12 +82,21 @@ namespace Voussoir
   } // namespace
 
 
-  std::vector<std::string>
-  Model::notes_on_tips() const
+  std::vector<std::vector<std::string>>
+  Model::notes_on_cracks() const
   {
-    const auto              &materials = solid.materials;
-    std::vector<std::string> notes(materials.size());
-    const auto               grows = [](const auto &material) {
+    const auto                           &materials = solid.materials;
+    std::vector<std::vector<std::string>> notes(materials.size());
+    for (unsigned int m = 0; m < materials.size(); ++m)
+      if (materials[m]->n_history() > 0 &&
+          materials[m]->tensile_failure().strength > 0. &&
+          solid.discretization.points(m).size() == 1)
+        notes[m].push_back(
+          "cells with one integration point keep their stiffness against "
+          "bending when they crack, so that a crack whose sides turn against "
+          "each other keeps most of its load; with \"Quadrature = one point "
+          "where elastic\" they have eight.");
+    const auto grows = [](const auto &material) {
       return material->tip_strength(1.) < 1.;
     };
     if (std::none_of(materials.begin(), materials.end(), grows))
@@ -95,7 +104,7 @@ namespace Voussoir
     const std::vector<Range> sizes = cell_sizes(grid, materials.size());
     for (unsigned int m = 0; m < materials.size(); ++m)
       if (grows(materials[m]) && sizes[m].largest > 0.)
-        notes[m] = remark_on_tips(*materials[m], sizes[m]);
+        notes[m].push_back(remark_on_tips(*materials[m], sizes[m]));
     return notes;
   }
 
@@ -103,9 +112,9 @@ namespace Voussoir
   void
   Model::report_materials(Log &log) const
   {
-    const std::vector<double> carried      = carried_frequencies(),
-                              widest       = widest_crack_bands();
-    const std::vector<std::string> of_tips = notes_on_tips();
+    const std::vector<double> carried = carried_frequencies(),
+                              widest  = widest_crack_bands();
+    const auto on_cracks              = notes_on_cracks();
     for (unsigned int m = 0; m < solid.materials.size(); ++m)
       {
         const ElasticConstants c = solid.materials[m]->elastic_constants();
@@ -121,8 +130,8 @@ namespace Voussoir
         if (const std::string remark = solid.materials[m]->remark(widest[m]);
             !remark.empty())
           log.line("  note: ", remark);
-        if (!of_tips[m].empty())
-          log.line("  note: ", of_tips[m]);
+        for (const std::string &note : on_cracks[m])
+          log.line("  note: ", note);
         if (solid.materials[m]->n_history() > 0 &&
             solid.discretization.degree > 2)
           log.line(

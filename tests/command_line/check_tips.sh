@@ -1,15 +1,27 @@
 #!/bin/bash
 # --validate notes the strength at tips of cracks: in cells of 80 m3 with
-# E Gf / ft^2 = 3 m it is 1 / sqrt(1 + 80^(1/3) / 3) = 64.1 %.
+# E Gf / ft^2 = 3 m it is 1 / sqrt(1 + 80^(1/3) / 3) = 64.1 %; and what one
+# integration point in cells does to their cracks.
 # usage: check_tips.sh VOUSSOIR CASE
 entry="Materials/concrete"
-said=$("$1" "$2" --validate --set "$entry/Class=concrete damage" "$entry/Tensile strength=2e6" \
-  "$entry/Fracture energy=400" "$entry/Crack growth=from tips" "Output/Observers=histories" 2>&1)
-code=$?
-expected="note: in concrete, at tips of cracks the tensile strength is lowered to 64.1 % in the largest cells, of 4.31 m, \
+concrete=("$entry/Class=concrete damage" "$entry/Tensile strength=2e6" "$entry/Fracture energy=400" \
+  "Output/Observers=histories")
+notes() {
+  "$voussoir" "$case" --validate --set "${concrete[@]}" "$@" 2>&1 | grep -a '^note: in'
+}
+voussoir=$1
+case=$2
+check() {
+  if [ "$2" = "$3" ]; then
+    echo "$1  ok"
+  else
+    echo "$1: expected \"$3\", but --validate says:"; echo "$2"; exit 1
+  fi
+}
+of_tips="note: in concrete, at tips of cracks the tensile strength is lowered to 64.1 % in the largest cells, of 4.31 m, \
 and to 64.1 % in the smallest, of 4.31 m; it is below half in cells larger than 9 m."
-if [ $code -eq 0 ] && [ "$(grep -a '^note: in' <<<"$said")" = "$expected" ]; then
-  echo "noted  ok"
-else
-  echo "exit code $code:"; echo "$said"; exit 1
-fi
+of_one_point="note: in concrete, cells with one integration point keep their stiffness against bending when they crack, so \
+that a crack whose sides turn against each other keeps most of its load; with \"Quadrature = one point where elastic\" they have eight."
+check "tips" "$(notes "$entry/Crack growth=from tips")" "$of_tips"
+check "one point" "$(notes "Discretization/Quadrature=one point")" "$of_one_point"
+check "one point where elastic" "$(notes "Discretization/Quadrature=one point where elastic")" ""

@@ -38,11 +38,11 @@ namespace Voussoir
     std::vector<double>
     widest_crack_bands() const;
 
-    /** Of each material, how low the strength at tips of its cracks is; empty
-     *  where cracks do not grow from tips. All ranks must call this together.
-     */
-    std::vector<std::string>
-    notes_on_tips() const;
+    /** Of each material, how low the strength at tips of its cracks is, if they
+     *  grow from tips, and what one integration point does to cracks. All ranks
+     *  must call this together. */
+    std::vector<std::vector<std::string>>
+    notes_on_cracks() const;
 
     /** Whether an earthquake enters as inertia on a rigid base. */
     bool

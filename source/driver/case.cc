@@ -278,6 +278,13 @@ namespace Voussoir
                       std::to_string(discretization.degree) +
                       " do not have; set \"Degree = 1\", or take \"Gauss\" "
                       "or \"Gauss-Lobatto\".");
+    materials.for_each([&](const std::string &place, const Material &material) {
+      if (material.cracks_along_planes() && !discretization.one_point(true))
+        throw UserError("\"Crack growth\" in section \"" + place +
+                        "\" is \"along planes\", which needs cells with one "
+                        "integration point; set \"Quadrature = one point\" in "
+                        "section \"Discretization\", or take another growth.");
+    });
     interfaces.check();
     static_state.check(loads.objects, interfaces);
     modes.check(material_names(), boundaries);

@@ -68,6 +68,9 @@ namespace Voussoir
     std::string
     remark_on_tips(const Material &material, const Range &sizes)
     {
+      // f^-2 = 1 + h / constant
+      const double of_1_m = material.tip_strength(1.),
+                   halves = 3. / (1. / (of_1_m * of_1_m) - 1.);
       std::ostringstream text;
       text << std::setprecision(3)
            << "at tips of cracks the tensile strength is lowered to "
@@ -75,8 +78,7 @@ namespace Voussoir
            << " % in the largest cells, of " << sizes.largest << " m, and to "
            << 100. * material.tip_strength(sizes.smallest)
            << " % in the smallest, of " << sizes.smallest
-           << " m; it is below half in cells larger than "
-           << 3. * material.tensile_failure().crack_length << " m.";
+           << " m; it is below half in cells larger than " << halves << " m.";
       return text.str();
     }
   } // namespace
@@ -90,12 +92,14 @@ namespace Voussoir
     for (unsigned int m = 0; m < materials.size(); ++m)
       if (materials[m]->n_history() > 0 &&
           materials[m]->tensile_failure().strength > 0. &&
-          solid.discretization.points(m).size() == 1)
+          solid.discretization.points(m).size() == 1 &&
+          !materials[m]->cracks_along_planes())
         notes[m].push_back(
           "cells with one integration point keep their stiffness against "
           "bending when they crack, so that a crack whose sides turn against "
           "each other keeps most of its load; with \"Quadrature = one point "
-          "where elastic\" they have eight.");
+          "where elastic\" they have eight, and with \"Crack growth = along "
+          "planes\", where the class has it, a crack takes this stiffness.");
     const auto grows = [](const auto &material) {
       return material->tip_strength(1.) < 1.;
     };

@@ -70,6 +70,10 @@ namespace Voussoir
     , loads(acting_loads(model))
     , crack_tips(model.solid.discretization,
                  {model.solid.materials.begin(), model.solid.materials.end()})
+    , crack_planes(model.solid.discretization,
+                   {model.solid.materials.begin(), model.solid.materials.end()},
+                   setup->internal_force,
+                   damping)
     , equation{model.solid.discretization,
                setup->internal_force,
                model.solid.mass,
@@ -81,7 +85,8 @@ namespace Voussoir
                setup->earthquake.base.moves() ? &setup->earthquake.base :
                                                 nullptr,
                time_step.closing_viscosity,
-               &crack_tips}
+               &crack_tips,
+               &crack_planes}
     , scheme(equation, time_step.leap_frog())
     , state(scheme.initial_state())
     , observed{setup->plan.observed(log),

@@ -33,7 +33,8 @@ namespace Voussoir
     , kernels(kernels)
   {
     for (const CellKernel *kernel : kernels)
-      follows_tips.push_back(kernel->tip_strength(1.) < 1.);
+      follows_tips.push_back(kernel->tip_strength(1.) < 1. &&
+                             !kernel->cracks_along_planes());
     if (!is_needed())
       return;
     is_shared.resize(discretization.grid.triangulation().n_vertices(), false);

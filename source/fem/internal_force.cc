@@ -136,7 +136,11 @@ namespace Voussoir
     std::vector<unsigned int> widths;
     for (const CellKernel *kernel : kernels)
       widths.push_back(kernel->n_history());
-    return {discretization, widths};
+    MaterialMemory memory(discretization, widths);
+    for (unsigned int m = 0; m < kernels.size(); ++m)
+      if (kernels[m]->cracks_along_planes() && discretization.has_one_point(m))
+        memory.of(m)->make_planes();
+    return memory;
   }
 
 
@@ -479,6 +483,38 @@ namespace Voussoir
   }
 
 
+  CellRange
+  InternalForce::cells_of(const unsigned int batch) const
+  {
+    const unsigned int material = discretization.material_of_batch[batch];
+    return {discretization.matrix_free,
+            batch,
+            batch + 1,
+            discretization.has_one_point(material),
+            factors[material]};
+  }
+
+
+  Lanes
+  InternalForce::stabilisation_energy(const unsigned int  batch,
+                                      const DampedMotion &motion,
+                                      const PointHistory &history) const
+  {
+    return kernels[discretization.material_of_batch[batch]]
+      ->stabilisation_energy(cells_of(batch), motion, history);
+  }
+
+
+  SymmetricTensor3<Lanes>
+  InternalForce::tensile_stress(const unsigned int  batch,
+                                const Vector       &displacement,
+                                const PointHistory *history) const
+  {
+    return kernels[discretization.material_of_batch[batch]]->tensile_stress(
+      cells_of(batch), displacement, history);
+  }
+
+
   InelasticEnergy
   InternalForce::inelastic_energy(const Vector         &displacement,
                                   const MaterialMemory &memory,
@@ -527,13 +563,7 @@ namespace Voussoir
   InternalForce::element_eigenvalues(const unsigned int          batch,
                                      const AlignedVector<Lanes> &masses) const
   {
-    const unsigned int material = discretization.material_of_batch[batch];
-    return kernels[material]->element_eigenvalues({discretization.matrix_free,
-                                                   batch,
-                                                   batch + 1,
-                                                   discretization.has_one_point(
-                                                     material),
-                                                   factors[material]},
-                                                  masses);
+    return kernels[discretization.material_of_batch[batch]]
+      ->element_eigenvalues(cells_of(batch), masses);
   }
 } // namespace Voussoir

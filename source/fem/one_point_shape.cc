@@ -103,10 +103,12 @@ namespace Voussoir
 
 
   template <typename Number>
-  void
-  OnePointShape<Number>::submit_stabilisation(const double young_modulus,
-                                              const double poisson_ratio)
+  DEAL_II_ALWAYS_INLINE inline typename OnePointShape<Number>::Fields
+  OnePointShape<Number>::stress_of(const Fields &of_strain,
+                                   const double  young_modulus,
+                                   const double  poisson_ratio) const
   {
+    Fields result;
     // squares of one unit coordinate and of two have the means 1/3 and 1/9
     const Number plate =
       young_modulus / (3. * (1. - poisson_ratio * poisson_ratio)) * volume;
@@ -115,19 +117,52 @@ namespace Voussoir
       {
         // sigma = E/(1 - nu^2) ((1 - nu) A^-1 e A^-1 + nu (A^-1 : e) A^-1)
         // with the metric A of the plane
-        const auto  &e = strain.planes[k], &a = inverse_metric[k];
+        const auto  &e = of_strain.planes[k], &a = inverse_metric[k];
         const Number m11   = a.ll * e.ll + a.lm * e.lm,
                      m12   = a.ll * e.lm + a.lm * e.mm,
                      m21   = a.lm * e.ll + a.mm * e.lm,
                      m22   = a.lm * e.lm + a.mm * e.mm;
         const Number shear = (1. - poisson_ratio) * plate,
                      trace = poisson_ratio * plate * (m11 + m22);
-        stress.planes[k]   = {shear * (m11 * a.ll + m12 * a.lm) + trace * a.ll,
+        result.planes[k]   = {shear * (m11 * a.ll + m12 * a.lm) + trace * a.ll,
                               shear * (m21 * a.lm + m22 * a.mm) + trace * a.mm,
                               shear * (m11 * a.lm + m12 * a.mm) + trace * a.lm};
-        stress.bars[k]     = bar * inverse_length_square[k] *
-                         inverse_length_square[k] * strain.bars[k];
+        result.bars[k]     = bar * inverse_length_square[k] *
+                         inverse_length_square[k] * of_strain.bars[k];
       }
+    return result;
+  }
+
+
+  template <typename Number>
+  void
+  OnePointShape<Number>::submit_stabilisation(const double young_modulus,
+                                              const double poisson_ratio)
+  {
+    stress = stress_of(strain, young_modulus, poisson_ratio);
+  }
+
+
+  template <typename Number>
+  typename OnePointShape<Number>::Fields
+  OnePointShape<Number>::stabilising_stress(const Fields &of_strain,
+                                            const double  young_modulus,
+                                            const double  poisson_ratio) const
+  {
+    return stress_of(of_strain, young_modulus, poisson_ratio);
+  }
+
+
+  template <typename Number>
+  void
+  OnePointShape<Number>::release_stabilisation(const Number &share,
+                                               const Fields &offset,
+                                               const double  young_modulus,
+                                               const double  poisson_ratio)
+  {
+    const Fields submitted = stress;
+    stress.add(-share, submitted);
+    stress.add(-share, stress_of(offset, young_modulus, poisson_ratio));
   }
 
 
@@ -149,14 +184,14 @@ namespace Voussoir
 
   template <typename Number>
   Number
-  OnePointShape<Number>::stabilisation_work(const OnePointShape &other) const
+  OnePointShape<Number>::work(const Fields &stress, const Fields &strain)
   {
     Number work = 0.;
     for (unsigned int k = 0; k < 3; ++k)
       {
-        const auto &s = stress.planes[k], &e = other.strain.planes[k];
+        const auto &s = stress.planes[k], &e = strain.planes[k];
         work += s.ll * e.ll + s.mm * e.mm + 2. * s.lm * e.lm +
-                stress.bars[k] * other.strain.bars[k];
+                stress.bars[k] * strain.bars[k];
       }
     return work;
   }

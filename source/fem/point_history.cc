@@ -62,6 +62,15 @@ namespace Voussoir
     static_strains = std::make_shared<StaticStrains>();
     static_strains->offsets.resize(active.size());
     static_strains->elastic.resize(active.size());
+    static_strains->stabilised.resize(planes.size());
+  }
+
+
+  void
+  PointHistory::make_planes()
+  {
+    with_planes = true;
+    planes.resize(points->bands.size());
   }
 
 
@@ -149,6 +158,16 @@ namespace Voussoir
 
 
     unsigned int
+    n_of_planes()
+    {
+      PlanesOfBatch planes;
+      unsigned int  n = 0;
+      planes.for_each_number([&](const Lanes &) { ++n; });
+      return n;
+    }
+
+
+    unsigned int
     n_of_active_point()
     {
       ActivePoint point;
@@ -176,7 +195,8 @@ namespace Voussoir
   KeyedValues
   PointHistory::checkpoint_values()
   {
-    KeyedValues values{2 + n_points() * (n_numbers + 1 + n_of_active_point()),
+    KeyedValues values{2 + (has_planes() ? n_of_planes() : 0) +
+                         n_points() * (n_numbers + 1 + n_of_active_point()),
                        {},
                        [this](const std::size_t cell, double *row) {
                          pack(points->cells[cell].second, row);
@@ -198,6 +218,9 @@ namespace Voussoir
     const TipsOfBatch tip = tips.empty() ? TipsOfBatch() : tips_of(batch);
     *row++                = tip.strength[lane] == 1. ? 0. : tip.strength[lane];
     *row++                = tip.run_on[lane];
+    if (has_planes())
+      planes_of(batch).for_each_number(
+        [&](const Lanes &number) { *row++ = number[lane]; });
     for (unsigned int q = 0; q < n_points(); ++q)
       {
         for (unsigned int i = 0; i < n_numbers; ++i)
@@ -230,6 +253,9 @@ namespace Voussoir
       tips_of(batch).strength[lane] = strength;
     if (run_on != 0.)
       tips_of(batch).run_on[lane] = run_on;
+    if (has_planes())
+      planes_of(batch).for_each_number(
+        [&](Lanes &number) { number[lane] = *row++; });
     for (unsigned int q = 0; q < n_points(); ++q)
       {
         const double *numbers_of_law = row;

@@ -326,7 +326,8 @@ namespace Voussoir
                 situation,
                 followed(situation),
                 irreversible[1] > 0.)}};
-        OfBoth<SymmetricTensor3<Number>> effective = parts(split, history);
+        OfBoth<SymmetricTensor3<Number>> effective =
+          parts(split, history, situation.crack_normal);
         for (const unsigned int sign : {0, 1})
           effective[sign] = damage[sign].effective * effective[sign];
         PointResponse<Number> result =

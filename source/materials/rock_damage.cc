@@ -103,7 +103,9 @@ namespace Voussoir
         const OfBoth<DamageProgress<Number>> damage{
           {grow_crack(equivalent[0], history, situation),
            grow(1, equivalent[1], history + n_of_curve, situation)}};
-        return response(parts(split, history), damage, strain);
+        return response(parts(split, history, situation.crack_normal),
+                        damage,
+                        strain);
       }
 
       static std::vector<std::string>

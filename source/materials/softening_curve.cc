@@ -190,7 +190,8 @@ namespace Voussoir
   SofteningCurve::go_on(const double equivalent_stress,
                         CurveMemory &memory,
                         const double band,
-                        const double followed) const
+                        const double followed,
+                        const double held) const
   {
     const OfBand curve    = of_band(band);
     const bool   is_new   = memory.largest == 0.;
@@ -210,9 +211,10 @@ namespace Voussoir
       }
     memory.largest = largest + followed * (trial - largest);
 
-    // from e_a, s_a; in the first step as if from the limit
+    // from e_a, s_a; in the first step as if from the limit, or from where the
+    // point was held
     const double strain      = memory.largest - old.irreversible;
-    const double last        = is_new ? limit : memory.last;
+    const double last        = is_new ? held * limit : memory.last;
     const double last_stress = progress.intact * young_modulus * last;
 
     // The energy of the curve and that of the step are linear along each piece,

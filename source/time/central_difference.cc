@@ -190,6 +190,8 @@ namespace Voussoir
       load->end_step(state);
     if (equation.crack_tips != nullptr)
       equation.crack_tips->update(state.step, state.material_memory);
+    if (equation.crack_planes != nullptr)
+      equation.crack_planes->update(time_step, state);
   }
 
 

@@ -1,8 +1,7 @@
 #include <voussoir/fem/nodal_values.h>
 
-#include <deque>
-
 #include "check.h"
+#include "crack_line.h"
 #include "slice_mesh.h"
 
 namespace Voussoir
@@ -60,6 +59,18 @@ namespace Voussoir
     {
     public:
       void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Rows",
+                          rows,
+                          "Angles of the rows of cells right of the notch "
+                          "[degrees].");
+        prm.add_parameter("Turns",
+                          turns,
+                          "Whether the crack leaves the rows and runs level.");
+      }
+
+      void
       run(const ParameterFile &file,
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
@@ -68,7 +79,7 @@ namespace Voussoir
         // 0.125 m: 0.380 and 0.379 MPa
         constexpr double fictitious_crack = 0.378e6;
         for (const double h : {9., 3.})
-          for (const double angle : {0., 30.})
+          for (const double angle : rows)
             {
               std::ostringstream name;
               name << ", cells of " << h << " m, rows at " << angle
@@ -82,54 +93,43 @@ namespace Voussoir
                 make_case(file.with({"Mesh/file/File=" + mesh}));
               const auto simulation =
                 make_simulation(*parameters, communicator);
+              const Pull pull = march_under_pull(*simulation, 0.05);
               verdicts.near("stress at which the crack runs" + name.str(),
-                            1e-6 * pull(*simulation, h),
+                            1e-6 * pull.largest / (width * h),
                             1e-6 * fictitious_crack,
                             0.11,
                             "MPa");
+              const double inclined = turns ? 0. : angle * numbers::PI / 180.;
               const double energy =
                 simulation->run.state.material_memory.losses().material /
-                (h * (width - notch) / std::cos(angle * numbers::PI / 180.));
+                (h * (width - notch) / std::cos(inclined));
               verdicts.near("energy lost per area of the crack" + name.str(),
                             energy,
                             350.,
                             0.15,
                             "J/m2");
+              if (!turns)
+                continue;
+              verdicts.below("angle of the crack [degrees]" + name.str(),
+                             angle_of_cracks(*simulation,
+                                             [](const Point<3> &point) {
+                                               return point[0] > notch;
+                                             }),
+                             8.);
+              verdicts.below("load left, over the largest" + name.str(),
+                             pull.last / pull.largest,
+                             0.05);
             }
       }
 
     private:
-      /** Largest mean stress of the plate, as a mean over 0.05 s [Pa]. */
-      double
-      pull(Simulation &simulation, const double thickness) const
-      {
-        Run                            &run = simulation.run;
-        const std::vector<unsigned int> pulled =
-          run.equation.projections[0]->nodes();
-        const unsigned int window  = std::ceil(0.05 / run.time_step.length);
-        double             largest = 0., sum = 0.;
-        std::deque<double> stresses;
-        while (run.state.step < run.n_steps())
-          {
-            run.scheme.step(run.state);
-            double force = 0.;
-            for (const unsigned int node : pulled)
-              force += run.scheme.support_force(run.state, node)[2];
-            stresses.push_back(force / (width * thickness));
-            sum += stresses.back();
-            if (stresses.size() > window)
-              {
-                sum -= stresses.front();
-                stresses.pop_front();
-              }
-            keep_largest(largest, std::abs(sum) / window);
-          }
-        return largest;
-      }
+      std::vector<double> rows  = {0., 30.};
+      bool                turns = false;
     };
 
     // Reference: other program
     const Registry<Check>::Add<NotchedPlate>
-      registered("notched plate", "Crack through a plate on four meshes.");
+      registered("notched plate",
+                 "Crack through a plate on meshes with rows at angles.");
   } // namespace
 } // namespace Voussoir

@@ -67,6 +67,7 @@ namespace Voussoir
     std::optional<Contact>          contact; // none without interfaces
     std::vector<ActingLoad>         loads;   // beside wave and water
     const CrackTips                 crack_tips;
+    CrackPlanes                     crack_planes;
     const EquationOfMotion          equation;
     CentralDifference               scheme;
     State                           state;

@@ -232,6 +232,29 @@ namespace Voussoir
                    PointHistory       *history) const = 0;
 
     /**
+     * Energy that the stabilisation of each cell of a batch would store if no
+     * share of it were released, half a step before the displacement, less the
+     * work of the forces of the static state [J]. For cells with one point
+     * whose cracks have planes.
+     *
+     * @param motion with the displacement u, not that since the static state
+     */
+    virtual Lanes
+    stabilisation_energy(const CellRange    &batch,
+                         const DampedMotion &motion,
+                         const PointHistory &history) const = 0;
+
+    /** Tensile part of the elastic stress of the mean strain of each cell of a
+     *  batch of trilinear cells [Pa], in cracked cells with the strain of their
+     *  openings.
+     *
+     * @param history with the strain of the static state; null: none */
+    virtual SymmetricTensor3<Lanes>
+    tensile_stress(const CellRange    &batch,
+                   const Vector       &displacement,
+                   const PointHistory *history) const = 0;
+
+    /**
      * Energy since the static state of the points that have left the elastic
      * range, less the work of the forces of that state.
      */
@@ -282,6 +305,11 @@ namespace Voussoir
      *  on. */
     virtual bool
     is_cracked(const double *history) const = 0;
+
+    /** Whether cracks have planes that go on from cell to cell; see
+     *  CrackPlanes. */
+    virtual bool
+    cracks_along_planes() const = 0;
 
     /** Factor s on the damping memory, relative to the damping model. */
     virtual double

@@ -115,6 +115,18 @@ namespace Voussoir
     ElasticEnergy
     elastic_energy(const DampedMotion &motion, MaterialMemory &memory) const;
 
+    /** See CellKernel::stabilisation_energy. */
+    Lanes
+    stabilisation_energy(const unsigned int  batch,
+                         const DampedMotion &motion,
+                         const PointHistory &history) const;
+
+    /** See CellKernel::tensile_stress. */
+    SymmetricTensor3<Lanes>
+    tensile_stress(const unsigned int  batch,
+                   const Vector       &displacement,
+                   const PointHistory *history) const;
+
     /** Energy since the static state @p initial of the points that have left
      *  the elastic range, in the part of this rank [J]. */
     InelasticEnergy
@@ -148,6 +160,9 @@ namespace Voussoir
                         const dealii::AlignedVector<Lanes> &masses) const;
 
   private:
+    CellRange
+    cells_of(const unsigned int batch) const;
+
     /** Upper bound of the force of a cell on a node [N], if relative
      *  displacements within the cell are at most this share of its longest
      *  edge. */

@@ -2,6 +2,7 @@
 #define voussoir_fem_one_point_shape_h
 
 #include <voussoir/fem/discretization.h>
+#include <voussoir/fem/stabilised_fields.h>
 
 namespace Voussoir
 {
@@ -31,11 +32,12 @@ namespace Voussoir
    * in parallelepipeds they are orthogonal to each other and to the mean
    * strain.
    *
-   * Their stiffness is always that of an isotropic elastic material. So the
+   * Their stiffness is that of an isotropic elastic material. So the
    * stabilisation neither generates nor dissipates energy, and a cracked cell
    * keeps its shape; but it also keeps its own resistance to bending, 1/n^2 of
-   * that of a wall of n cells. A wall of one cell cannot crack in bending
-   * anyway, as bending causes no strain at its point.
+   * that of a wall of n cells, unless it is released (see CrackPlanes). A wall
+   * of one cell cannot crack in bending anyway, as bending causes no strain at
+   * its point.
    */
   template <typename Number>
   class OnePointShape
@@ -43,6 +45,8 @@ namespace Voussoir
   public:
     explicit OnePointShape(const Discretization::MatrixFree &)
     {}
+
+    using Fields = StabilisedFields<Number>;
 
     /** Component by component, in the order of the nodes: component d of node v
      *  is entry 8 d + v. */
@@ -97,6 +101,30 @@ namespace Voussoir
     submit_stabilisation(const double young_modulus,
                          const double poisson_ratio);
 
+    /**
+     * Releases a share of the stabilisation: subtracts this share of the
+     * submitted stress and of the stress of @p offset, another stabilised
+     * strain.
+     */
+    void
+    release_stabilisation(const Number &share,
+                          const Fields &offset,
+                          const double  young_modulus,
+                          const double  poisson_ratio);
+
+    const Fields &
+    stabilised_strain() const
+    {
+      return strain;
+    }
+
+    /** Stabilising stress of a stabilised strain of these cells, times their
+     *  volume. */
+    Fields
+    stabilising_stress(const Fields &of_strain,
+                       const double  young_modulus,
+                       const double  poisson_ratio) const;
+
     /** Replaces the stabilised strain by the thermal strain of the temperature,
      *  whose values must have been evaluated. */
     void
@@ -105,7 +133,14 @@ namespace Voussoir
     /** Work of the submitted stabilising stress on the strain of another
      *  evaluation of the same cells [J]. */
     Number
-    stabilisation_work(const OnePointShape &other) const;
+    stabilisation_work(const OnePointShape &other) const
+    {
+      return work(stress, other.strain);
+    }
+
+    /** Work of a stabilising stress on a stabilised strain [J]. */
+    static Number
+    work(const Fields &stress, const Fields &strain);
 
     /** Forces of the submitted stresses at the nodes [N]. */
     void
@@ -114,17 +149,10 @@ namespace Voussoir
   private:
     using Vector3 = dealii::Tensor<1, 3, Number>;
 
-    /** Strain or stress in the planes of two edges and along the edges, in
-     *  components of the edges. */
-    struct Fields
-    {
-      struct Plane
-      {
-        Number ll, mm, lm;
-      };
-      std::array<Plane, 3>  planes;
-      std::array<Number, 3> bars;
-    };
+    Fields
+    stress_of(const Fields &of_strain,
+              const double  young_modulus,
+              const double  poisson_ratio) const;
 
     // the cells' shape
     std::array<Vector3, 3>                edges; // half the mean edges

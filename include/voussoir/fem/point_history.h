@@ -5,6 +5,7 @@
 #include <voussoir/base/sum.h>
 #include <voussoir/fem/crack_bands.h>
 #include <voussoir/fem/discretization.h>
+#include <voussoir/fem/stabilised_fields.h>
 
 #include <memory>
 
@@ -43,11 +44,38 @@ namespace Voussoir
   };
 
 
-  /** What CrackTips knows of the cells of a batch. */
+  /** What CrackTips and CrackPlanes know of the cells of a batch. */
   struct TipsOfBatch
   {
     Lanes strength = 1.; // over that of the material
     Lanes run_on   = 0.; // 1 where the crack of the cell has been seen
+  };
+
+
+  /** Planes of the cracks that the cells of a batch have or are about to have;
+   *  see CrackPlanes. */
+  struct PlanesOfBatch
+  {
+    Lanes width = 0.; // of the crack band [m]; 0: the cell has no plane
+
+    dealii::Tensor<1, 3, Lanes> point, normal; // of the plane
+    dealii::Tensor<1, 3, Lanes> parent;  // normal of the crack that runs in
+    dealii::Tensor<1, 3, Lanes> opening; // normal in the law of the material
+
+    Lanes released = 0.; // share of the stabilisation
+
+    /** Calls visit(number) for each number. */
+    template <typename Visitor>
+    void
+    for_each_number(const Visitor &visit)
+    {
+      visit(width);
+      for (dealii::Tensor<1, 3, Lanes> *vector :
+           {&point, &normal, &parent, &opening})
+        for (unsigned int d = 0; d < 3; ++d)
+          visit((*vector)[d]);
+      visit(released);
+    }
   };
 
 
@@ -181,6 +209,49 @@ namespace Voussoir
       return tips[points->slot_of_batch[batch]];
     }
 
+    /** Lets cracks have planes; for cells with one point. */
+    void
+    make_planes();
+
+    bool
+    has_planes() const
+    {
+      return with_planes;
+    }
+
+    PlanesOfBatch &
+    planes_of(const unsigned int batch)
+    {
+      return planes[points->slot_of_batch[batch]];
+    }
+
+    const PlanesOfBatch &
+    planes_of(const unsigned int batch) const
+    {
+      return planes[points->slot_of_batch[batch]];
+    }
+
+    /** Stabilised strains of the static state, as e_0 and e_s of a point. */
+    struct StabilisedStatic
+    {
+      // elastic strain of the static state times the static factor, and this
+      // less k times the strain of the displacement
+      StabilisedFields<Lanes> elastic, offset;
+    };
+
+    /** Of cells whose cracks have planes, after a static state. */
+    const StabilisedStatic &
+    stabilised_static(const unsigned int batch) const
+    {
+      return static_strains->stabilised[points->slot_of_batch[batch]];
+    }
+
+    StabilisedStatic &
+    stabilised_static(const unsigned int batch)
+    {
+      return static_strains->stabilised[points->slot_of_batch[batch]];
+    }
+
     /** Strain offset e_0, which is added to the strain of the displacement in
      *  the law; see DampedResponse. */
     const SymmetricTensor3<Lanes> &
@@ -285,6 +356,7 @@ namespace Voussoir
     struct StaticStrains
     {
       dealii::AlignedVector<SymmetricTensor3<Lanes>> offsets, elastic;
+      dealii::AlignedVector<StabilisedStatic>        stabilised; // by slot
     };
 
     std::size_t
@@ -304,8 +376,10 @@ namespace Voussoir
     std::shared_ptr<StaticStrains> static_strains;
     dealii::AlignedVector<Lanes>
       numbers; // of elastic points, then of the others
-    dealii::AlignedVector<Lanes>       imbalances;
-    dealii::AlignedVector<TipsOfBatch> tips; // by slot; none: as they begin
+    dealii::AlignedVector<Lanes>         imbalances;
+    dealii::AlignedVector<TipsOfBatch>   tips;   // by slot; none: as they begin
+    dealii::AlignedVector<PlanesOfBatch> planes; // by slot, or none
+    bool                                 with_planes = false;
 
     // place among the points beyond the elastic range, from one; 0: elastic
     std::vector<unsigned int>          active;

@@ -34,6 +34,27 @@ namespace Voussoir
     }
 
 
+    /** Share of the stabilisation that cracks have left. */
+    inline Lanes
+    stabilised_share(const PointHistory *history,
+                     const unsigned int  batch,
+                     const Lanes        &all)
+    {
+      if (history == nullptr || !history->has_planes())
+        return all;
+      return all - history->planes_of(batch).released;
+    }
+
+
+    inline Singles
+    stabilised_share(const PointHistory *,
+                     const unsigned int,
+                     const Singles &all)
+    {
+      return all;
+    }
+
+
     /** x^T K x and x^T K v of the elastic points of each cell, with x and v of
      *  @p field and @p moving. */
     template <typename Law, typename Cell>
@@ -60,10 +81,33 @@ namespace Voussoir
       if constexpr (is_one_point<Cell>)
         {
           stabilise(field, law, stress_factor);
-          sums[0] += field.stabilisation_work(field);
-          sums[1] += field.stabilisation_work(moving);
+          const Number kept = stabilised_share(history, batch, Number(1.));
+          sums[0] += kept * field.stabilisation_work(field);
+          sums[1] += kept * field.stabilisation_work(moving);
         }
       return sums;
+    }
+
+
+    /** Energy of cells whose static stabilising stress is released, per share
+     *  [J]: s_s : (e_u - dt/2 e_v + e_s/2) with its elastic strain e_s. */
+    template <typename Law, typename Cell>
+    Lanes
+    static_energy_released(const Law          &law,
+                           const Cell         &field,
+                           const Cell         &moving,
+                           const double        dt,
+                           const PointHistory &history,
+                           const unsigned int  batch)
+    {
+      const auto &elastic            = history.stabilised_static(batch).elastic;
+      StabilisedFields<Lanes> strain = field.stabilised_strain();
+      strain.add(-0.5 * dt, moving.stabilised_strain());
+      strain.add(0.5, elastic);
+      return Cell::work(field.stabilising_stress(elastic,
+                                                 law.young_modulus,
+                                                 law.poisson_ratio),
+                        strain);
     }
 
 
@@ -121,6 +165,18 @@ namespace Voussoir
         read(moving, motion.velocity);
         const auto [uu, uv] = products_of(motion.displacement);
         add_cells(total.strain, cells, batch, Number(0.5 * (uu - dt * uv)));
+        if constexpr (std::is_same_v<std::decay_t<decltype(cell.JxW(0))>,
+                                     Lanes> &&
+                      is_one_point<Cell>)
+          if (history != nullptr && history->has_planes() &&
+              history->has_static_strains())
+            add_cells(total.strain,
+                      cells,
+                      batch,
+                      Number(
+                        reduce(-history->planes_of(batch).released *
+                               static_energy_released(
+                                 law, cell, moving, dt, *history, batch))));
         if (viscosity > 0.)
           {
             const auto [bb, bv] = products_of(motion.velocity_before);
@@ -268,6 +324,63 @@ namespace Voussoir
         });
       });
       return energy.sum();
+    }
+
+
+    /** CellKernel::stabilisation_energy. */
+    template <typename Law>
+    Lanes
+    stabilisation_energy(const Law          &law,
+                         const CellRange    &batch,
+                         const double        damping_factor,
+                         const DampedMotion &motion,
+                         const PointHistory &history)
+    {
+      using Cell = TrilinearCells<OnePointShape>;
+      Cell         cell(batch.matrix_free), moving(batch.matrix_free);
+      const double dt = motion.time_step, k = batch.stress_factor;
+      const auto   read = [&](Cell &cell, const Vector &vector) {
+        cell.reinit(batch.begin);
+        cell.gather_evaluate(vector, dealii::EvaluationFlags::gradients);
+      };
+      const auto work = [&](const StabilisedFields<Lanes> &a,
+                            const StabilisedFields<Lanes> &b) {
+        return Cell::work(
+          cell.stabilising_stress(a, law.young_modulus, law.poisson_ratio), b);
+      };
+      read(moving, motion.velocity);
+      read(cell, motion.displacement);
+      const StabilisedFields<Lanes> v = moving.stabilised_strain();
+
+      // k/2 e_u : D : (e_u - dt e_v) since the static state, and its own energy
+      StabilisedFields<Lanes> since_static = cell.stabilised_strain();
+      Lanes                   energy       = 0.;
+      if (history.has_static_strains())
+        {
+          const auto &[elastic, offset] =
+            history.stabilised_static(batch.begin);
+          since_static.add(-1. / k, elastic);
+          since_static.add(1. / k, offset);
+          StabilisedFields<Lanes> strain = since_static;
+          strain.add(-0.5 * dt, v);
+          strain.add(0.5, elastic);
+          energy += work(elastic, strain);
+        }
+      StabilisedFields<Lanes> before = since_static;
+      before.add(-dt, v);
+      energy += 0.5 * k * work(since_static, before);
+
+      // of the branches, as in ElasticEnergy
+      const MaxwellStep maxwell(motion.damping, dt);
+      for (unsigned int i = 0; i < maxwell.gain.size(); ++i)
+        if (const double a = maxwell.decay[i], b = maxwell.gain[i]; b > 0.)
+          {
+            read(cell, motion.memory[i]);
+            const StabilisedFields<Lanes> &w = cell.stabilised_strain();
+            energy += k * damping_factor * dt / (2. * b) *
+                      (a * work(w, w) + b * work(w, v));
+          }
+      return energy;
     }
 
 

@@ -3,6 +3,7 @@
 
 #include <voussoir/materials/cell_loops.h>
 #include <voussoir/materials/damped_response.h>
+#include <voussoir/materials/spectral.h>
 
 namespace Voussoir
 {
@@ -59,7 +60,8 @@ namespace Voussoir
     /**
      * Elastic forces of the cells of @p n batches from @p batch on, in single
      * precision. Returns, for each, the largest yield ratio of the points of
-     * each cell; 2 for cells that have left the elastic range.
+     * each cell; 2 for cells that have left the elastic range or have the plane
+     * of a crack.
      */
     template <typename Cells, typename Law>
     std::array<Lanes, 2>
@@ -107,6 +109,13 @@ namespace Voussoir
                   Lanes(0.),
                   ratios[half],
                   Lanes(2.));
+          if (history.has_planes())
+            ratios[half] =
+              dealii::compare_and_apply_mask<dealii::SIMDComparison::equal>(
+                history.planes_of(batch + half).width,
+                Lanes(0.),
+                ratios[half],
+                Lanes(2.));
         }
       return ratios;
     }
@@ -134,8 +143,10 @@ namespace Voussoir
         std::decay_t<decltype(cell)> undamped_cell(matrix_free);
         auto                        &own = damped ? undamped_cell : cell;
         const auto find_forces           = [&](const unsigned int batch) {
-          const Lanes widest       = history.bands(batch).widest,
-                      tip_strength = history.tip_strength(batch);
+          Lanes       widest       = history.bands(batch).widest;
+          const Lanes tip_strength = history.tip_strength(batch);
+          if (history.has_planes())
+            widest = std::max(widest, history.planes_of(batch).width);
           cell.reinit(batch);
           read_filtered(cell, input, damping_factor);
           cell.evaluate(dealii::EvaluationFlags::gradients);
@@ -175,6 +186,7 @@ namespace Voussoir
               cell.submit_symmetric_gradient(stress, q);
             }
           stabilise(cell, law, stress_factor);
+          release(cell, law, history, batch);
           cell.integrate(dealii::EvaluationFlags::gradients);
         };
         if (!cells.single_precision)
@@ -289,6 +301,18 @@ namespace Voussoir
             warmth.reinit(batch);
             warmth.gather_evaluate(temperature,
                                    dealii::EvaluationFlags::values);
+            if constexpr (is_one_point<decltype(cell)>)
+              if (history.has_planes())
+                {
+                  const StabilisedFields<Lanes> own = cell.stabilised_strain();
+                  warmth.expand(expansion);
+                  auto &[elastic, offset] = history.stabilised_static(batch);
+                  elastic                 = {};
+                  elastic.add(static_factor, own);
+                  elastic.add(-static_factor, warmth.stabilised_strain());
+                  offset = elastic;
+                  offset.add(-cells.stress_factor, own);
+                }
             for (const unsigned int q : cell.quadrature_point_indices())
               response.set_static_state(cell.get_symmetric_gradient(q),
                                         warmth.get_value(q),
@@ -299,6 +323,30 @@ namespace Voussoir
                                         history);
           }
       });
+    }
+
+
+    /** CellKernel::tensile_stress. */
+    template <typename Law>
+    SymmetricTensor3<Lanes>
+    tensile_stress(const Law          &law,
+                   const CellRange    &batch,
+                   const Vector       &displacement,
+                   const PointHistory *history)
+    {
+      TrilinearCells<OnePointShape> cell(batch.matrix_free);
+      cell.reinit(batch.begin);
+      cell.gather_evaluate(displacement, dealii::EvaluationFlags::gradients);
+      SymmetricTensor3<Lanes> strain = cell.get_symmetric_gradient(0);
+      if (history != nullptr && history->has_static_strains())
+        for (unsigned int q = 0; q < history->n_points(); ++q)
+          strain +=
+            (1. / history->n_points()) * history->strain_offset(batch.begin, q);
+      const auto           principal = spectrum(law.stress(strain));
+      std::array<Lanes, 3> tensile;
+      for (unsigned int i = 0; i < 3; ++i)
+        tensile[i] = std::max(principal.values[i], Lanes(0.));
+      return principal.compose(tensile);
     }
 
 

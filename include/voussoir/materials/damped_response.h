@@ -141,16 +141,16 @@ namespace Voussoir
                        modulus(last.share) * fourth_power(last.share) * filter;
 
       find_bands(history.bands(batch), now);
-      Lanes     *values = history.values(batch, q);
-      const auto response =
-        law.respond(now.law_strain,
-                    values,
-                    PointSituation<Lanes>{now.band,
-                                          step.length,
-                                          history.tip_strength(batch)});
-      now.share   = response.damping_share;
-      now.plastic = now.law_strain - response.elastic_strain;
-      now.stress  = response.stress;
+      PointSituation<Lanes> situation{now.band,
+                                      step.length,
+                                      history.tip_strength(batch)};
+      if (history.has_planes())
+        take_planes(history.planes_of(batch), last, now, situation);
+      Lanes     *values   = history.values(batch, q);
+      const auto response = law.respond(now.law_strain, values, situation);
+      now.share           = response.damping_share;
+      now.plastic         = now.law_strain - response.elastic_strain;
+      now.stress          = response.stress;
 
       const Lanes begins =
         find_beginning(last, level, history.lanes_are_alone(), values, now);
@@ -512,6 +512,25 @@ namespace Voussoir
                          (1. - share) * bands.across(crack.compression);
       point.band =
         compare_and_apply_mask<Comparison::equal>(known, zero, band, known);
+    }
+
+    /** Cracks of cells with planes: their normals and, where they begin now,
+     *  their bands. */
+    static void
+    take_planes(const PlanesOfBatch   &planes,
+                const ActivePoint     &last,
+                ActivePoint           &now,
+                PointSituation<Lanes> &situation)
+    {
+      situation.crack_normal = planes.opening;
+      for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+        if (last.band[lane] == 0. && planes.width[lane] > 0.)
+          {
+            now.band[lane] = planes.width[lane];
+            for (unsigned int d = 0; d < 3; ++d)
+              now.normal[d][lane] = planes.opening[d][lane];
+          }
+      situation.element_length = now.band;
     }
 
     /** s of a closing crack [Pa], from effective stresses. */

@@ -153,6 +153,14 @@ namespace Voussoir
       return false;
     }
 
+    /** Whether cracks have planes that go on from cell to cell; see
+     *  CrackPlanes. */
+    bool
+    cracks_along_planes() const
+    {
+      return false;
+    }
+
     /** A sentence for the log if cells of this length [m] do not suit the law;
      *  else empty. */
     std::string
@@ -170,6 +178,10 @@ namespace Voussoir
     double time_step;      // since the last call [s]
 
     Number tip_strength = Number(1.); // see LawDefaults::tip_strength
+
+    /** Normal of the crack that the cell has or is about to have; zero if it is
+     *  not known. */
+    dealii::Tensor<1, 3, Number> crack_normal = {};
   };
 
   /** Response of a law with internal variables; by default, that of a point

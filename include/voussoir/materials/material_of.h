@@ -138,6 +138,12 @@ namespace Voussoir
       return Law::is_cracked(history);
     }
 
+    bool
+    cracks_along_planes() const override
+    {
+      return law.cracks_along_planes();
+    }
+
     std::string
     remark(const double element_length) const override
     {
@@ -219,6 +225,23 @@ namespace Voussoir
                    PointHistory       *history) const override
     {
       return CellKernels::elastic_energy(law, cells, damping, motion, history);
+    }
+
+    Lanes
+    stabilisation_energy(const CellRange    &batch,
+                         const DampedMotion &motion,
+                         const PointHistory &history) const override
+    {
+      return CellKernels::stabilisation_energy(
+        law, batch, damping, motion, history);
+    }
+
+    SymmetricTensor3<Lanes>
+    tensile_stress(const CellRange    &batch,
+                   const Vector       &displacement,
+                   const PointHistory *history) const override
+    {
+      return CellKernels::tensile_stress(law, batch, displacement, history);
     }
 
     InelasticEnergy

@@ -130,12 +130,15 @@ namespace Voussoir
      * @param equivalent_stress effective stress of a uniaxial test [Pa]
      * @param band width of the band [m]
      * @param followed share of the growth that counts in this step
+     * @param held at a point that has been elastic, its stress before this step
+     *   over the elastic limit, at least 1
      */
     DamageProgress<double>
     go_on(const double equivalent_stress,
           CurveMemory &memory,
           const double band,
-          const double followed = 1.) const;
+          const double followed = 1.,
+          const double held     = 1.) const;
 
     /** Strain of the elastic limit. */
     double

@@ -2,6 +2,7 @@
 #define voussoir_time_central_difference_h
 
 #include <voussoir/constraints/projection.h>
+#include <voussoir/fem/crack_planes.h>
 #include <voussoir/fem/crack_tips.h>
 #include <voussoir/fem/damping.h>
 #include <voussoir/fem/initial_state.h>
@@ -34,7 +35,8 @@ namespace Voussoir
 
     double closing_viscosity = 0.; // c of DampedResponse [s]
 
-    const CrackTips *crack_tips = nullptr; // null: cracks have none
+    const CrackTips *crack_tips   = nullptr; // null: cracks have none
+    CrackPlanes     *crack_planes = nullptr; // null: cracks have none
   };
 
   /** Explicit central differences in leap-frog form; see LeapFrog. */

@@ -1,4 +1,5 @@
 #include <voussoir/fem/crack_planes.h>
+#include <voussoir/fem/trilinear_cells.h>
 
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
@@ -17,7 +18,7 @@ namespace Voussoir
 
     constexpr double widest_band = 3.,    // over the size of the cell
       least_of_tip               = 0.005, // share of the stabilisation
-      left_at_tip                = 0.9,   // of it, per update
+      left_per_update            = 0.9,   // of it
       reach                      = 1.6,   // over the size of the cell
       strength_beside            = 2.;    // over that of the material
 
@@ -56,6 +57,16 @@ namespace Voussoir
     }
 
 
+    SymmetricTensor<2, 3>
+    lane_of(const SymmetricTensor3<Lanes> &tensor, const unsigned int lane)
+    {
+      SymmetricTensor<2, 3> one;
+      for (unsigned int i = 0; i < 6; ++i)
+        one.access_raw_entry(i) = tensor.access_raw_entry(i)[lane];
+      return one;
+    }
+
+
     void
     set_lane(Tensor<1, 3, Lanes> &vector,
              const unsigned int   lane,
@@ -63,6 +74,15 @@ namespace Voussoir
     {
       for (unsigned int d = 0; d < 3; ++d)
         vector[d][lane] = value[d];
+    }
+
+
+    /** Pressure on the faces of a crack; zero if it is open [Pa]. */
+    double
+    pressure_on_crack(const ActivePoint &point, const unsigned int lane)
+    {
+      return std::max(0.,
+                      -(point.normal * (point.stress * point.normal))[lane]);
     }
 
 
@@ -143,7 +163,7 @@ namespace Voussoir
       cracks,
       tips,
       shared_tips,
-      released
+      changing
     };
     const std::vector<unsigned int> mine{
       !found.first.empty(),
@@ -152,7 +172,7 @@ namespace Voussoir
       std::any_of(found.tips.begin(),
                   found.tips.end(),
                   [&](const Cell &cell) { return is_shared(cell); }),
-      !found.released.empty()};
+      found.changes()};
     std::vector<unsigned int> any(mine.size());
     Utilities::MPI::max(mine, discretization.grid.communicator(), any);
 
@@ -169,13 +189,16 @@ namespace Voussoir
             for (const Crack &crack : now)
               strengthen(crack, memory);
           }
-        turn(found.tips,
+        turn(found,
              any[cracks] > 0 || any[shared_tips] > 0,
              state.displacement,
              memory);
       }
-    if (any[released] > 0)
-      release(found.released, time_step, state);
+    else if (any[changing] == 0)
+      return;
+    if (Utilities::MPI::logical_or(found.changes(),
+                                   discretization.grid.communicator()))
+      change_stabilisation(found, time_step, state);
   }
 
 
@@ -207,13 +230,47 @@ namespace Voussoir
   double
   CrackPlanes::stabilisation_due(const Cell &cell, MaterialMemory &memory) const
   {
-    PointHistory &history    = history_of(cell, memory);
+    PointHistory &history         = history_of(cell, memory);
+    const auto [batch, lane]      = discretization.place_of(cell);
+    const PlanesOfBatch &planes   = history.planes_of(batch);
+    const double         now      = 1. - planes.released[lane];
+    const bool           is_crack = history.tips_of(batch).run_on[lane] > 0.;
+    const double         least =
+      is_crack ? history.active_point(batch, 0).share[lane] : least_of_tip;
+    if (!(least < 0.95 * now))
+      return now;
+    // a crack that has run into the cell opens at once
+    const bool is_first = planes.opening[0][lane] == 0. &&
+                          planes.opening[1][lane] == 0. &&
+                          planes.opening[2][lane] == 0.;
+    return is_crack && !is_first ? least :
+                                   std::max(least, left_per_update * now);
+  }
+
+
+  bool
+  CrackPlanes::is_pressed(const Cell &cell, MaterialMemory &memory) const
+  {
     const auto [batch, lane] = discretization.place_of(cell);
-    const double now         = 1. - history.planes_of(batch).released[lane];
-    const double due         = history.tips_of(batch).run_on[lane] > 0. ?
-                                 history.active_point(batch, 0).share[lane] :
-                                 std::max(least_of_tip, left_at_tip * now);
-    return due < 0.95 * now ? due : now;
+    return pressure_on_crack(history_of(cell, memory).active_point(batch, 0),
+                             lane) > 0.;
+  }
+
+
+  void
+  CrackPlanes::find_change(const Cell     &cell,
+                           const bool      closes,
+                           MaterialMemory &memory,
+                           Found          &found) const
+  {
+    const auto [batch, lane]    = discretization.place_of(cell);
+    const PlanesOfBatch &planes = history_of(cell, memory).planes_of(batch);
+    if (closes != (planes.closed[lane] > 0.))
+      found.switching.push_back(cell);
+    else if (closes ?
+               planes.released[lane] > 0. :
+               stabilisation_due(cell, memory) < 1. - planes.released[lane])
+      found.releasing.push_back(cell);
   }
 
 
@@ -239,9 +296,8 @@ namespace Voussoir
                 else if (has_plane)
                   found.tips.push_back(cell);
               }
-            if (has_plane && stabilisation_due(cell, memory) <
-                               1. - history.planes_of(batch).released[lane])
-              found.released.push_back(cell);
+            else if (has_plane)
+              find_change(cell, is_pressed(cell, memory), memory, found);
           }
       }
     return found;
@@ -293,28 +349,29 @@ namespace Voussoir
   }
 
 
-  std::vector<Tensor<1, 3>>
-  CrackPlanes::directions(const std::vector<Cell> &cells,
-                          const bool               are_shared,
-                          const Vector            &displacement,
-                          const MaterialMemory    &memory)
+  std::vector<CrackPlanes::Tension>
+  CrackPlanes::tension(const std::vector<Cell> &cells,
+                       const bool               are_shared,
+                       const Vector            &displacement,
+                       const MaterialMemory    &memory)
   {
-    std::map<unsigned int, SymmetricTensor3<Lanes>> of_batch;
+    std::map<unsigned int, SplitStress> of_batch;
+    const auto                          stresses = [&](const unsigned int batch,
+                              const Cell        &cell) -> const SplitStress                          &{
+      const auto known = of_batch.find(batch);
+      if (known != of_batch.end())
+        return known->second;
+      return of_batch
+        .emplace(batch,
+                 internal_force.elastic_stress(
+                   batch,
+                   displacement,
+                   memory.of(discretization.grid.material(cell))))
+        .first->second;
+    };
     const auto stress_of_own = [&](const Cell &cell) {
       const auto [batch, lane] = discretization.place_of(cell);
-      auto stress              = of_batch.find(batch);
-      if (stress == of_batch.end())
-        stress = of_batch
-                   .emplace(batch,
-                            internal_force.tensile_stress(
-                              batch,
-                              displacement,
-                              memory.of(discretization.grid.material(cell))))
-                   .first;
-      SymmetricTensor<2, 3> result;
-      for (unsigned int i = 0; i < 6; ++i)
-        result.access_raw_entry(i) = stress->second.access_raw_entry(i)[lane];
-      return result;
+      return lane_of(stresses(batch, cell).tensile, lane);
     };
 
     // stresses of own cells around cells of other ranks, and the other way
@@ -354,7 +411,7 @@ namespace Voussoir
           });
       }
 
-    std::vector<Tensor<1, 3>> found;
+    std::vector<Tension> found;
     for (const Cell &cell : cells)
       {
         SymmetricTensor<2, 3> sum;
@@ -362,8 +419,10 @@ namespace Voussoir
           sum += other->measure() * (other->is_locally_owned() ?
                                        stress_of_own(other) :
                                        of_ghosts.at(other));
-        found.push_back(sum.norm() > 0. ? eigenvectors(sum)[0].second :
-                                          Tensor<1, 3>());
+        const auto [batch, lane] = discretization.place_of(cell);
+        found.push_back(
+          {sum.norm() > 0. ? eigenvectors(sum)[0].second : Tensor<1, 3>(),
+           lane_of(stresses(batch, cell).all, lane)});
       }
     return found;
   }
@@ -425,21 +484,22 @@ namespace Voussoir
                      const Vector            &displacement,
                      MaterialMemory          &memory)
   {
-    const std::vector<Tensor<1, 3>> normals =
-      directions(first, true, displacement, memory);
+    const std::vector<Tension> around_first =
+      tension(first, true, displacement, memory);
     for (unsigned int i = 0; i < first.size(); ++i)
       {
         const auto [batch, lane] = discretization.place_of(first[i]);
         PointHistory &history    = history_of(first[i], memory);
         ActivePoint  &point      = history.active_point(batch, 0);
-        Tensor<1, 3>  normal     = normals[i];
+        Tensor<1, 3>  normal     = around_first[i].direction;
         if (normal.norm() == 0.)
           for (unsigned int d = 0; d < 3; ++d)
             normal[d] = point.normal[d][lane];
-        set_plane(first[i], {first[i]->center(), normal}, memory);
-        // a crack that has hardly opened takes the band of its plane
-        if (point.share[lane] > 0.99)
-          point.band[lane] = history.planes_of(batch).width[lane];
+        // the crack keeps the normal and the band that it has in the law
+        PlanesOfBatch &planes = history.planes_of(batch);
+        set_lane(planes.point, lane, first[i]->center());
+        set_lane(planes.normal, lane, normal);
+        planes.width[lane] = point.band[lane];
       }
   }
 
@@ -554,35 +614,42 @@ namespace Voussoir
 
 
   void
-  CrackPlanes::turn(const std::vector<Cell> &tips,
-                    const bool               are_shared,
-                    const Vector            &displacement,
-                    MaterialMemory          &memory)
+  CrackPlanes::turn(Found          &found,
+                    const bool      are_shared,
+                    const Vector   &displacement,
+                    MaterialMemory &memory)
   {
-    const std::vector<Tensor<1, 3>> tension =
-      directions(tips, are_shared, displacement, memory);
-    for (unsigned int i = 0; i < tips.size(); ++i)
+    const std::vector<Tension> around_tips =
+      tension(found.tips, are_shared, displacement, memory);
+    for (unsigned int i = 0; i < found.tips.size(); ++i)
       {
-        const auto [batch, lane] = discretization.place_of(tips[i]);
-        const PlanesOfBatch &planes =
-          history_of(tips[i], memory).planes_of(batch);
-        Tensor<1, 3> parent;
+        const Cell         &cell      = found.tips[i];
+        const Tensor<1, 3> &direction = around_tips[i].direction;
+        const auto [batch, lane]      = discretization.place_of(cell);
+        PointHistory &history         = history_of(cell, memory);
+        Tensor<1, 3>  parent;
         for (unsigned int d = 0; d < 3; ++d)
-          parent[d] = planes.parent[d][lane];
-        const Tensor<1, 3> sum =
-          parent + (tension[i] * parent < 0. ? -1. : 1.) * tension[i];
-        set_plane(tips[i],
-                  {plane_of(tips[i], memory).point, sum / sum.norm()},
-                  memory);
-        set_tip_strength(tips[i], memory);
+          parent[d] = history.planes_of(batch).parent[d][lane];
+        Tensor<1, 3> normal =
+          parent + (direction * parent < 0. ? -1. : 1.) * direction;
+        normal /= normal.norm();
+        set_plane(cell, {plane_of(cell, memory).point, normal}, memory);
+        set_tip_strength(cell, memory);
+
+        const double strength =
+          kernels[discretization.grid.material(cell)]->tensile_strength();
+        find_change(cell,
+                    normal * (around_tips[i].own * normal) < -strength,
+                    memory,
+                    found);
       }
   }
 
 
   void
-  CrackPlanes::release(const std::vector<Cell> &cells,
-                       const double             time_step,
-                       State                   &state) const
+  CrackPlanes::change_stabilisation(const Found &found,
+                                    const double time_step,
+                                    State       &state) const
   {
     const GhostValues of_displacement(state.displacement),
       of_velocity(state.velocity);
@@ -590,29 +657,113 @@ namespace Voussoir
     for (const Vector &branch : state.memory)
       of_memory.push_back(std::make_unique<GhostValues>(branch));
 
-    std::map<unsigned int, std::vector<Cell>> by_batch;
-    for (const Cell &cell : cells)
-      by_batch[discretization.place_of(cell).batch].push_back(cell);
-    for (const auto &[batch, of_batch] : by_batch)
+    TrilinearCells<OnePointShape> shape(discretization.matrix_free);
+    const auto                    strain = [&](const unsigned int batch) {
+      shape.reinit(batch);
+      shape.gather_evaluate(state.displacement, EvaluationFlags::gradients);
+      return shape.stabilised_strain();
+    };
+    // calls work(planes, cells of a batch, their energy), and counts the energy
+    // lost
+    const auto change = [&](const std::vector<Cell> &cells,
+                            Sum PointLosses::*lost,
+                            const auto       &work) {
+      std::map<unsigned int, std::vector<Cell>> by_batch;
+      for (const Cell &cell : cells)
+        by_batch[discretization.place_of(cell).batch].push_back(cell);
+      for (const auto &[batch, of_batch] : by_batch)
+        {
+          PointHistory &history =
+            history_of(of_batch[0], state.material_memory);
+          const auto energy = [&, batch = batch] {
+            return internal_force.stabilisation_energy(batch,
+                                                       {state.displacement,
+                                                        state.velocity,
+                                                        state.velocity,
+                                                        state.memory,
+                                                        damping,
+                                                        time_step},
+                                                       history);
+          };
+          const Lanes before = energy();
+          work(history.planes_of(batch), batch, of_batch, energy);
+          const Lanes lost_now = before - energy();
+          for (const Cell &cell : of_batch)
+            history.losses.*lost +=
+              lost_now[discretization.place_of(cell).lane];
+        }
+    };
+    const auto lane_of_cell = [&](const Cell &cell) {
+      return discretization.place_of(cell).lane;
+    };
+
+    std::vector<Cell> open, closed;
+    for (const Cell &cell : found.releasing)
       {
-        PointHistory &history = history_of(of_batch[0], state.material_memory);
-        const Lanes   energy =
-          internal_force.stabilisation_energy(batch,
-                                              {state.displacement,
-                                               state.velocity,
-                                               state.velocity,
-                                               state.memory,
-                                               damping,
-                                               time_step},
-                                              history);
-        for (const Cell &cell : of_batch)
-          {
-            const unsigned int lane = discretization.place_of(cell).lane;
-            double      &released   = history.planes_of(batch).released[lane];
-            const double due = stabilisation_due(cell, state.material_memory);
-            history.losses.material += (1. - released - due) * energy[lane];
-            released = 1. - due;
-          }
+        const auto [batch, lane] = discretization.place_of(cell);
+        const bool is_closed     = history_of(cell, state.material_memory)
+                                 .planes_of(batch)
+                                 .closed[lane] > 0.;
+        (is_closed ? closed : open).push_back(cell);
       }
+    change(found.switching,
+           &PointLosses::closing,
+           [&](PlanesOfBatch           &planes,
+               const unsigned int       batch,
+               const std::vector<Cell> &cells,
+               const auto &) {
+             for (const Cell &cell : cells)
+               {
+                 const unsigned int lane = lane_of_cell(cell);
+                 planes.closed[lane]     = 1. - planes.closed[lane];
+                 if (planes.closed[lane] > 0.)
+                   planes.at_closing.set_lane(lane, strain(batch));
+               }
+           });
+    change(
+      closed,
+      &PointLosses::closing,
+      [&](PlanesOfBatch           &planes,
+          const unsigned int       batch,
+          const std::vector<Cell> &cells,
+          const auto              &energy) {
+        // of what the closed crack bears
+        Lanes of_bending = energy();
+        for (const Cell &cell : cells)
+          planes.closed[lane_of_cell(cell)] = 0.;
+        of_bending -= energy();
+        Lanes too_much = 0.;
+        for (const Cell &cell : cells)
+          {
+            const unsigned int lane = lane_of_cell(cell);
+            planes.closed[lane]     = 1.;
+            // stress that varies from -s to s has the energy s^2 V/(6 M);
+            // faces that are pressed together bear s up to the pressure
+            PointHistory &history = history_of(cell, state.material_memory);
+            if (history.tips_of(batch).run_on[lane] == 0.)
+              continue;
+            const double pressure =
+              pressure_on_crack(history.active_point(batch, 0), lane);
+            const double bearable =
+              planes.released[lane] * pressure * pressure * cell->measure() /
+              (6. *
+               kernels[discretization.grid.material(cell)]->wave_modulus());
+            if (of_bending[lane] > bearable)
+              too_much[lane] = 1. - std::sqrt(bearable / of_bending[lane]);
+          }
+        StabilisedFields<Lanes> since_closing = strain(batch);
+        since_closing.add(-1., planes.at_closing);
+        planes.at_closing.add(too_much, since_closing);
+      });
+    change(open,
+           &PointLosses::material,
+           [&](PlanesOfBatch &planes,
+               const unsigned int,
+               const std::vector<Cell> &cells,
+               const auto &) {
+             for (const Cell &cell : cells)
+               planes.released[lane_of_cell(cell)] =
+                 1. - stabilisation_due(cell, state.material_memory);
+           });
   }
 } // namespace Voussoir

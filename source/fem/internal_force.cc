@@ -505,12 +505,12 @@ namespace Voussoir
   }
 
 
-  SymmetricTensor3<Lanes>
-  InternalForce::tensile_stress(const unsigned int  batch,
+  SplitStress
+  InternalForce::elastic_stress(const unsigned int  batch,
                                 const Vector       &displacement,
                                 const PointHistory *history) const
   {
-    return kernels[discretization.material_of_batch[batch]]->tensile_stress(
+    return kernels[discretization.material_of_batch[batch]]->elastic_stress(
       cells_of(batch), displacement, history);
   }
 

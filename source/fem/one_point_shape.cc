@@ -155,14 +155,20 @@ namespace Voussoir
 
   template <typename Number>
   void
-  OnePointShape<Number>::release_stabilisation(const Number &share,
-                                               const Fields &offset,
-                                               const double  young_modulus,
-                                               const double  poisson_ratio)
+  OnePointShape<Number>::scale_stabilisation(const Number &factor)
   {
-    const Fields submitted = stress;
-    stress.add(-share, submitted);
-    stress.add(-share, stress_of(offset, young_modulus, poisson_ratio));
+    stress.for_each_number([&](Number &number) { number *= factor; });
+  }
+
+
+  template <typename Number>
+  void
+  OnePointShape<Number>::add_stabilisation(const Number &factor,
+                                           const Fields &of_strain,
+                                           const double  young_modulus,
+                                           const double  poisson_ratio)
+  {
+    stress.add(factor, stress_of(of_strain, young_modulus, poisson_ratio));
   }
 
 

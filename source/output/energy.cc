@@ -250,8 +250,10 @@ namespace Voussoir
     const double of_step =
       std::numeric_limits<double>::epsilon() * static_work +
       (is_exact ? 0x1p-62 * equation.discretization.owned_dofs.size() : 0.);
+    // cracks release energy of the static state, too
     return std::max({std::abs(net),
                      std::abs(net + terms_now.constraints),
+                     std::abs(terms_now.material),
                      1e-6 * terms_now.boundary,
                      initial,
                      round_off * static_work,

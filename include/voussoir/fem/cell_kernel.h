@@ -142,6 +142,13 @@ namespace Voussoir
   };
 
 
+  /** Stress and its tensile part [Pa]. */
+  struct SplitStress
+  {
+    SymmetricTensor3<Lanes> all, tensile;
+  };
+
+
   /** Energy of the points that have left the elastic range [J]. */
   struct InelasticEnergy
   {
@@ -244,13 +251,12 @@ namespace Voussoir
                          const DampedMotion &motion,
                          const PointHistory &history) const = 0;
 
-    /** Tensile part of the elastic stress of the mean strain of each cell of a
-     *  batch of trilinear cells [Pa], in cracked cells with the strain of their
-     *  openings.
+    /** Elastic stress of the mean strain of each cell of a batch of trilinear
+     *  cells, in cracked cells with the strain of their openings.
      *
      * @param history with the strain of the static state; null: none */
-    virtual SymmetricTensor3<Lanes>
-    tensile_stress(const CellRange    &batch,
+    virtual SplitStress
+    elastic_stress(const CellRange    &batch,
                    const Vector       &displacement,
                    const PointHistory *history) const = 0;
 
@@ -300,6 +306,10 @@ namespace Voussoir
      *  that of the material; see CrackTips. */
     virtual double
     tip_strength(const double cell_size) const = 0;
+
+    /** Tensile strength [Pa]; 0: none. */
+    virtual double
+    tensile_strength() const = 0;
 
     /** Whether a point with these internal variables has a crack that may run
      *  on. */

@@ -15,7 +15,8 @@ namespace Voussoir
    *   face it cuts, through the middle of the cut. Its normal there is the mean
    *   of its own normal and of the principal direction of the tensile part of
    *   the elastic stress around the cell, and is found anew until the cell
-   *   cracks. A first crack begins in the centre of its cell.
+   *   cracks. A first crack begins in the centre of its cell, and keeps the
+   *   normal and the band that it has in the law.
    * - With the sum g of the mean gradients of the corners beyond the plane, of
    *   normal n, the law has a crack with the fixed normal g/|g| in a band of
    *   the width l = 1/(g . n), at most 3 h. If these corners part by a jump w
@@ -25,9 +26,13 @@ namespace Voussoir
    *   crack in a cell of the size h (l/h)^1.5.
    * - Other cells whose centre is within 1.6 h of a cracked cell have twice the
    *   strength of the material, so that the band stays one cell wide.
-   * - The stabilisation is released: ahead of a crack by a tenth at each
-   *   update, down to 1/200, in a crack with its stiffness. The energy that it
-   *   has stored is lost to the crack.
+   * - The stabilisation is released: by a tenth at each update ahead of a
+   *   crack, down to 1/200, and in first cracks, down to their stiffness; in
+   *   other cracks with their stiffness. The energy that it has stored is lost
+   *   to the crack. Where a crack is pressed together, and ahead of a crack
+   *   where the pressure on the plane exceeds the tensile strength, the
+   *   released share acts again on what the cell bends from then on; what this
+   *   stores is lost when the crack opens.
    *
    * doc/damage.md has the trials behind these rules. Cracks do not propagate
    * across joints, whose two sides are no neighbours in the mesh. All that
@@ -66,10 +71,24 @@ namespace Voussoir
     /** Own cells that need an update. */
     struct Found
     {
-      std::vector<Cell> first;    // have cracked without a plane
-      std::vector<Cell> next;     // have cracked in the plane of another crack
-      std::vector<Cell> tips;     // have a plane and have not cracked
-      std::vector<Cell> released; // whose stabilisation changes
+      std::vector<Cell> first;     // have cracked without a plane
+      std::vector<Cell> next;      // have cracked in the plane of another crack
+      std::vector<Cell> tips;      // have a plane and have not cracked
+      std::vector<Cell> releasing; // stabilisation
+      std::vector<Cell> switching; // whether the released share acts again
+
+      bool
+      changes() const
+      {
+        return !releasing.empty() || !switching.empty();
+      }
+    };
+
+    /** Tension around a cell and in it. */
+    struct Tension
+    {
+      dealii::Tensor<1, 3>          direction; // zero where there is none
+      dealii::SymmetricTensor<2, 3> own;       // stress [Pa]
     };
 
     /** A cell and the cells that share a vertex with it, in an order that does
@@ -95,6 +114,18 @@ namespace Voussoir
     double
     stabilisation_due(const Cell &cell, MaterialMemory &memory) const;
 
+    /** Whether a crack is pressed together. */
+    bool
+    is_pressed(const Cell &cell, MaterialMemory &memory) const;
+
+    /** Adds a cell with a plane to those whose stabilisation changes, if so.
+     *  @param closes whether its crack is or should be closed */
+    void
+    find_change(const Cell     &cell,
+                const bool      closes,
+                MaterialMemory &memory,
+                Found          &found) const;
+
     Found
     find(MaterialMemory &memory) const;
 
@@ -105,13 +136,13 @@ namespace Voussoir
     bool
     is_shared(const Cell &cell) const;
 
-    /** Directions of tension around own cells; zero where there is none.
+    /** Tension around own cells.
      *  @param are_shared whether any rank may need stresses of others */
-    std::vector<dealii::Tensor<1, 3>>
-    directions(const std::vector<Cell> &cells,
-               const bool               are_shared,
-               const Vector            &displacement,
-               const MaterialMemory    &memory);
+    std::vector<Tension>
+    tension(const std::vector<Cell> &cells,
+            const bool               are_shared,
+            const Vector            &displacement,
+            const MaterialMemory    &memory);
 
     Plane
     plane_of(const Cell &cell, MaterialMemory &memory) const;
@@ -146,18 +177,19 @@ namespace Voussoir
     void
     strengthen(const Crack &crack, MaterialMemory &memory);
 
-    /** Turns the planes of tips to the direction of tension. */
+    /** Turns the planes of tips to the direction of tension, and adds tips
+     *  whose stabilisation changes. */
     void
-    turn(const std::vector<Cell> &tips,
-         const bool               are_shared,
-         const Vector            &displacement,
-         MaterialMemory          &memory);
+    turn(Found          &found,
+         const bool      are_shared,
+         const Vector   &displacement,
+         MaterialMemory &memory);
 
-    /** Releases stabilisation of these own cells. */
+    /** Changes the stabilisation of cells, and adds the energy lost. */
     void
-    release(const std::vector<Cell> &cells,
-            const double             time_step,
-            State                   &state) const;
+    change_stabilisation(const Found &found,
+                         const double time_step,
+                         State       &state) const;
 
     const Discretization           &discretization;
     std::vector<const CellKernel *> kernels;

@@ -121,9 +121,9 @@ namespace Voussoir
                          const DampedMotion &motion,
                          const PointHistory &history) const;
 
-    /** See CellKernel::tensile_stress. */
-    SymmetricTensor3<Lanes>
-    tensile_stress(const unsigned int  batch,
+    /** See CellKernel::elastic_stress. */
+    SplitStress
+    elastic_stress(const unsigned int  batch,
                    const Vector       &displacement,
                    const PointHistory *history) const;
 

@@ -101,16 +101,16 @@ namespace Voussoir
     submit_stabilisation(const double young_modulus,
                          const double poisson_ratio);
 
-    /**
-     * Releases a share of the stabilisation: subtracts this share of the
-     * submitted stress and of the stress of @p offset, another stabilised
-     * strain.
-     */
+    /** Multiplies the submitted stress. */
     void
-    release_stabilisation(const Number &share,
-                          const Fields &offset,
-                          const double  young_modulus,
-                          const double  poisson_ratio);
+    scale_stabilisation(const Number &factor);
+
+    /** Adds a multiple of the stress of another stabilised strain. */
+    void
+    add_stabilisation(const Number &factor,
+                      const Fields &of_strain,
+                      const double  young_modulus,
+                      const double  poisson_ratio);
 
     const Fields &
     stabilised_strain() const

@@ -60,9 +60,11 @@ namespace Voussoir
 
     dealii::Tensor<1, 3, Lanes> point, normal; // of the plane
     dealii::Tensor<1, 3, Lanes> parent;  // normal of the crack that runs in
-    dealii::Tensor<1, 3, Lanes> opening; // normal in the law of the material
+    dealii::Tensor<1, 3, Lanes> opening; // normal in the law; zero: its own
 
     Lanes released = 0.; // share of the stabilisation
+    Lanes closed   = 0.; // 1 where the released share acts again
+    StabilisedFields<Lanes> at_closing = {}; // strain from which on it acts
 
     /** Calls visit(number) for each number. */
     template <typename Visitor>
@@ -75,6 +77,8 @@ namespace Voussoir
         for (unsigned int d = 0; d < 3; ++d)
           visit((*vector)[d]);
       visit(released);
+      visit(closed);
+      at_closing.for_each_number(visit);
     }
   };
 

@@ -18,6 +18,31 @@ namespace Voussoir
     std::array<Plane, 3>  planes;
     std::array<Number, 3> bars;
 
+    /** Calls visit(number) for each number. */
+    template <typename Visitor>
+    void
+    for_each_number(const Visitor &visit)
+    {
+      for (Plane &plane : planes)
+        for (Number *number : {&plane.ll, &plane.mm, &plane.lm})
+          visit(*number);
+      for (Number &bar : bars)
+        visit(bar);
+    }
+
+    /** Takes one lane of other fields. */
+    void
+    set_lane(const unsigned int lane, const StabilisedFields &other)
+    {
+      for (unsigned int k = 0; k < 3; ++k)
+        {
+          planes[k].ll[lane] = other.planes[k].ll[lane];
+          planes[k].mm[lane] = other.planes[k].mm[lane];
+          planes[k].lm[lane] = other.planes[k].lm[lane];
+          bars[k][lane]      = other.bars[k][lane];
+        }
+    }
+
     /** Adds a multiple of other fields. */
     void
     add(const Number &factor, const StabilisedFields &other)

@@ -89,25 +89,52 @@ namespace Voussoir
     }
 
 
-    /** Energy of cells whose static stabilising stress is released, per share
-     *  [J]: s_s : (e_u - dt/2 e_v + e_s/2) with its elastic strain e_s. */
+    /**
+     * Energy of the share r of the stabilisation that is released, beside that
+     * of the rest [J], for stabilised strains e of the displacement since the
+     * static state and e_v of the velocity: less the static energy,
+     *   - r s_s : (e - dt/2 e_v + e_s/2) ,
+     * and where the crack is closed, with z = e - e_closing,
+     *   r k/2 z : D : (z - dt e_v) .
+     *
+     * @param cell of the batch, for its shape
+     */
     template <typename Law, typename Cell>
     Lanes
-    static_energy_released(const Law          &law,
-                           const Cell         &field,
-                           const Cell         &moving,
-                           const double        dt,
-                           const PointHistory &history,
-                           const unsigned int  batch)
+    energy_of_released(const Law                     &law,
+                       const double                   stress_factor,
+                       const Cell                    &cell,
+                       const StabilisedFields<Lanes> &strain,
+                       const StabilisedFields<Lanes> &velocity,
+                       const double                   dt,
+                       const PointHistory            &history,
+                       const unsigned int             batch)
     {
-      const auto &elastic            = history.stabilised_static(batch).elastic;
-      StabilisedFields<Lanes> strain = field.stabilised_strain();
-      strain.add(-0.5 * dt, moving.stabilised_strain());
-      strain.add(0.5, elastic);
-      return Cell::work(field.stabilising_stress(elastic,
-                                                 law.young_modulus,
-                                                 law.poisson_ratio),
-                        strain);
+      const auto work = [&](const StabilisedFields<Lanes> &a,
+                            const StabilisedFields<Lanes> &b) {
+        return Cell::work(
+          cell.stabilising_stress(a, law.young_modulus, law.poisson_ratio), b);
+      };
+      const PlanesOfBatch    &planes        = history.planes_of(batch);
+      StabilisedFields<Lanes> since_closing = strain;
+      Lanes                   energy        = 0.;
+      if (history.has_static_strains())
+        {
+          const auto &[elastic, offset]  = history.stabilised_static(batch);
+          StabilisedFields<Lanes> middle = strain;
+          middle.add(-0.5 * dt, velocity);
+          middle.add(0.5, elastic);
+          energy -= work(elastic, middle);
+          // that of the static state
+          since_closing.add(1. / stress_factor, elastic);
+          since_closing.add(-1. / stress_factor, offset);
+        }
+      since_closing.add(-1., planes.at_closing);
+      StabilisedFields<Lanes> before = since_closing;
+      before.add(-dt, velocity);
+      energy +=
+        planes.closed * 0.5 * stress_factor * work(since_closing, before);
+      return planes.released * energy;
     }
 
 
@@ -169,14 +196,19 @@ namespace Voussoir
                                      Lanes> &&
                       is_one_point<Cell>)
           if (history != nullptr && history->has_planes() &&
-              history->has_static_strains())
+              any_above(history->planes_of(batch).released, 0.))
             add_cells(total.strain,
                       cells,
                       batch,
                       Number(
-                        reduce(-history->planes_of(batch).released *
-                               static_energy_released(
-                                 law, cell, moving, dt, *history, batch))));
+                        reduce(energy_of_released(law,
+                                                  cells.stress_factor,
+                                                  cell,
+                                                  cell.stabilised_strain(),
+                                                  moving.stabilised_strain(),
+                                                  dt,
+                                                  *history,
+                                                  batch))));
         if (viscosity > 0.)
           {
             const auto [bb, bv] = products_of(motion.velocity_before);
@@ -352,23 +384,19 @@ namespace Voussoir
       read(cell, motion.displacement);
       const StabilisedFields<Lanes> v = moving.stabilised_strain();
 
-      // k/2 e_u : D : (e_u - dt e_v) since the static state, and its own energy
-      StabilisedFields<Lanes> since_static = cell.stabilised_strain();
-      Lanes                   energy       = 0.;
+      StabilisedFields<Lanes> strain = cell.stabilised_strain();
       if (history.has_static_strains())
         {
           const auto &[elastic, offset] =
             history.stabilised_static(batch.begin);
-          since_static.add(-1. / k, elastic);
-          since_static.add(1. / k, offset);
-          StabilisedFields<Lanes> strain = since_static;
-          strain.add(-0.5 * dt, v);
-          strain.add(0.5, elastic);
-          energy += work(elastic, strain);
+          strain.add(-1. / k, elastic);
+          strain.add(1. / k, offset);
         }
-      StabilisedFields<Lanes> before = since_static;
+      const Lanes of_released =
+        energy_of_released(law, k, cell, strain, v, dt, history, batch.begin);
+      StabilisedFields<Lanes> before = strain;
       before.add(-dt, v);
-      energy += 0.5 * k * work(since_static, before);
+      Lanes energy = 0.5 * k * work(strain, before);
 
       // of the branches, as in ElasticEnergy
       const MaxwellStep maxwell(motion.damping, dt);
@@ -380,7 +408,8 @@ namespace Voussoir
             energy += k * damping_factor * dt / (2. * b) *
                       (a * work(w, w) + b * work(w, v));
           }
-      return energy;
+      return (1. - history.planes_of(batch.begin).released) * energy +
+             of_released;
     }
 
 

@@ -121,6 +121,34 @@ namespace Voussoir
     }
 
 
+    /** Releases the share of the stabilisation that a crack has taken; where
+     *  the crack is closed, this share acts again, without damping. */
+    template <typename Cell, typename Law>
+    void
+    release(Cell               &cell,
+            const Cell         &own,
+            const Law          &law,
+            const double        stress_factor,
+            const PointHistory &history,
+            const unsigned int  batch)
+    {
+      const PlanesOfBatch &planes = history.planes_of(batch);
+      const auto           add    = [&](const Lanes                   &factor,
+                           const StabilisedFields<Lanes> &strain) {
+        cell.add_stabilisation(factor,
+                               strain,
+                               law.young_modulus,
+                               law.poisson_ratio);
+      };
+      cell.scale_stabilisation(1. - planes.released);
+      if (history.has_static_strains())
+        add(-planes.released, history.stabilised_static(batch).offset);
+      StabilisedFields<Lanes> since_closing = own.stabilised_strain();
+      since_closing.add(-1., planes.at_closing);
+      add(stress_factor * planes.released * planes.closed, since_closing);
+    }
+
+
     /** CellKernel::add_response. */
     template <typename Law>
     void
@@ -142,7 +170,12 @@ namespace Voussoir
         // damping does not act in cracks
         std::decay_t<decltype(cell)> undamped_cell(matrix_free);
         auto                        &own = damped ? undamped_cell : cell;
-        const auto find_forces           = [&](const unsigned int batch) {
+        const auto evaluate_own          = [&](const unsigned int batch) {
+          own.reinit(batch);
+          own.gather_evaluate(input.displacement,
+                              dealii::EvaluationFlags::gradients);
+        };
+        const auto find_forces = [&](const unsigned int batch) {
           Lanes       widest       = history.bands(batch).widest;
           const Lanes tip_strength = history.tip_strength(batch);
           if (history.has_planes())
@@ -166,9 +199,7 @@ namespace Voussoir
                 {
                   if (!knows_own)
                     {
-                      own.reinit(batch);
-                      own.gather_evaluate(input.displacement,
-                                          dealii::EvaluationFlags::gradients);
+                      evaluate_own(batch);
                       knows_own = true;
                     }
                   stress = response.advance(
@@ -186,7 +217,14 @@ namespace Voussoir
               cell.submit_symmetric_gradient(stress, q);
             }
           stabilise(cell, law, stress_factor);
-          release(cell, law, history, batch);
+          if constexpr (is_one_point<decltype(cell)>)
+            if (history.has_planes() &&
+                any_above(history.planes_of(batch).released, 0.))
+              {
+                if (!knows_own)
+                  evaluate_own(batch);
+                release(cell, own, law, stress_factor, history, batch);
+              }
           cell.integrate(dealii::EvaluationFlags::gradients);
         };
         if (!cells.single_precision)
@@ -326,10 +364,10 @@ namespace Voussoir
     }
 
 
-    /** CellKernel::tensile_stress. */
+    /** CellKernel::elastic_stress. */
     template <typename Law>
-    SymmetricTensor3<Lanes>
-    tensile_stress(const Law          &law,
+    SplitStress
+    elastic_stress(const Law          &law,
                    const CellRange    &batch,
                    const Vector       &displacement,
                    const PointHistory *history)
@@ -342,11 +380,12 @@ namespace Voussoir
         for (unsigned int q = 0; q < history->n_points(); ++q)
           strain +=
             (1. / history->n_points()) * history->strain_offset(batch.begin, q);
-      const auto           principal = spectrum(law.stress(strain));
-      std::array<Lanes, 3> tensile;
+      const SymmetricTensor3<Lanes> stress    = law.stress(strain);
+      const auto                    principal = spectrum(stress);
+      std::array<Lanes, 3>          tensile;
       for (unsigned int i = 0; i < 3; ++i)
         tensile[i] = std::max(principal.values[i], Lanes(0.));
-      return principal.compose(tensile);
+      return {stress, principal.compose(tensile)};
     }
 
 

@@ -51,32 +51,6 @@ namespace Voussoir
         (void)cell, (void)law, (void)stress_factor;
     }
 
-    /** Releases the share of the stabilisation that a crack has taken. */
-    template <typename Cell, typename Law>
-    void
-    release(Cell               &cell,
-            const Law          &law,
-            const PointHistory &history,
-            const unsigned int  batch)
-    {
-      if constexpr (is_one_point<Cell>)
-        {
-          if (!history.has_planes())
-            return;
-          const Lanes released = history.planes_of(batch).released;
-          if (any_above(released, 0.))
-            cell.release_stabilisation(
-              released,
-              history.has_static_strains() ?
-                history.stabilised_static(batch).offset :
-                StabilisedFields<Lanes>(),
-              law.young_modulus,
-              law.poisson_ratio);
-        }
-      else
-        (void)cell, (void)law, (void)history, (void)batch;
-    }
-
     /** Adds the forces of the cells to those of their nodes. */
     template <typename Cell>
     void

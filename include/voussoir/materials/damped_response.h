@@ -514,21 +514,22 @@ namespace Voussoir
         compare_and_apply_mask<Comparison::equal>(known, zero, band, known);
     }
 
-    /** Cracks of cells with planes: their normals and, where they begin now,
-     *  their bands. */
+    /** Points that are elastic take normal and band from the plane of their
+     *  cell. Others have theirs, crushed ones, too, whose stress a crack across
+     *  no principal direction would change at once. */
     static void
     take_planes(const PlanesOfBatch   &planes,
                 const ActivePoint     &last,
                 ActivePoint           &now,
                 PointSituation<Lanes> &situation)
     {
-      situation.crack_normal = planes.opening;
       for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
         if (last.band[lane] == 0. && planes.width[lane] > 0.)
           {
             now.band[lane] = planes.width[lane];
             for (unsigned int d = 0; d < 3; ++d)
-              now.normal[d][lane] = planes.opening[d][lane];
+              now.normal[d][lane] = situation.crack_normal[d][lane] =
+                planes.opening[d][lane];
           }
       situation.element_length = now.band;
     }

@@ -132,6 +132,12 @@ namespace Voussoir
       return law.tip_strength(cell_size);
     }
 
+    double
+    tensile_strength() const override
+    {
+      return law.tensile_failure().strength;
+    }
+
     bool
     is_cracked(const double *history) const override
     {
@@ -236,12 +242,12 @@ namespace Voussoir
         law, batch, damping, motion, history);
     }
 
-    SymmetricTensor3<Lanes>
-    tensile_stress(const CellRange    &batch,
+    SplitStress
+    elastic_stress(const CellRange    &batch,
                    const Vector       &displacement,
                    const PointHistory *history) const override
     {
-      return CellKernels::tensile_stress(law, batch, displacement, history);
+      return CellKernels::elastic_stress(law, batch, displacement, history);
     }
 
     InelasticEnergy

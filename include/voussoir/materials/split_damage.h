@@ -258,6 +258,31 @@ namespace Voussoir
       return progress;
     }
 
+    /**
+     * Cracks along planes that begin late, of an elastic point: beside a crack,
+     * and where the plane of a wide band enters a cell whose stress is above
+     * the elastic limit of this band.
+     *
+     * @param strength of the cell over that of the material
+     * @param driving  equivalent stress over the factor at a tip [Pa]; 0: not
+     * yet
+     * @param held     see SofteningCurve::go_on
+     */
+    void
+    hold(const double strength,
+         const double band,
+         double      &driving,
+         double      &held) const
+    {
+      // that a step changes the stress by less
+      constexpr double most_of_step = 1.05;
+      const double     limit = young_modulus * tension.elastic_limit(band);
+      if (driving < strength * limit)
+        driving = 0.;
+      else if (driving > most_of_step * limit)
+        held = driving / limit;
+    }
+
     /** Advances the damage in tension, whose strength at the tip of a crack is
      *  lower and beside a crack with a plane higher; see `grow`. */
     template <typename Number>
@@ -284,19 +309,16 @@ namespace Voussoir
       const Number factor =
         compare_and_apply_mask<Comparison::equal>(kept, zero, now, kept);
       situation.element_length = situation.element_length * factor * factor;
-      // beside a crack, another one begins late
-      const Number held    = std::max(situation.tip_strength, one);
-      Number       driving = equivalent;
-      if (any_above(held, 1.))
+      Number driving = equivalent / factor, held = one;
+      if (cracks_along_planes())
         for (unsigned int lane = 0; lane < n_lanes<Number>(); ++lane)
-          if (lane_of(held, lane) > 1. && lane_of(history[0], lane) == 0. &&
-              lane_of(equivalent, lane) <
-                lane_of(held, lane) * young_modulus *
-                  tension.elastic_limit(
-                    lane_of(situation.element_length, lane)))
-            lane_of(driving, lane) = 0.;
-      const auto progress = grow(
-        0, Number(driving / factor), history, situation, followed, flows, held);
+          if (lane_of(history[0], lane) == 0. && lane_of(driving, lane) > 0.)
+            hold(lane_of(situation.tip_strength, lane),
+                 lane_of(situation.element_length, lane),
+                 lane_of(driving, lane),
+                 lane_of(held, lane));
+      const auto progress =
+        grow(0, driving, history, situation, followed, flows, held);
       kept = compare_and_apply_mask<Comparison::equal>(history[0],
                                                        zero,
                                                        zero,

@@ -44,6 +44,13 @@ subsection Materials
   end
 end
 """
+PLANES = ONE_POINT + """\
+subsection Materials
+  subsection concrete
+    set Crack growth = along planes
+  end
+end
+"""
 # slope of the rows [degrees], their number, shift of the nodes over the size of a
 # cell, further entries of the case
 RUNS = {
@@ -62,9 +69,14 @@ RUNS = {
     "30 degrees, irregular, fixed cracks": (30., 31, 0.25, FIXED),
     "30 degrees, larger cells, fixed cracks": (30., 21, 0., FIXED),
     "30 degrees, one point, fixed cracks": (30., 31, 0., ONE_POINT + FIXED),
+    "level, along planes": (0., 31, 0., PLANES),
+    "15 degrees, along planes": (15., 31, 0., PLANES),
+    "30 degrees, along planes": (30., 31, 0., PLANES),
+    "30 degrees, irregular, along planes": (30., 31, 0.25, PLANES),
+    "30 degrees, larger cells, along planes": (30., 21, 0., PLANES),
 }
 DRAWN = ("level", "15 degrees", "30 degrees", "30 degrees, fixed cracks",
-         "30 degrees, irregular")
+         "30 degrees, along planes")
 
 CASE = """\
 # A notched plate that is pulled apart; written by doc/mesh_bias.py.

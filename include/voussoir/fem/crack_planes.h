@@ -31,8 +31,9 @@ namespace Voussoir
    *   other cracks with their stiffness. The energy that it has stored is lost
    *   to the crack. Where a crack is pressed together, and ahead of a crack
    *   where the pressure on the plane exceeds the tensile strength, the
-   *   released share acts again on what the cell bends from then on; what this
-   *   stores is lost when the crack opens.
+   *   released share acts again on what the cell bends from then on: in a crack
+   *   with stresses up to the pressure, beyond which its faces part at one
+   *   side. What is lost in this counts as lost by closing.
    *
    * doc/damage.md has the trials behind these rules. Cracks do not propagate
    * across joints, whose two sides are no neighbours in the mesh. All that
@@ -74,7 +75,7 @@ namespace Voussoir
       std::vector<Cell> first;     // have cracked without a plane
       std::vector<Cell> next;      // have cracked in the plane of another crack
       std::vector<Cell> tips;      // have a plane and have not cracked
-      std::vector<Cell> releasing; // stabilisation
+      std::vector<Cell> releasing; // stabilisation, or closed cracks
       std::vector<Cell> switching; // whether the released share acts again
 
       bool
@@ -118,7 +119,7 @@ namespace Voussoir
     bool
     is_pressed(const Cell &cell, MaterialMemory &memory) const;
 
-    /** Adds a cell with a plane to those whose stabilisation changes, if so.
+    /** Adds a cell with a plane to those whose stabilisation may change.
      *  @param closes whether its crack is or should be closed */
     void
     find_change(const Cell     &cell,

@@ -77,7 +77,7 @@ namespace Voussoir
       {
         // by tests/data/notched_plate_reference.py with elements of 0.25 and
         // 0.125 m: 0.380 and 0.379 MPa
-        constexpr double fictitious_crack = 0.378e6;
+        constexpr double fictitious_crack = 0.378e6, fracture_energy = 350.;
         for (const double h : {9., 3.})
           for (const double angle : rows)
             {
@@ -93,23 +93,36 @@ namespace Voussoir
                 make_case(file.with({"Mesh/file/File=" + mesh}));
               const auto simulation =
                 make_simulation(*parameters, communicator);
-              const Pull pull = march_under_pull(*simulation, 0.05);
-              verdicts.near("stress at which the crack runs" + name.str(),
-                            1e-6 * pull.largest / (width * h),
-                            1e-6 * fictitious_crack,
-                            0.11,
-                            "MPa");
+              const Pull   pull     = march_under_pull(*simulation, 0.05);
+              const double stress   = pull.largest / (width * h);
               const double inclined = turns ? 0. : angle * numbers::PI / 180.;
               const double energy =
                 simulation->run.state.material_memory.losses().material /
                 (h * (width - notch) / std::cos(inclined));
-              verdicts.near("energy lost per area of the crack" + name.str(),
-                            energy,
-                            350.,
-                            0.15,
-                            "J/m2");
               if (!turns)
-                continue;
+                {
+                  verdicts.near("stress at which the crack runs" + name.str(),
+                                1e-6 * stress,
+                                1e-6 * fictitious_crack,
+                                0.11,
+                                "MPa");
+                  verdicts.near("energy lost per area of the crack" +
+                                  name.str(),
+                                energy,
+                                fracture_energy,
+                                0.15,
+                                "J/m2");
+                  continue;
+                }
+              // the notch cracks at once, in an order that round-off decides
+              verdicts.below("error of the stress at which the crack runs" +
+                               name.str(),
+                             stress / fictitious_crack - 1.,
+                             0.12);
+              verdicts.below("error of the energy lost per area of the crack" +
+                               name.str(),
+                             energy / fracture_energy - 1.,
+                             0.15);
               verdicts.below("angle of the crack [degrees]" + name.str(),
                              angle_of_cracks(*simulation,
                                              [](const Point<3> &point) {

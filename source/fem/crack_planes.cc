@@ -1,3 +1,4 @@
+#include <voussoir/fem/cell_neighbors.h>
 #include <voussoir/fem/crack_planes.h>
 #include <voussoir/fem/trilinear_cells.h>
 
@@ -54,16 +55,6 @@ namespace Voussoir
       if (n == 0)
         return {};
       return Point<3>(sum / double(n));
-    }
-
-
-    SymmetricTensor<2, 3>
-    lane_of(const SymmetricTensor3<Lanes> &tensor, const unsigned int lane)
-    {
-      SymmetricTensor<2, 3> one;
-      for (unsigned int i = 0; i < 6; ++i)
-        one.access_raw_entry(i) = tensor.access_raw_entry(i)[lane];
-      return one;
     }
 
 
@@ -176,26 +167,23 @@ namespace Voussoir
     std::vector<unsigned int> any(mine.size());
     Utilities::MPI::max(mine, discretization.grid.communicator(), any);
 
-    if (any[cracks] > 0 || any[tips] > 0)
-      {
-        const GhostValues ghosts(state.displacement);
-        if (any[first] > 0)
-          begin(found.first, state.displacement, memory);
-        if (any[cracks] > 0)
-          {
-            const std::vector<Crack> now = new_cracks(found, memory);
-            for (const Crack &crack : now)
-              propagate(crack, memory, found.tips);
-            for (const Crack &crack : now)
-              strengthen(crack, memory);
-          }
-        turn(found,
-             any[cracks] > 0 || any[shared_tips] > 0,
-             state.displacement,
-             memory);
-      }
-    else if (any[changing] == 0)
+    if (any[cracks] == 0 && any[tips] == 0 && any[changing] == 0)
       return;
+    const GhostValues ghosts(state.displacement);
+    if (any[first] > 0)
+      begin(found.first, state.displacement, memory);
+    if (any[cracks] > 0)
+      {
+        const std::vector<Crack> now = new_cracks(found, memory);
+        for (const Crack &crack : now)
+          propagate(crack, memory, found.tips);
+        for (const Crack &crack : now)
+          strengthen(crack, memory);
+      }
+    turn(found,
+         any[cracks] > 0 || any[shared_tips] > 0,
+         state.displacement,
+         memory);
     if (Utilities::MPI::logical_or(found.changes(),
                                    discretization.grid.communicator()))
       change_stabilisation(found, time_step, state);
@@ -267,9 +255,10 @@ namespace Voussoir
     const PlanesOfBatch &planes = history_of(cell, memory).planes_of(batch);
     if (closes != (planes.closed[lane] > 0.))
       found.switching.push_back(cell);
-    else if (closes ?
-               planes.released[lane] > 0. :
-               stabilisation_due(cell, memory) < 1. - planes.released[lane])
+    else if (closes && planes.released[lane] > 0.)
+      found.bearing.push_back(cell);
+    else if (!closes &&
+             stabilisation_due(cell, memory) < 1. - planes.released[lane])
       found.releasing.push_back(cell);
   }
 
@@ -558,7 +547,7 @@ namespace Voussoir
                          MaterialMemory    &memory,
                          std::vector<Cell> &tips)
   {
-    const auto enter = [&](const Cell &cell, const auto &face) {
+    for_each_neighbor(crack.cell, [&](const Cell &cell, const auto &face) {
       if (!cell->is_locally_owned() || !follows_planes(cell) ||
           is_cracked(cell, memory))
         return;
@@ -573,25 +562,7 @@ namespace Voussoir
       set_lane(planes.parent, lane, crack.plane.normal);
       set_plane(cell, {*point, crack.plane.normal}, memory);
       tips.push_back(cell);
-    };
-    const Cell &cell = crack.cell;
-    for (const unsigned int f : cell->face_indices())
-      {
-        if (cell->at_boundary(f))
-          continue;
-        const auto neighbor = cell->neighbor(f);
-        if (!neighbor->has_children())
-          {
-            enter(neighbor, cell->face(f));
-            continue;
-          }
-        const unsigned int opposite = cell->neighbor_of_neighbor(f);
-        for (unsigned int c = 0; c < cell->face(f)->n_children(); ++c)
-          {
-            const auto child = cell->neighbor_child_on_subface(f, c);
-            enter(child, child->face(opposite));
-          }
-      }
+    });
   }
 
 
@@ -651,8 +622,7 @@ namespace Voussoir
                                     const double time_step,
                                     State       &state) const
   {
-    const GhostValues of_displacement(state.displacement),
-      of_velocity(state.velocity);
+    const GhostValues                         of_velocity(state.velocity);
     std::vector<std::unique_ptr<GhostValues>> of_memory;
     for (const Vector &branch : state.memory)
       of_memory.push_back(std::make_unique<GhostValues>(branch));
@@ -663,7 +633,10 @@ namespace Voussoir
       shape.gather_evaluate(state.displacement, EvaluationFlags::gradients);
       return shape.stabilised_strain();
     };
-    // calls work(planes, cells of a batch, their energy), and counts the energy
+    const auto lane_of_cell = [&](const Cell &cell) {
+      return discretization.place_of(cell).lane;
+    };
+    // calls work(planes, batch, its cells, their energy), and counts the energy
     // lost
     const auto change = [&](const std::vector<Cell> &cells,
                             Sum PointLosses::*lost,
@@ -689,23 +662,9 @@ namespace Voussoir
           work(history.planes_of(batch), batch, of_batch, energy);
           const Lanes lost_now = before - energy();
           for (const Cell &cell : of_batch)
-            history.losses.*lost +=
-              lost_now[discretization.place_of(cell).lane];
+            history.losses.*lost += lost_now[lane_of_cell(cell)];
         }
     };
-    const auto lane_of_cell = [&](const Cell &cell) {
-      return discretization.place_of(cell).lane;
-    };
-
-    std::vector<Cell> open, closed;
-    for (const Cell &cell : found.releasing)
-      {
-        const auto [batch, lane] = discretization.place_of(cell);
-        const bool is_closed     = history_of(cell, state.material_memory)
-                                 .planes_of(batch)
-                                 .closed[lane] > 0.;
-        (is_closed ? closed : open).push_back(cell);
-      }
     change(found.switching,
            &PointLosses::closing,
            [&](PlanesOfBatch           &planes,
@@ -721,7 +680,7 @@ namespace Voussoir
                }
            });
     change(
-      closed,
+      found.bearing,
       &PointLosses::closing,
       [&](PlanesOfBatch           &planes,
           const unsigned int       batch,
@@ -755,7 +714,7 @@ namespace Voussoir
         since_closing.add(-1., planes.at_closing);
         planes.at_closing.add(too_much, since_closing);
       });
-    change(open,
+    change(found.releasing,
            &PointLosses::material,
            [&](PlanesOfBatch &planes,
                const unsigned int,

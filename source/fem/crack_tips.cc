@@ -1,3 +1,4 @@
+#include <voussoir/fem/cell_neighbors.h>
 #include <voussoir/fem/crack_tips.h>
 
 #include <deal.II/grid/grid_tools.h>
@@ -128,27 +129,11 @@ namespace Voussoir
   void
   CrackTips::propagate(const Crack &crack, MaterialMemory &memory) const
   {
-    const auto    &cell   = crack.cell;
-    const Point<3> centre = cell->center();
-    for (const unsigned int f : cell->face_indices())
-      {
-        if (cell->at_boundary(f))
-          continue;
-        const auto neighbor = cell->neighbor(f);
-        if (!neighbor->has_children())
-          {
-            if (cuts(centre, crack.normal, cell->face(f)))
-              weaken(neighbor, memory);
-            continue;
-          }
-        const unsigned int opposite = cell->neighbor_of_neighbor(f);
-        for (unsigned int c = 0; c < cell->face(f)->n_children(); ++c)
-          {
-            const auto child = cell->neighbor_child_on_subface(f, c);
-            if (cuts(centre, crack.normal, child->face(opposite)))
-              weaken(child, memory);
-          }
-      }
+    const Point<3> centre = crack.cell->center();
+    for_each_neighbor(crack.cell, [&](const Cell &neighbor, const auto &face) {
+      if (cuts(centre, crack.normal, face))
+        weaken(neighbor, memory);
+    });
   }
 
 

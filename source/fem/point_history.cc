@@ -81,19 +81,6 @@ namespace Voussoir
   }
 
 
-  namespace
-  {
-    SymmetricTensor<2, 3>
-    lane_of(const SymmetricTensor3<Lanes> &tensor, const unsigned int lane)
-    {
-      SymmetricTensor<2, 3> one;
-      for (unsigned int c = 0; c < 6; ++c)
-        one.access_raw_entry(c) = tensor.access_raw_entry(c)[lane];
-      return one;
-    }
-  } // namespace
-
-
   SymmetricTensor<2, 3>
   PointHistory::stress(const Place &place, const unsigned int q) const
   {

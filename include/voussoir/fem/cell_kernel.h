@@ -239,10 +239,9 @@ namespace Voussoir
                    PointHistory       *history) const = 0;
 
     /**
-     * Energy that the stabilisation of each cell of a batch would store if no
-     * share of it were released, half a step before the displacement, less the
-     * work of the forces of the static state [J]. For cells with one point
-     * whose cracks have planes.
+     * Energy that the stabilisation of each cell of a batch stores, half a step
+     * before the displacement, less the work of the forces of the static state
+     * [J]. For cells with one point whose cracks have planes.
      *
      * @param motion with the displacement u, not that since the static state
      */

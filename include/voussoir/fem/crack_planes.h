@@ -75,13 +75,14 @@ namespace Voussoir
       std::vector<Cell> first;     // have cracked without a plane
       std::vector<Cell> next;      // have cracked in the plane of another crack
       std::vector<Cell> tips;      // have a plane and have not cracked
-      std::vector<Cell> releasing; // stabilisation, or closed cracks
+      std::vector<Cell> releasing; // stabilisation
       std::vector<Cell> switching; // whether the released share acts again
+      std::vector<Cell> bearing;   // closed, where this share acts
 
       bool
       changes() const
       {
-        return !releasing.empty() || !switching.empty();
+        return !releasing.empty() || !switching.empty() || !bearing.empty();
       }
     };
 

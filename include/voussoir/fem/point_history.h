@@ -235,12 +235,11 @@ namespace Voussoir
       return planes[points->slot_of_batch[batch]];
     }
 
-    /** Stabilised strains of the static state, as e_0 and e_s of a point. */
+    /** Stabilised strains of the static state: of its displacement, and the
+     *  elastic one times the static factor. */
     struct StabilisedStatic
     {
-      // elastic strain of the static state times the static factor, and this
-      // less k times the strain of the displacement
-      StabilisedFields<Lanes> elastic, offset;
+      StabilisedFields<Lanes> strain, elastic;
     };
 
     /** Of cells whose cracks have planes, after a static state. */

@@ -136,6 +136,15 @@ namespace Voussoir
     return numbers[lane];
   }
 
+  inline dealii::SymmetricTensor<2, 3>
+  lane_of(const SymmetricTensor3<Lanes> &tensor, const unsigned int lane)
+  {
+    dealii::SymmetricTensor<2, 3> one;
+    for (unsigned int c = 0; c < 6; ++c)
+      one.access_raw_entry(c) = tensor.access_raw_entry(c)[lane];
+    return one;
+  }
+
   /** Whether any lane is above a limit. */
   template <typename Number>
   bool

@@ -89,6 +89,19 @@ namespace Voussoir
     }
 
 
+    /** a : D : b of stabilised strains of a batch [J]. */
+    template <typename Law, typename Cell>
+    Lanes
+    stabilised_product(const Law                     &law,
+                       const Cell                    &cell,
+                       const StabilisedFields<Lanes> &a,
+                       const StabilisedFields<Lanes> &b)
+    {
+      return Cell::work(
+        cell.stabilising_stress(a, law.young_modulus, law.poisson_ratio), b);
+    }
+
+
     /**
      * Energy of the share r of the stabilisation that is released, beside that
      * of the rest [J], for stabilised strains e of the displacement since the
@@ -110,24 +123,20 @@ namespace Voussoir
                        const PointHistory            &history,
                        const unsigned int             batch)
     {
-      const auto work = [&](const StabilisedFields<Lanes> &a,
-                            const StabilisedFields<Lanes> &b) {
-        return Cell::work(
-          cell.stabilising_stress(a, law.young_modulus, law.poisson_ratio), b);
+      const auto work = [&](const auto &a, const auto &b) {
+        return stabilised_product(law, cell, a, b);
       };
       const PlanesOfBatch    &planes        = history.planes_of(batch);
       StabilisedFields<Lanes> since_closing = strain;
       Lanes                   energy        = 0.;
       if (history.has_static_strains())
         {
-          const auto &[elastic, offset]  = history.stabilised_static(batch);
+          const auto &[at_rest, elastic] = history.stabilised_static(batch);
           StabilisedFields<Lanes> middle = strain;
           middle.add(-0.5 * dt, velocity);
           middle.add(0.5, elastic);
           energy -= work(elastic, middle);
-          // that of the static state
-          since_closing.add(1. / stress_factor, elastic);
-          since_closing.add(-1. / stress_factor, offset);
+          since_closing.add(1., at_rest);
         }
       since_closing.add(-1., planes.at_closing);
       StabilisedFields<Lanes> before = since_closing;
@@ -375,10 +384,8 @@ namespace Voussoir
         cell.reinit(batch.begin);
         cell.gather_evaluate(vector, dealii::EvaluationFlags::gradients);
       };
-      const auto work = [&](const StabilisedFields<Lanes> &a,
-                            const StabilisedFields<Lanes> &b) {
-        return Cell::work(
-          cell.stabilising_stress(a, law.young_modulus, law.poisson_ratio), b);
+      const auto work = [&](const auto &a, const auto &b) {
+        return stabilised_product(law, cell, a, b);
       };
       read(moving, motion.velocity);
       read(cell, motion.displacement);
@@ -386,12 +393,7 @@ namespace Voussoir
 
       StabilisedFields<Lanes> strain = cell.stabilised_strain();
       if (history.has_static_strains())
-        {
-          const auto &[elastic, offset] =
-            history.stabilised_static(batch.begin);
-          strain.add(-1. / k, elastic);
-          strain.add(1. / k, offset);
-        }
+        strain.add(-1., history.stabilised_static(batch.begin).strain);
       const Lanes of_released =
         energy_of_released(law, k, cell, strain, v, dt, history, batch.begin);
       StabilisedFields<Lanes> before = strain;

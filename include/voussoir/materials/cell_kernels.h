@@ -132,20 +132,23 @@ namespace Voussoir
             const PointHistory &history,
             const unsigned int  batch)
     {
-      const PlanesOfBatch &planes = history.planes_of(batch);
-      const auto           add    = [&](const Lanes                   &factor,
-                           const StabilisedFields<Lanes> &strain) {
-        cell.add_stabilisation(factor,
-                               strain,
-                               law.young_modulus,
-                               law.poisson_ratio);
-      };
-      cell.scale_stabilisation(1. - planes.released);
+      const PlanesOfBatch    &planes = history.planes_of(batch);
+      const Lanes             closed = stress_factor * planes.closed;
+      StabilisedFields<Lanes> kept{};
+      kept.add(closed, own.stabilised_strain());
+      kept.add(-closed, planes.at_closing);
       if (history.has_static_strains())
-        add(-planes.released, history.stabilised_static(batch).offset);
-      StabilisedFields<Lanes> since_closing = own.stabilised_strain();
-      since_closing.add(-1., planes.at_closing);
-      add(stress_factor * planes.released * planes.closed, since_closing);
+        {
+          // forces are those beyond the static state
+          const auto &[strain, elastic] = history.stabilised_static(batch);
+          kept.add(stress_factor, strain);
+          kept.add(-1., elastic);
+        }
+      cell.scale_stabilisation(1. - planes.released);
+      cell.add_stabilisation(planes.released,
+                             kept,
+                             law.young_modulus,
+                             law.poisson_ratio);
     }
 
 
@@ -342,14 +345,12 @@ namespace Voussoir
             if constexpr (is_one_point<decltype(cell)>)
               if (history.has_planes())
                 {
-                  const StabilisedFields<Lanes> own = cell.stabilised_strain();
                   warmth.expand(expansion);
-                  auto &[elastic, offset] = history.stabilised_static(batch);
-                  elastic                 = {};
+                  auto &[own, elastic] = history.stabilised_static(batch);
+                  own                  = cell.stabilised_strain();
+                  elastic              = {};
                   elastic.add(static_factor, own);
                   elastic.add(-static_factor, warmth.stabilised_strain());
-                  offset = elastic;
-                  offset.add(-cells.stress_factor, own);
                 }
             for (const unsigned int q : cell.quadrature_point_indices())
               response.set_static_state(cell.get_symmetric_gradient(q),

@@ -160,6 +160,38 @@ namespace Voussoir
       for (unsigned int i = 0; i < 2; ++i)
         *all[i] = std::move(kept[i]);
     }
+
+
+    // Of the owned nodes.
+    std::vector<Point<3>>
+    positions_of_nodes(const Discretization &discretization)
+    {
+      std::vector<Point<3>> positions(discretization.n_owned_nodes());
+      const auto           &scalar = discretization.fe.base_element(0);
+      FEValues<3>           beside_vertices(discretization.mapping,
+                                  scalar,
+                                  Quadrature<3>(
+                                    scalar.get_unit_support_points()),
+                                  update_quadrature_points);
+      for (const auto &cell :
+           discretization.grid.triangulation().active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            if (discretization.degree > 1)
+              beside_vertices.reinit(cell);
+            const auto nodes =
+              discretization.cell_nodes(discretization.dof_cell(cell));
+            for (unsigned int j = 0; j < nodes.size(); ++j)
+              if (discretization.owned_dofs.is_element(3 * nodes[j]))
+                // The vertices themselves: deal.II 9.6 maps the corners of each
+                // cell with round-off of its own, so that a position would
+                // depend on the order of the cells.
+                positions[discretization.owned_node(nodes[j])] =
+                  j < cell->n_vertices() ? cell->vertex(j) :
+                                           beside_vertices.quadrature_point(j);
+          }
+      return positions;
+    }
   } // namespace
 
 
@@ -255,23 +287,7 @@ namespace Voussoir
     if (single_precision)
       kept_single_corners = single_corners();
 
-    node_positions.resize(n_owned_nodes());
-    FEValues<3> nodes(mapping,
-                      fe.base_element(0),
-                      Quadrature<3>(
-                        fe.base_element(0).get_unit_support_points()),
-                      update_quadrature_points);
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          nodes.reinit(
-            static_cast<Triangulation<3>::active_cell_iterator>(cell));
-          const auto indices = cell_nodes(cell);
-          for (unsigned int j = 0; j < indices.size(); ++j)
-            if (owned_dofs.is_element(3 * indices[j]))
-              node_positions[owned_node(indices[j])] =
-                nodes.quadrature_point(j);
-        }
+    node_positions = positions_of_nodes(*this);
   }
 
 

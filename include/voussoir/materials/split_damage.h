@@ -386,10 +386,17 @@ namespace Voussoir
         stress_beside_crack(stress, normal, *this, crack_friction);
       for (unsigned int i = 0; i < 6; ++i)
         {
-          Number &left = parts[1].access_raw_entry(i);
-          left         = compare_and_apply_mask<Comparison::less_than_or_equal>(
+          // to the last bit the parts of an intact point, whatever the points
+          // beside it in a batch are
+          Number &opened = parts[0].access_raw_entry(i),
+                 &left   = parts[1].access_raw_entry(i);
+          opened = compare_and_apply_mask<Comparison::less_than_or_equal>(
+            history[0],
+            zero,
+            opened,
+            Number(stress.access_raw_entry(i) - beside.access_raw_entry(i)));
+          left = compare_and_apply_mask<Comparison::less_than_or_equal>(
             history[0], zero, left, beside.access_raw_entry(i));
-          parts[0].access_raw_entry(i) = stress.access_raw_entry(i) - left;
         }
       return parts;
     }

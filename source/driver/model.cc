@@ -1,15 +1,14 @@
 #include <voussoir/base/first_rank.h>
+#include <voussoir/base/machine.h>
 #include <voussoir/driver/crack_refinement.h>
 #include <voussoir/driver/mesh_against_case.h>
 #include <voussoir/driver/model.h>
 #include <voussoir/driver/model_checks.h>
-#include <voussoir/grid/partition_counts.h>
+#include <voussoir/grid/curve_partition.h>
 #include <voussoir/loads/added_mass.h>
 #include <voussoir/loads/water_level.h>
 #include <voussoir/mesh/interfaces.h>
 #include <voussoir/mesh/reservoir_mesh.h>
-
-#include <deal.II/distributed/tria.h>
 
 #include <set>
 
@@ -82,37 +81,31 @@ namespace Voussoir
     }
 
 
-    /** The ranks on this rank's machine. */
-    struct RanksOfMachine
+    // Gives the other ranks the names of the first one's sets, and their faces.
+    void
+    share_sets(CoarseMesh &mesh, const MPI_Comm communicator)
     {
-      explicit RanksOfMachine(const MPI_Comm all)
-        : all(all)
-      {
-        MPI_Comm_split_type(
-          all, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &communicator);
-      }
-
-      ~RanksOfMachine()
-      {
-        MPI_Comm_free(&communicator);
-      }
-
-      /** Whether the machines have equally many ranks, one machine after the
-       *  other. */
-      bool
-      is_group() const
-      {
-        const unsigned int size =
-          Utilities::MPI::max(Utilities::MPI::n_mpi_processes(communicator),
-                              all);
-        const bool fits = Utilities::MPI::this_mpi_process(all) % size ==
-                          Utilities::MPI::this_mpi_process(communicator);
-        return Utilities::MPI::min(fits ? 1 : 0, all) == 1;
-      }
-
-      const MPI_Comm all;
-      MPI_Comm       communicator;
-    };
+      using Utilities::MPI::broadcast;
+      std::vector<std::string>                           names;
+      std::vector<std::pair<unsigned int, unsigned int>> faces;
+      for (const auto &set : mesh.cell_sets)
+        names.push_back(set.first);
+      for (const std::string &name : broadcast(communicator, names))
+        mesh.cell_sets[name];
+      names.clear();
+      for (const auto &set : mesh.face_sets)
+        names.push_back(set.first);
+      for (const std::string &name : broadcast(communicator, names))
+        {
+          auto &set = mesh.face_sets[name];
+          faces.clear();
+          for (const auto &[cell, face] : set)
+            faces.emplace_back(cell, face);
+          set.clear();
+          for (const auto &[cell, face] : broadcast(communicator, faces))
+            set.push_back({cell, face});
+        }
+    }
 
 
     // Makes a grid of the mesh and frees the mesh.
@@ -132,18 +125,6 @@ namespace Voussoir
                         ", fewer than the " + std::to_string(n_ranks) +
                         " ranks; take fewer ranks, or smaller cells.");
       return grid;
-    }
-
-
-    std::string
-    describe_partition(const Partition partition, const Grid &grid)
-    {
-      const bool by_p4est =
-        dynamic_cast<const parallel::distributed::Triangulation<3> *>(
-          &grid.triangulation()) != nullptr;
-      return partition == Partition::p4est && !by_p4est ?
-               "along a Hilbert curve" :
-               "by " + option_name(partition);
     }
 
 
@@ -272,15 +253,20 @@ namespace Voussoir
     if (awaits_linear_run(parameters, log.communicator()))
       grid.refine_where = {};
     const RanksOfMachine machine(log.communicator());
-    if (!machine.is_group() || parameters.generator ||
-        parameters.grid.partition == Partition::p4est ||
-        wants_water(parameters))
+    const bool           first_rank_suffices =
+      grid.divided_along_curve() ||
+      (grid.partition == Partition::metis && !parameters.generator &&
+       machine.is_group());
+    if (!first_rank_suffices)
       make(parameters, log);
     else
       {
-        // its first rank distributes the cells
         on_first_rank(machine.communicator, [&] { make(parameters, log); });
-        share_sets(machine.communicator);
+        share_sets(solid, machine.communicator);
+        share_sets(water, machine.communicator);
+        surfaces.of_interface =
+          Utilities::MPI::broadcast(machine.communicator,
+                                    surfaces.of_interface);
       }
   }
 
@@ -289,7 +275,8 @@ namespace Voussoir
   Model::Meshes::make(const Case &parameters, Log &log)
   {
     std::ostringstream report;
-    solid    = parameters.make_mesh(report);
+    solid = parameters.make_mesh(report);
+    order_along_curve(solid); // its cells keep these numbers in checkpoints
     surfaces = parameters.interfaces.split(solid);
     log(report.str());
     water     = take_water(parameters, solid);
@@ -299,33 +286,6 @@ namespace Voussoir
     check_mesh_against_case(parameters, solid, surfaces, materials, log);
     if (grid.refine_where.wanted())
       stressed = stressed_cells(parameters, solid);
-  }
-
-
-  void
-  Model::Meshes::share_sets(const MPI_Comm communicator)
-  {
-    using Utilities::MPI::broadcast;
-    std::vector<std::string>                           names;
-    std::vector<std::pair<unsigned int, unsigned int>> faces;
-    for (const auto &set : solid.cell_sets)
-      names.push_back(set.first);
-    for (const std::string &name : broadcast(communicator, names))
-      solid.cell_sets[name];
-    names.clear();
-    for (const auto &set : solid.face_sets)
-      names.push_back(set.first);
-    for (const std::string &name : broadcast(communicator, names))
-      {
-        auto &set = solid.face_sets[name];
-        faces.clear();
-        for (const auto &[cell, face] : set)
-          faces.emplace_back(cell, face);
-        set.clear();
-        for (const auto &[cell, face] : broadcast(communicator, faces))
-          set.push_back({cell, face});
-      }
-    surfaces.of_interface = broadcast(communicator, surfaces.of_interface);
   }
 
 
@@ -414,21 +374,12 @@ namespace Voussoir
     log.line("Mesh: ",
              grid.describe_balance(),
              ", partition ",
-             describe_partition(parameters.grid.partition, grid),
+             grid.partition(),
              ", at most ",
              solid.discretization.largest_interface(),
              " ghost nodes of a rank");
-    const std::vector<double> costs =
-      materials_of_grid(parameters, {}, {}).costs;
-    for (const unsigned int n_ranks : parameters.grid.counted_ranks)
-      log.line("Partition into ",
-               count_partition(
-                 grid,
-                 [&](const Grid::Cell &cell) {
-                   return costs[grid.material(cell)];
-                 },
-                 n_ranks)
-                 .describe());
+    for (const PartitionCounts &counts : grid.partition_counts())
+      log.line("Partition into ", counts.describe());
     if (const std::string refined =
           describe_refinement(parameters, grid.refinement());
         !refined.empty())

@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/machine.h>
 #include <voussoir/fem/discretization.h>
 #include <voussoir/mesh/mesh_check.h>
 
@@ -212,7 +213,7 @@ namespace Voussoir
     check_size(grid.triangulation().n_global_active_cells(),
                degree,
                "\"Degree\" in section \"Discretization\"",
-               n_machines(grid.communicator()));
+               RanksOfMachine(grid.communicator()).n_machines());
     dof_handler.distribute_dofs(fe);
     number_by_nodes();
     owned_dofs = dof_handler.locally_owned_dofs();

@@ -13,7 +13,7 @@ namespace Voussoir
              discretization.fe.base_element(0),
              QGaussLobatto<3>(discretization.degree + 1),
              update_JxW_values)
-    , from_corners(discretization.reproducible)
+    , from_corners(discretization.degree == 1)
     , volumes(discretization.fe.base_element(0).n_dofs_per_cell())
   {
     // the points are the nodes, in lexicographic instead of hierarchic order
@@ -28,8 +28,8 @@ namespace Voussoir
   {
     if (from_corners)
       {
-        // FEValues reuse the values of the previous cell if it has the same
-        // shape
+        // as FEValues, which are slow, and with reproducible sums must not
+        // reuse the values of a previous cell of the same shape
         for (unsigned int v = 0; v < 8; ++v)
           {
             Tensor<2, 3> edges;

@@ -18,7 +18,7 @@ namespace Voussoir
 
   namespace
   {
-    constexpr int format = 3;
+    constexpr int format = 4; // since cells are numbered along a curve
 
 
     Bytes

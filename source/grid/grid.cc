@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/machine.h>
 #include <voussoir/base/parameter_file.h>
 #include <voussoir/base/text.h>
 #include <voussoir/grid/chart_vertices.h>
@@ -37,36 +38,14 @@ namespace Voussoir
 
   namespace
   {
-    // Whether cells are refined, or partitions by p4est counted.
-    bool
-    needs_p4est(const GridParameters &parameters)
-    {
-      return parameters.global_refinement > 0 ||
-             !parameters.local_refinement.empty() ||
-             parameters.nodes_per_wavelength > 0. ||
-             parameters.refine_where.wanted() ||
-             !parameters.counted_ranks.empty();
-    }
-
-
-    // Makes the own cells and those around them only, while p4est would hold
-    // the whole mesh on every rank.
-    std::unique_ptr<Grid::Triangulation>
-    unrefined(const CoarseMesh                      &coarse,
-              const std::vector<types::material_id> &tags,
-              const Grid::Materials                 &materials,
-              const MPI_Comm                         communicator)
+    std::vector<double>
+    costs_of_cells(const Grid::Materials &materials)
     {
       std::vector<double> costs;
-      costs.reserve(coarse.cells.size());
+      costs.reserve(materials.of_cell.size());
       for (const unsigned int material : materials.of_cell)
         costs.push_back(materials.costs[material]);
-      auto mesh =
-        std::make_unique<parallel::fullydistributed::Triangulation<3>>(
-          communicator);
-      mesh->create_triangulation(
-        part_along_curve(coarse, tags, costs, communicator));
-      return mesh;
+      return costs;
     }
   } // namespace
 
@@ -76,6 +55,9 @@ namespace Voussoir
              const Materials      &materials,
              const MPI_Comm        communicator)
     : mpi_communicator(communicator)
+    , partition_name(parameters.divided_along_curve() ?
+                       "along a Hilbert curve" :
+                       "by " + option_name(parameters.partition))
     , faces_of_set(coarse.face_sets.size() + 1)
   {
     for (const auto &set : coarse.face_sets)
@@ -87,11 +69,16 @@ namespace Voussoir
         check_cell_set(item.set, "\"Local refinement\" in section \"Mesh\"");
     for (const std::string &set : split_list(parameters.refine_where.cell_sets))
       check_cell_set(set, "\"Cell sets\" in section \"Mesh/Refine where\"");
+    if (parameters.partition == Partition::metis &&
+        !parameters.counted_ranks.empty())
+      throw UserError("\"Count partitions\" in section \"Mesh\" needs "
+                      "\"Partition = p4est\".");
     const auto tags = make_tags(coarse, materials.of_cell);
+    share_tags();
     if (parameters.partition == Partition::metis)
       create_metis(coarse, tags, parameters, materials);
-    else if (!needs_p4est(parameters))
-      mesh = unrefined(coarse, tags, materials, mpi_communicator);
+    else if (parameters.divided_along_curve())
+      create_along_curve(coarse, tags, parameters, materials);
     else
       create_p4est(coarse, tags, parameters, materials);
     find_faces(coarse);
@@ -184,11 +171,35 @@ namespace Voussoir
                            coarse,
                            parameters,
                            materials,
-                           n_machines(mpi_communicator));
+                           RanksOfMachine(mpi_communicator).n_machines());
     triangulation->repartition();
     triangulation->signals.weight.disconnect_all_slots();
     place_vertices(coarse.chart, *triangulation);
+    for (const unsigned int n_ranks : parameters.counted_ranks)
+      counts.push_back(count_by_p4est(
+        *triangulation,
+        [&](const Cell &cell) { return materials.costs[material(cell)]; },
+        n_ranks));
     mesh = std::move(triangulation);
+  }
+
+
+  // Makes the own cells and those around them only, while p4est would store the
+  // whole mesh on every rank.
+  void
+  Grid::create_along_curve(const CoarseMesh                      &coarse,
+                           const std::vector<types::material_id> &tags,
+                           const GridParameters                  &parameters,
+                           const Materials                       &materials)
+  {
+    const auto costs = costs_of_cells(materials);
+    mesh = std::make_unique<parallel::fullydistributed::Triangulation<3>>(
+      mpi_communicator);
+    mesh->create_triangulation(
+      part_along_curve(coarse, tags, costs, mpi_communicator));
+    for (const unsigned int n_ranks : parameters.counted_ranks)
+      counts.push_back(
+        count_along_curve(coarse, costs, n_ranks, mpi_communicator));
   }
 
 
@@ -212,7 +223,7 @@ namespace Voussoir
                      const Materials                       &materials)
   {
     share_tags();
-    const double machines  = n_machines(mpi_communicator);
+    const double machines  = RanksOfMachine(mpi_communicator).n_machines();
     const auto   make_mesh = [&](dealii::Triangulation<3> &serial) {
       create_coarse(coarse, tags, serial);
       refined_where = refine(serial, coarse, parameters, materials, machines);
@@ -407,6 +418,20 @@ namespace Voussoir
   Grid::refinement() const
   {
     return refined_where;
+  }
+
+
+  const std::string &
+  Grid::partition() const
+  {
+    return partition_name;
+  }
+
+
+  const std::vector<PartitionCounts> &
+  Grid::partition_counts() const
+  {
+    return counts;
   }
 
 

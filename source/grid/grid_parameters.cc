@@ -47,20 +47,30 @@ namespace Voussoir
       partition,
       "How the cells are distributed to the ranks; the results are the same. "
       "With p4est every rank stores the mesh before refinement; a mesh that is "
-      "not refined is distributed along a Hilbert curve instead, and a rank "
-      "stores its part only. With METIS one rank of each machine makes the "
-      "refined mesh, and sends the others their parts, which takes less memory "
-      "for a fine mesh from a file.");
+      "not refined is made by one rank of each machine, which sends the others "
+      "their parts along a Hilbert curve. With METIS one rank of each machine "
+      "makes the refined mesh and sends the others their parts, which takes "
+      "less memory for a fine mesh from a file.");
     prm.add_parameter(
       "Count partitions",
       counted_ranks,
       "Numbers of ranks, separated by commas, for which the log describes a "
-      "partition by p4est: balance, neighbours of a rank and nodes that it "
-      "exchanges with them. The run itself may have another number of ranks.",
+      "partition by p4est or along the Hilbert curve: balance, neighbours of a "
+      "rank, nodes that it exchanges with them and the part of its cells "
+      "without these. The run itself may have another number of ranks.",
       Patterns::List(Patterns::Integer(1, 1000000)));
     prm.enter_subsection("Refine where");
     refine_where.declare(prm);
     prm.leave_subsection();
+  }
+
+
+  bool
+  GridParameters::divided_along_curve() const
+  {
+    return partition == Partition::p4est && global_refinement == 0 &&
+           local_refinement.empty() && nodes_per_wavelength == 0. &&
+           !refine_where.wanted();
   }
 
 

@@ -1,8 +1,8 @@
-#include <voussoir/base/error.h>
+#include <voussoir/base/mpi.h>
+#include <voussoir/grid/curve_partition.h>
 #include <voussoir/grid/partition_counts.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/distributed/tria.h>
 #include <deal.II/grid/grid_tools.h>
 
 #include <algorithm>
@@ -18,15 +18,17 @@ namespace Voussoir
 
   namespace
   {
+    using Mesh = parallel::DistributedTriangulationBase<3>;
+    using Cost = std::function<double(const Triangulation<3>::cell_iterator &)>;
+
+
     // The rank of each cell, owned ones and ghosts.
     std::vector<unsigned int>
-    deal_cells(const Grid                                      &grid,
-               const std::function<double(const Grid::Cell &)> &cost,
-               const unsigned int                               n_ranks)
+    deal_cells(const Mesh &mesh, const Cost &cost, const unsigned int n_ranks)
     {
-      const auto &mesh = grid.triangulation();
       // a CellId is ordered by the trees of p4est and the children in them
-      std::vector<std::pair<CellId, Grid::ActiveCell>> cells;
+      using Cell = Triangulation<3>::active_cell_iterator;
+      std::vector<std::pair<CellId, Cell>> cells;
       for (const auto &cell : mesh.active_cell_iterators())
         if (cell->is_locally_owned())
           cells.emplace_back(cell->id(), cell);
@@ -34,14 +36,15 @@ namespace Voussoir
         return a.first < b.first;
       });
 
-      double mine = 0.;
+      const MPI_Comm communicator = mesh.get_communicator();
+      double         mine         = 0.;
       for (const auto &item : cells)
         mine += cost(item.second);
       double before = 0., total = 0.;
       for (const double of_rank :
-           Utilities::MPI::all_gather(grid.communicator(), mine))
+           Utilities::MPI::all_gather(communicator, mine))
         total += of_rank;
-      MPI_Exscan(&mine, &before, 1, MPI_DOUBLE, MPI_SUM, grid.communicator());
+      MPI_Exscan(&mine, &before, 1, MPI_DOUBLE, MPI_SUM, communicator);
       std::vector<unsigned int> rank(mesh.n_active_cells());
       for (const auto &[id, cell] : cells)
         {
@@ -60,6 +63,105 @@ namespace Voussoir
         });
       return rank;
     }
+
+
+    // The lowest and the highest rank of the cells at each vertex.
+    class RanksAtVertices
+    {
+    public:
+      explicit RanksAtVertices(const std::size_t n_vertices)
+        : lowest(n_vertices, std::numeric_limits<unsigned int>::max())
+        , highest(n_vertices, 0)
+      {}
+
+      void
+      add(const unsigned int vertex, const unsigned int rank)
+      {
+        lowest[vertex]  = std::min(lowest[vertex], rank);
+        highest[vertex] = std::max(highest[vertex], rank);
+      }
+
+      unsigned int
+      owner(const unsigned int vertex) const
+      {
+        return lowest[vertex];
+      }
+
+      bool
+      is_shared(const unsigned int vertex) const
+      {
+        return lowest[vertex] != highest[vertex];
+      }
+
+    private:
+      std::vector<unsigned int> lowest, highest;
+    };
+
+
+    // What one rank of the run knows of the ranks that are counted.
+    struct Counts
+    {
+      explicit Counts(const unsigned int n_ranks)
+        : load(n_ranks, 0.)
+        , cells(n_ranks, 0.)
+        , inner_cells(n_ranks, 0.)
+      {}
+
+      void
+      add_cell(const unsigned int rank, const double cost, const bool is_inner)
+      {
+        load[rank] += cost;
+        cells[rank] += 1.;
+        inner_cells[rank] += is_inner ? 1. : 0.;
+      }
+
+      PartitionCounts
+      sum(const MPI_Comm communicator) const
+      {
+        const auto                          n_ranks = load.size();
+        std::vector<std::set<unsigned int>> neighbours(n_ranks);
+        std::vector<unsigned int>           nodes(n_ranks, 0);
+        std::vector<
+          std::pair<std::pair<unsigned int, unsigned int>, unsigned int>>
+          list(pairs.begin(), pairs.end());
+        for (const auto &of_rank : Utilities::MPI::gather(communicator, list))
+          for (const auto &[pair, n] : of_rank)
+            for (const auto &[own, other] :
+                 {pair, std::make_pair(pair.second, pair.first)})
+              {
+                neighbours[own].insert(other);
+                nodes[own] += n;
+              }
+        const auto loads     = sum_over_ranks(load, communicator),
+                   n_cells   = sum_over_ranks(cells, communicator),
+                   all_inner = sum_over_ranks(inner_cells, communicator);
+        PartitionCounts result{
+          static_cast<unsigned int>(n_ranks), 0., 0., 0., 0, 0, 0., 1.};
+        double total = 0.;
+        for (unsigned int r = 0; r < n_ranks; ++r)
+          {
+            const unsigned int n_neighbours = neighbours[r].size();
+            const double       inner =
+              n_cells[r] > 0. ? all_inner[r] / n_cells[r] : 1.;
+            total += loads[r];
+            result.balance = std::max(result.balance, loads[r]);
+            result.neighbours += double(n_neighbours) / n_ranks;
+            result.nodes += double(nodes[r]) / n_ranks;
+            result.inner += inner / n_ranks;
+            result.most_neighbours =
+              std::max(result.most_neighbours, n_neighbours);
+            result.most_nodes  = std::max(result.most_nodes, nodes[r]);
+            result.least_inner = std::min(result.least_inner, inner);
+          }
+        result.balance *= n_ranks / total;
+        return Utilities::MPI::broadcast(communicator, result);
+      }
+
+      std::vector<double> load, cells, inner_cells; // of each rank
+
+      // owner and other rank, number of nodes
+      std::map<std::pair<unsigned int, unsigned int>, unsigned int> pairs;
+    };
   } // namespace
 
 
@@ -70,103 +172,93 @@ namespace Voussoir
     text << std::setprecision(3) << ranks << " ranks: largest load " << balance
          << " of the mean, neighbours of a rank " << neighbours << " (at most "
          << most_neighbours << "), nodes it exchanges with them " << nodes
-         << " (at most " << most_nodes << ")";
+         << " (at most " << most_nodes << "), part of its cells without these "
+         << inner << " (at least " << least_inner << ")";
     return text.str();
   }
 
 
   PartitionCounts
-  count_partition(const Grid                                      &grid,
-                  const std::function<double(const Grid::Cell &)> &cost,
-                  const unsigned int                               n_ranks)
+  count_by_p4est(const Mesh &mesh, const Cost &cost, const unsigned int n_ranks)
   {
-    const auto &mesh = grid.triangulation();
-    if (dynamic_cast<const parallel::distributed::Triangulation<3> *>(&mesh) ==
-        nullptr)
-      throw UserError("\"Count partitions\" in section \"Mesh\" needs "
-                      "\"Partition = p4est\".");
-    const auto rank = deal_cells(grid, cost, n_ranks);
+    const auto rank = deal_cells(mesh, cost, n_ranks);
 
-    // the rank that owns the first cell at a node counts the node
-    constexpr auto none = numbers::invalid_unsigned_int;
+    RanksAtVertices at(mesh.n_vertices());
+    for (const auto &cell : mesh.active_cell_iterators())
+      if (!cell->is_artificial())
+        for (const unsigned int v : cell->vertex_indices())
+          at.add(cell->vertex_index(v), rank[cell->active_cell_index()]);
+
+    // the rank of the run that owns the first cell at a node counts the node
     struct Node
     {
       types::global_cell_index first =
         std::numeric_limits<types::global_cell_index>::max();
-      bool                      is_owned = false;
-      std::vector<unsigned int> ranks;
+      bool                   is_owned = false;
+      std::set<unsigned int> ranks;
     };
-    std::vector<unsigned int> lowest(mesh.n_vertices(), none),
-      highest(mesh.n_vertices(), 0);
-    for (const auto &cell : mesh.active_cell_iterators())
-      if (!cell->is_artificial())
-        for (const unsigned int v : cell->vertex_indices())
-          {
-            const unsigned int vertex = cell->vertex_index(v),
-                               own    = rank[cell->active_cell_index()];
-            lowest[vertex]            = std::min(lowest[vertex], own);
-            highest[vertex]           = std::max(highest[vertex], own);
-          }
     std::map<unsigned int, Node> shared;
-    std::vector<double>          load(n_ranks, 0.);
+    Counts                       counts(n_ranks);
     for (const auto &cell : mesh.active_cell_iterators())
       if (!cell->is_artificial())
         {
-          const unsigned int own = rank[cell->active_cell_index()];
-          if (cell->is_locally_owned())
-            load[own] += cost(cell);
+          const unsigned int own      = rank[cell->active_cell_index()];
+          bool               is_inner = true;
           for (const unsigned int v : cell->vertex_indices())
             if (const unsigned int vertex = cell->vertex_index(v);
-                lowest[vertex] != highest[vertex])
+                at.is_shared(vertex))
               {
+                is_inner   = false;
                 Node &node = shared[vertex];
                 if (cell->global_active_cell_index() < node.first)
                   {
                     node.first    = cell->global_active_cell_index();
                     node.is_owned = cell->is_locally_owned();
                   }
-                if (std::find(node.ranks.begin(), node.ranks.end(), own) ==
-                    node.ranks.end())
-                  node.ranks.push_back(own);
+                node.ranks.insert(own);
               }
+          if (cell->is_locally_owned())
+            counts.add_cell(own, cost(cell), is_inner);
         }
-    using Pairs = std::map<std::pair<unsigned int, unsigned int>, unsigned int>;
-    Pairs pairs; // owner and other rank, number of nodes
     for (const auto &[vertex, node] : shared)
       if (node.is_owned)
         for (const unsigned int other : node.ranks)
-          if (other != lowest[vertex])
-            ++pairs[{lowest[vertex], other}];
+          if (other != at.owner(vertex))
+            ++counts.pairs[{at.owner(vertex), other}];
+    return counts.sum(mesh.get_communicator());
+  }
 
-    Utilities::MPI::sum(load, grid.communicator(), load);
-    const auto all = Utilities::MPI::gather(
-      grid.communicator(),
-      std::vector<std::pair<std::pair<unsigned int, unsigned int>,
-                            unsigned int>>(pairs.begin(), pairs.end()));
-    std::vector<std::set<unsigned int>> neighbours(n_ranks);
-    std::vector<unsigned int>           nodes(n_ranks, 0);
-    for (const auto &of_rank : all)
-      for (const auto &[pair, n] : of_rank)
-        for (const unsigned int side : {0, 1})
-          {
-            const unsigned int own   = side == 0 ? pair.first : pair.second,
-                               other = side == 0 ? pair.second : pair.first;
-            neighbours[own].insert(other);
-            nodes[own] += n;
-          }
-    PartitionCounts result{n_ranks, 0., 0., 0., 0, 0};
-    double          total = 0.;
-    for (unsigned int r = 0; r < n_ranks; ++r)
+
+  PartitionCounts
+  count_along_curve(const CoarseMesh          &mesh,
+                    const std::vector<double> &costs,
+                    const unsigned int         n_ranks,
+                    const MPI_Comm             communicator)
+  {
+    Counts counts(n_ranks);
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
       {
-        total += load[r];
-        result.balance = std::max(result.balance, load[r]);
-        result.neighbours += double(neighbours[r].size()) / n_ranks;
-        result.nodes += double(nodes[r]) / n_ranks;
-        result.most_neighbours =
-          std::max<unsigned int>(result.most_neighbours, neighbours[r].size());
-        result.most_nodes = std::max(result.most_nodes, nodes[r]);
+        const auto      rank = ranks_along_curve(costs, n_ranks);
+        RanksAtVertices at(mesh.vertices.size());
+        for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
+          for (const unsigned int vertex : mesh.cells[cell])
+            at.add(vertex, rank[cell]);
+        std::set<std::pair<unsigned int, unsigned int>> shared; // node, rank
+        for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
+          {
+            bool is_inner = true;
+            for (const unsigned int vertex : mesh.cells[cell])
+              if (at.is_shared(vertex))
+                {
+                  is_inner = false;
+                  if (rank[cell] != at.owner(vertex))
+                    shared.emplace(vertex, rank[cell]);
+                }
+            counts.add_cell(rank[cell], costs[cell], is_inner);
+          }
+        for (const auto &[vertex, other] : shared)
+          ++counts.pairs[{at.owner(vertex), other}];
       }
-    result.balance *= n_ranks / total;
-    return Utilities::MPI::broadcast(grid.communicator(), result);
+    return counts.sum(communicator);
   }
 } // namespace Voussoir

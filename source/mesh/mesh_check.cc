@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/machine.h>
 #include <voussoir/base/text.h>
 #include <voussoir/mesh/mesh_check.h>
 #include <voussoir/mesh/mesh_geometry.h>
@@ -301,18 +302,6 @@ namespace Voussoir
 
 
   double
-  n_machines(const MPI_Comm communicator)
-  {
-    MPI_Comm machine;
-    MPI_Comm_split_type(
-      communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
-    const bool first = Utilities::MPI::this_mpi_process(machine) == 0;
-    MPI_Comm_free(&machine);
-    return Utilities::MPI::sum(first ? 1. : 0., communicator);
-  }
-
-
-  double
   memory_of_machine()
   {
     return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);
@@ -344,7 +333,8 @@ namespace Voussoir
   {
     const double ranks  = Utilities::MPI::n_mpi_processes(communicator),
                  needed = memory_per_coarse_cell * n_cells * ranks,
-                 memory = memory_of_machine() * n_machines(communicator);
+                 memory = memory_of_machine() *
+                          RanksOfMachine(communicator).n_machines();
     if (needed <= memory)
       return;
     std::ostringstream text;

@@ -12,25 +12,6 @@ namespace Voussoir
 {
   using namespace dealii;
 
-  std::array<unsigned int, 4>
-  face_vertices(const CoarseMesh &mesh, const CoarseMesh::Face &face)
-  {
-    // GeometryInfo<3>::face_to_cell_vertices, which is slow
-    constexpr std::array<std::array<unsigned int, 4>, 6> corners{
-      {{{0, 2, 4, 6}},
-       {{1, 3, 5, 7}},
-       {{0, 4, 1, 5}},
-       {{2, 6, 3, 7}},
-       {{0, 1, 2, 3}},
-       {{4, 5, 6, 7}}}};
-    const auto                 &cell = mesh.cells[face.cell];
-    std::array<unsigned int, 4> vertices;
-    for (unsigned int i = 0; i < 4; ++i)
-      vertices[i] = cell[corners[face.face][i]];
-    return vertices;
-  }
-
-
   std::vector<SortedFace>
   sorted_faces(const CoarseMesh &mesh)
   {

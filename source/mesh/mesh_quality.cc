@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace Voussoir
@@ -13,28 +14,34 @@ namespace Voussoir
   void
   MeshQuality::take(const std::array<Point<3>, 8> &vertices)
   {
-    double shortest = vertices[0].distance(vertices[1]), longest = shortest;
+    // the unit vector along direction d from vertex v, or to it, joins the two
+    // vertices that differ in bit d
+    double shortest = std::numeric_limits<double>::max(), longest = 0.;
+    std::array<std::array<Tensor<1, 3>, 8>, 3> along;
+    for (unsigned int d = 0; d < 3; ++d)
+      for (unsigned int v = 0; v < 8; ++v)
+        if (const unsigned int end = v | (1U << d); end != v)
+          {
+            const Tensor<1, 3> edge   = vertices[end] - vertices[v];
+            const double       length = edge.norm();
+            shortest                  = std::min(shortest, length);
+            longest                   = std::max(longest, length);
+            along[d][v] = along[d][end] = edge / length;
+          }
     double largest_cosine = -1.;
     for (unsigned int v = 0; v < 8; ++v)
       {
-        // along direction d lies the vertex that differs in bit d
-        std::array<Tensor<1, 3>, 3> edges;
-        for (unsigned int d = 0; d < 3; ++d)
-          {
-            edges[d]            = vertices[v ^ (1U << d)] - vertices[v];
-            const double length = edges[d].norm();
-            shortest            = std::min(shortest, length);
-            longest             = std::max(longest, length);
-            edges[d] /= length;
-          }
-        // each edge that runs backwards turns the sign
-        const double sign = (v ^ v >> 1 ^ v >> 2) & 1 ? -1. : 1.;
         scaled_jacobian =
           std::min(scaled_jacobian,
-                   sign * (edges[0] * cross_product_3d(edges[1], edges[2])));
+                   along[0][v] * cross_product_3d(along[1][v], along[2][v]));
         for (unsigned int d = 0; d < 3; ++d)
-          largest_cosine =
-            std::max(largest_cosine, edges[d] * edges[(d + 1) % 3]);
+          {
+            const unsigned int other = (d + 1) % 3;
+            // one of the two vectors runs to the vertex
+            const double sign = (v >> d ^ v >> other) & 1 ? -1. : 1.;
+            largest_cosine =
+              std::max(largest_cosine, sign * (along[d][v] * along[other][v]));
+          }
       }
     smallest_angle =
       std::min(smallest_angle,

@@ -25,6 +25,21 @@ namespace Voussoir
     using Quad   = ArchDamCrossSection::Quad;
 
 
+    // The part of a corner between the edges @p a and @p b, over the size of
+    // the cell, in the distortion.
+    double
+    distortion_of_corner(const Tensor<1, 2> &a, const Tensor<1, 2> &b)
+    {
+      const double det = a[0] * b[1] - a[1] * b[0];
+      // the size stays positive where a corner is inverted, so that smoothing
+      // can restore the corner
+      const double size = 0.5 * (det + std::sqrt(det * det + flat * flat));
+      const double inverse =
+        (a.norm_square() + b.norm_square()) / (size * size);
+      return inverse * inverse * inverse * inverse;
+    }
+
+
     /**
      * Distortion of the quadrilaterals around a vertex: the sum over their
      * corners of |J^-1|^8, where J has the two edges over the cell's size in
@@ -34,56 +49,57 @@ namespace Voussoir
     class Distortion
     {
     public:
-      Distortion(const std::vector<Vertex> &vertices,
-                 const std::vector<Quad>   &quads)
-        : vertices(vertices)
-        , quads(quads)
-        , quads_at(vertices.size())
+      /** @p around are the numbers of the quadrilaterals at vertex @p v. */
+      Distortion(const std::vector<Vertex>       &vertices,
+                 const std::vector<Quad>         &quads,
+                 const std::vector<unsigned int> &around,
+                 const unsigned int               v)
+        : vertex(vertices[v])
       {
-        for (unsigned int q = 0; q < quads.size(); ++q)
-          for (const unsigned int v : quads[q].vertices)
-            quads_at[v].push_back(q);
-      }
-
-      /** The distortion with vertex @p v at @p place. */
-      double
-      operator()(const unsigned int v, const Vertex &place) const
-      {
-        double sum = 0;
-        for (const unsigned int q : quads_at[v])
+        for (const unsigned int q : around)
           {
-            const auto x = corners(quads[q], v, place);
+            Corners corners{{{quads[q].width, quads[q].height}}, {}, 0, 0.};
             for (unsigned int i = 0; i < 4; ++i)
               {
-                const Tensor<1, 2> a = x[(i + 1) % 4] - x[i],
-                                   b = x[(i + 3) % 4] - x[i];
-                const double det     = a[0] * b[1] - a[1] * b[0];
-                // the size stays positive where a corner is inverted, so that
-                // smoothing can restore the corner
-                const double size =
-                  0.5 * (det + std::sqrt(det * det + flat * flat));
-                const double inverse =
-                  (a.norm_square() + b.norm_square()) / (size * size);
-                sum += inverse * inverse * inverse * inverse;
+                corners.x[i] =
+                  corners.over_size(vertices[quads[q].vertices[i]]);
+                if (quads[q].vertices[i] == v)
+                  corners.moved = i;
               }
+            corners.opposite = corners.part_of((corners.moved + 2) % 4);
+            all.push_back(corners);
+            width  = std::min(width, quads[q].width);
+            height = std::min(height, quads[q].height);
+          }
+        here = (*this)(vertex);
+      }
+
+      /** The distortion with the vertex at @p place. */
+      double
+      operator()(const Vertex &place)
+      {
+        double sum = 0.;
+        for (Corners &corners : all)
+          {
+            corners.x[corners.moved] = corners.over_size(place);
+            for (unsigned int i = 0; i < 4; ++i)
+              sum += i == (corners.moved + 2) % 4 ? corners.opposite :
+                                                    corners.part_of(i);
           }
         return sum;
       }
 
-      /** Newton's step of vertex @p v along one direction, by differences over
+      /** Newton's step of the vertex along one direction, by differences over
        *  a probe; @p shifted moves the vertex, @p size is that of its cells. */
       template <typename Shift>
       double
-      newton_step(const unsigned int v,
-                  const double       size,
-                  const Shift       &shifted) const
+      newton_step(const double size, const Shift &shifted)
       {
         const double probe     = relative_probe * size;
-        const double before    = (*this)(v, shifted(-probe)),
-                     at        = (*this)(v, vertices[v]),
-                     after     = (*this)(v, shifted(probe));
+        const double before    = (*this)(shifted(-probe)),
+                     after     = (*this)(shifted(probe));
         const double slope     = (after - before) / (2. * probe),
-                     curvature = (after - 2. * at + before) / (probe * probe);
+                     curvature = (after - 2. * here + before) / (probe * probe);
         const double limit     = largest_step * size;
         return std::max(-limit,
                         std::min(limit,
@@ -92,41 +108,35 @@ namespace Voussoir
                                             std::abs(slope) / size)));
       }
 
-      /** Least width and height of the cells around a vertex. */
-      std::pair<double, double>
-      cell_size(const unsigned int v) const
-      {
-        double width  = std::numeric_limits<double>::max(),
-               height = std::numeric_limits<double>::max();
-        for (const unsigned int q : quads_at[v])
-          {
-            width  = std::min(width, quads[q].width);
-            height = std::min(height, quads[q].height);
-          }
-        return {width, height};
-      }
+      // least of the cells around
+      double width  = std::numeric_limits<double>::max(),
+             height = std::numeric_limits<double>::max();
 
     private:
-      // The edges over the size of the quadrilateral.
-      std::array<Tensor<1, 2>, 4>
-      corners(const Quad        &quad,
-              const unsigned int moved,
-              const Vertex      &place) const
+      struct Corners
       {
-        std::array<Tensor<1, 2>, 4> x;
-        for (unsigned int i = 0; i < 4; ++i)
-          {
-            const Vertex &vertex =
-              quad.vertices[i] == moved ? place : vertices[quad.vertices[i]];
-            x[i] =
-              Tensor<1, 2>({vertex.s / quad.width, vertex.z / quad.height});
-          }
-        return x;
-      }
+        Tensor<1, 2>
+        over_size(const Vertex &v) const
+        {
+          return Tensor<1, 2>({v.s / size[0], v.z / size[1]});
+        }
 
-      const std::vector<Vertex>             &vertices;
-      const std::vector<Quad>               &quads;
-      std::vector<std::vector<unsigned int>> quads_at; // by vertex
+        double
+        part_of(const unsigned int i) const
+        {
+          return distortion_of_corner(x[(i + 1) % 4] - x[i],
+                                      x[(i + 3) % 4] - x[i]);
+        }
+
+        std::array<double, 2>       size; // width and height
+        std::array<Tensor<1, 2>, 4> x;
+        unsigned int                moved;
+        double                      opposite; // part that does not change
+      };
+
+      const Vertex         vertex;
+      std::vector<Corners> all;
+      double               here;
     };
   } // namespace
 
@@ -168,30 +178,37 @@ namespace Voussoir
                               const unsigned int              n_steps,
                               std::vector<Vertex>            &moved) const
   {
-    std::vector<Vertex> before = moved;
-    const Distortion    distortion(before, quads);
+    std::vector<Vertex>                    before = moved;
+    std::vector<std::vector<unsigned int>> quads_at(before.size());
+    for (unsigned int q = 0; q < quads.size(); ++q)
+      for (const unsigned int v : quads[q].vertices)
+        quads_at[v].push_back(q);
     for (unsigned int i = 0; i < n_steps; ++i)
       {
         for (unsigned int v = 0; v < before.size(); ++v)
           {
-            const Vertex vertex             = before[v];
-            const auto [width, cell_height] = distortion.cell_size(v);
-            const auto along                = [&](const double ds) {
+            const Vertex vertex     = before[v];
+            const bool   goes_along = may_move_along(v, joint_stays),
+                       goes_up      = may_move_up(v, vertex.z);
+            if (!goes_along && !goes_up)
+              continue;
+            Distortion distortion(before, quads, quads_at[v], v);
+            const auto along = [&](const double ds) {
               const double s = vertex.s + ds;
               return Vertex{s,
-                            on_contour[v] ? sections.contour(s) :
-                                           on_ledge[v] ? lines[s < 0. ? 0 : 1].level(s) :
-                                                         vertex.z,
+                            on_contour[v] ? sections.contour(s, vertex.z) :
+                            on_ledge[v]   ? lines[s < 0. ? 0 : 1].level(s) :
+                                            vertex.z,
                             vertex.column};
             };
             const auto up = [&](const double dz) {
               return Vertex{vertex.s, vertex.z + dz, vertex.column};
             };
 
-            if (may_move_along(v, joint_stays))
-              moved[v] = along(distortion.newton_step(v, width, along));
-            if (may_move_up(v, vertex.z))
-              moved[v].z += distortion.newton_step(v, cell_height, up);
+            if (goes_along)
+              moved[v] = along(distortion.newton_step(distortion.width, along));
+            if (goes_up)
+              moved[v].z += distortion.newton_step(distortion.height, up);
           }
         before = moved;
       }

@@ -28,6 +28,10 @@ namespace Voussoir
     // height.
     constexpr double tolerance = 1e-12;
 
+    // Distance from a place near the contour in which it is looked for first,
+    // over the dam's height.
+    constexpr double near_contour = 0.01;
+
 
     std::map<std::string, ArchDamShape>
     presets()
@@ -449,7 +453,7 @@ namespace Voussoir
 
 
   double
-  ArchDamSections::contour(const double s) const
+  ArchDamSections::contour(const double s, const double near) const
   {
     if (s <= right_end || s >= left_end)
       return shape.height;
@@ -460,21 +464,33 @@ namespace Voussoir
       const double x = cut(section, z);
       return std::abs(x) - shape.half_width(x, z);
     };
-    const double at_base  = depth_in_rock(0.),
-                 at_crest = depth_in_rock(shape.height);
-    if (at_base <= 0.)
+    const double distance = near_contour * shape.height;
+    double       below    = std::clamp(near - distance, 0., shape.height),
+           above          = std::clamp(near + distance, 0., shape.height);
+    double at_below = depth_in_rock(below), at_above = depth_in_rock(above);
+    if (at_below <= 0.)
+      {
+        below    = 0.;
+        at_below = depth_in_rock(below);
+      }
+    if (at_above >= 0.)
+      {
+        above    = shape.height;
+        at_above = depth_in_rock(above);
+      }
+    if (at_below <= 0.)
       return 0.;
-    if (at_crest >= 0.)
+    if (at_above >= 0.)
       return shape.height;
     std::uintmax_t n_steps = 100;
     return boost::math::tools::toms748_solve(
              depth_in_rock,
-             0.,
-             shape.height,
-             at_base,
-             at_crest,
-             [&](const double below, const double above) {
-               return above - below < tolerance * shape.height;
+             below,
+             above,
+             at_below,
+             at_above,
+             [&](const double lower, const double upper) {
+               return upper - lower < tolerance * shape.height;
              },
              n_steps)
       .second;

@@ -24,8 +24,8 @@ namespace Voussoir
       {
         const auto parameters = make_case(file);
         const auto simulation = make_simulation(*parameters, communicator);
-        const PartitionCounts counts = count_partition(
-          simulation->model.grid, [](const Grid::Cell &) { return 1.; }, 8);
+        const PartitionCounts counts =
+          simulation->model.grid.partition_counts().at(0);
         verdicts.near("largest load over the mean", counts.balance, 1., 1e-14);
         // the first with all, the next three at an edge with three, then faces
         verdicts.near("neighbours of a rank",
@@ -38,6 +38,8 @@ namespace Voussoir
                       2. * (12. * 4. + 6. * 2. * 3. + 7.) / 8.,
                       1e-14);
         verdicts.near("most", counts.most_nodes, 12. + 18. + 7., 0.);
+        verdicts.near("cells without these", counts.inner, 0.125, 1e-14);
+        verdicts.near("least", counts.least_inner, 0.125, 1e-14);
       }
     };
 

@@ -51,18 +51,16 @@ namespace Voussoir
     const Case &parameters;
 
   private:
-    /** The meshes, which are needed only until the grids are made. A mesh from
-     *  a file that METIS distributes is on one rank of each machine; the other
-     *  ranks have its names and the faces of its sets. */
+    /** The meshes, which are needed only until the grids are made. A mesh that
+     *  is not refined, or that METIS distributes from a file, is on the first
+     *  rank of each machine; the other ranks have the names of its sets and
+     *  their faces. */
     struct Meshes
     {
       Meshes(const Case &parameters, Log &log);
 
       void
       make(const Case &parameters, Log &log);
-
-      void
-      share_sets(const MPI_Comm communicator);
 
       GridParameters            grid; // without what a linear run must tell
       CoarseMesh                solid, water;

@@ -55,7 +55,7 @@ namespace Voussoir
 
   private:
     dealii::FEValues<3>       values;
-    const bool                from_corners; // each cell by itself, of degree 1
+    const bool                from_corners; // of degree 1
     std::vector<unsigned int> node_of_point;
     std::vector<double>       volumes;
   };

@@ -7,13 +7,23 @@
 
 namespace Voussoir
 {
+  /** Numbers the cells of a mesh in the order in which a Hilbert curve passes
+   *  their centres. */
+  void
+  order_along_curve(CoarseMesh &mesh);
+
+  /** The ranks of cells of these costs, of which each rank gets a sequence of
+   *  about the same cost. */
+  std::vector<dealii::types::subdomain_id>
+  ranks_along_curve(const std::vector<double> &costs,
+                    const unsigned int         n_ranks);
+
   /**
-   * This rank's part of a mesh that is not refined, and the cells around it.
-   * The cells are dealt to the ranks along a Hilbert curve through their
-   * centres, which is also their order on each rank. All ranks have the same
-   * mesh.
+   * This rank's part of a mesh that is not refined, and the cells around it, in
+   * the order of the mesh. The first rank of each machine sends the others
+   * their parts; only it needs mesh, tags and costs.
    *
-   * @param tags and @p costs of the cells; all ranks get about the same cost
+   * @param tags and @p costs of the cells
    */
   dealii::TriangulationDescription::Description<3, 3>
   part_along_curve(const CoarseMesh                              &mesh,

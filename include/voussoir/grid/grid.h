@@ -2,6 +2,7 @@
 #define voussoir_grid_grid_h
 
 #include <voussoir/grid/grid_parameters.h>
+#include <voussoir/grid/partition_counts.h>
 #include <voussoir/mesh/coarse_mesh.h>
 
 #include <deal.II/distributed/tria_base.h>
@@ -77,8 +78,9 @@ namespace Voussoir
       std::shared_ptr<const CellsAndRing> stressed = nullptr;
     };
 
-    /** With METIS only the first rank of each machine needs the cells of the
-     *  mesh; the others need the names of its sets and their faces. */
+    /** If METIS or a curve divides the mesh, only the first rank of each
+     *  machine needs its cells; the others need the names of its sets and their
+     *  faces. */
     Grid(const CoarseMesh     &mesh,
          const GridParameters &parameters,
          const Materials      &materials,
@@ -159,6 +161,14 @@ namespace Voussoir
     const RefinementSummary &
     refinement() const;
 
+    /** "by p4est", for example. */
+    const std::string &
+    partition() const;
+
+    /** For the numbers of ranks that the parameters ask for. */
+    const std::vector<PartitionCounts> &
+    partition_counts() const;
+
     /** Cells per rank (smallest, mean, largest), for the log. */
     std::string
     describe_balance() const;
@@ -181,6 +191,12 @@ namespace Voussoir
                  const std::vector<dealii::types::material_id> &tags,
                  const GridParameters                          &parameters,
                  const Materials                               &materials);
+
+    void
+    create_along_curve(const CoarseMesh                              &coarse,
+                       const std::vector<dealii::types::material_id> &tags,
+                       const GridParameters &parameters,
+                       const Materials      &materials);
 
     /** Sends the tags from the first rank, since others may lack the coarse
      *  cells. */
@@ -239,13 +255,15 @@ namespace Voussoir
                  const double                 machines) const;
 
     MPI_Comm                       mpi_communicator;
+    std::string                    partition_name;
     std::unique_ptr<Triangulation> mesh;
 
     std::vector<std::string>       cell_sets, face_sets;
     std::vector<CellTag>           all_tags;
     std::vector<std::vector<Face>> faces_of_set; // the last: of no set
 
-    RefinementSummary refined_where;
+    RefinementSummary            refined_where;
+    std::vector<PartitionCounts> counts;
   };
 } // namespace Voussoir
 

@@ -80,6 +80,11 @@ namespace Voussoir
     void
     declare(dealii::ParameterHandler &prm);
 
+    /** Whether the mesh is not refined, and divided along a Hilbert curve
+     *  instead of by p4est; see order_along_curve(). */
+    bool
+    divided_along_curve() const;
+
     /** The items of `local_refinement`; throws UserError for other text. */
     std::vector<LocalRefinement>
     local_refinements() const;

@@ -24,10 +24,6 @@ namespace Voussoir
              const std::string &where,
              const std::string &remedy = "improve the mesh there");
 
-  /** Number of machines that the ranks run on. */
-  double
-  n_machines(const MPI_Comm communicator);
-
   /**
    * Throw UserError, with a sentence that begins with @p place, if so many
    * cells need more memory than @p machines have.

@@ -10,8 +10,21 @@
 namespace Voussoir
 {
   /** The vertices of a face in deal.II's lexicographic order. */
-  std::array<unsigned int, 4>
-  face_vertices(const CoarseMesh &mesh, const CoarseMesh::Face &face);
+  inline std::array<unsigned int, 4>
+  face_vertices(const CoarseMesh &mesh, const CoarseMesh::Face &face)
+  {
+    // GeometryInfo<3>::face_to_cell_vertices, which is slow
+    constexpr std::array<std::array<unsigned int, 4>, 6> corners{
+      {{{0, 2, 4, 6}},
+       {{1, 3, 5, 7}},
+       {{0, 4, 1, 5}},
+       {{2, 6, 3, 7}},
+       {{0, 1, 2, 3}},
+       {{4, 5, 6, 7}}}};
+    const auto &cell = mesh.cells[face.cell];
+    const auto &of   = corners[face.face];
+    return {{cell[of[0]], cell[of[1]], cell[of[2]], cell[of[3]]}};
+  }
 
   /** A face of a cell with its four vertices, in an order that is the same for
    *  both its cells. */

@@ -139,9 +139,10 @@ namespace Voussoir
     double
     arc_length_at(const double x) const;
 
-    /** Elevation [m] where the section's centre line meets the rock. */
+    /** Elevation [m] where the section's centre line meets the rock; found
+     *  sooner if it is @p near. */
     double
-    contour(const double s) const;
+    contour(const double s, const double near = 0.) const;
 
     /** The dam's part of the horizontal line at elevation z in section s. */
     struct Line

@@ -470,18 +470,22 @@ namespace Voussoir
     double at_below = depth_in_rock(below), at_above = depth_in_rock(above);
     if (at_below <= 0.)
       {
+        above    = below;
+        at_above = at_below;
         below    = 0.;
         at_below = depth_in_rock(below);
+        if (at_below <= 0.)
+          return 0.;
       }
-    if (at_above >= 0.)
+    else if (at_above >= 0.)
       {
+        below    = above;
+        at_below = at_above;
         above    = shape.height;
         at_above = depth_in_rock(above);
+        if (at_above >= 0.)
+          return shape.height;
       }
-    if (at_below <= 0.)
-      return 0.;
-    if (at_above >= 0.)
-      return shape.height;
     std::uintmax_t n_steps = 100;
     return boost::math::tools::toms748_solve(
              depth_in_rock,

@@ -5,18 +5,18 @@ network. Prints a table and writes a figure and numbers to a folder.
 
 usage: scaling.py PROGRAM [--ranks 1,2] [--levels 1] [--counts 16,191,1024] [...]
 
-The prediction: a step takes as long as the rank with the most work, its cells at the
-rate of a core, then an exchange in each direction with all its neighbours, each a
-latency and its bytes over the bandwidth. Computation and exchange do not overlap, and
-nothing else is shared between cores. The rate of a core is the lowest of the runs on
-no more ranks than there are cores, or the given one if other work disturbs the runs.
+The prediction: a step takes as long as its slowest rank, which computes its cells at
+the rate of a core and exchanges nodes in each direction with all its neighbours: for
+each of them a latency, and the bytes over the bandwidth. As in the step, values arrive
+while the first half of the cells without exchanged nodes is computed, and leave during
+the second half. Cores share nothing else. The rate of a core is the lowest of the runs
+on no more ranks than there are cores, or the given one if other work disturbs the runs.
 """
 
 import argparse
 import json
 import os
 import pathlib
-import re
 import subprocess
 import sys
 
@@ -24,13 +24,10 @@ CASE = pathlib.Path(__file__).resolve().parent.parent / "prm/benchmarks/scaling.
 # Guo, Li, Tu, Chen: PSDAP, 1.3 million unknowns, hours of its Table 1
 PAPER = {1: 949.4, 2: 499.7, 191: 18.9}
 BYTES = 24  # of a node
-COUNTED = re.compile(r"Partition into (\d+) ranks: largest load ([\d.e+]+) of the mean, "
-                     r"neighbours of a rank ([\d.e+]+) \(at most (\d+)\), "
-                     r"nodes it exchanges with them ([\d.e+]+) \(at most (\d+)\)")
 
 
 def run(options, ranks, level, counts=()):
-    """Summary of the run, and its counts of partitions."""
+    """Summary of the run."""
     folder = options.folder / f"{ranks}_ranks_level_{level}"
     command = [str(options.program.parent / "voussoir-run"), "-n", str(ranks), str(CASE),
                "--overwrite", "--set", f"Output/Folder={folder}",
@@ -39,10 +36,7 @@ def run(options, ranks, level, counts=()):
     process = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if process.returncode != 0:
         sys.exit(process.stdout[-2000:])
-    partitions = [dict(zip(("ranks", "balance", "neighbours", "most neighbours", "nodes",
-                            "most nodes"), map(float, found)))
-                  for found in COUNTED.findall(process.stdout)]
-    return json.loads((folder / "summary.json").read_text()), partitions
+    return json.loads((folder / "summary.json").read_text())
 
 
 def step_seconds(summary):
@@ -50,11 +44,20 @@ def step_seconds(summary):
 
 
 def predict(partition, core_rate, unknowns, options):
-    """Seconds of a step."""
-    work = unknowns / core_rate / partition["ranks"] * partition["balance"]
-    exchange = 2. * (partition["most neighbours"] * options.latency +
-                     BYTES * partition["most nodes"] / options.bandwidth)
-    return work + exchange
+    """Seconds of a step, and of one without overlap of computation and exchange."""
+    mean = unknowns / core_rate / len(partition["neighbours"])
+    ranks = list(zip(*(partition[name] for name in (
+        "load over the mean", "part of cells without these", "neighbours", "nodes exchanged"))))
+
+    def exchange(neighbours, nodes):
+        return neighbours * options.latency + BYTES * nodes / options.bandwidth
+
+    def overlapped(load, inner, *exchanged):
+        half = inner * load * mean / 2.
+        return load * mean - 2. * half + 2. * max(half, exchange(*exchanged))
+
+    return (max(overlapped(*rank) for rank in ranks),
+            max(load * mean + 2. * exchange(*exchanged) for load, _, *exchanged in ranks))
 
 
 def main():
@@ -77,10 +80,10 @@ def main():
 
     kept = []
     for level in map(int, options.levels.split(",")):
-        rates, partitions = [], []
+        rates, partitions = [], None
         for ranks in map(int, options.ranks.split(",")):
-            summary, counted = run(options, ranks, level, [] if partitions else counts)
-            partitions = partitions or counted
+            summary = run(options, ranks, level, [] if partitions else counts)
+            partitions = partitions or summary["counted partitions"]
             unknowns, memory = summary["unknowns"], summary["peak memory of a rank [MB]"]
             rate = summary["MDOF-steps/s"]
             if ranks <= os.cpu_count():
@@ -92,14 +95,20 @@ def main():
                   f"{memory:.0f} MB a rank", flush=True)
         core_rate = 1e6 * (options.core_rate or min(rates))
         for partition in partitions:
-            seconds = predict(partition, core_rate, unknowns, options)
-            ideal = unknowns / core_rate / partition["ranks"]
-            kept.append({"level": level, "predicted step [ms]": 1e3 * seconds,
-                         "efficiency": ideal / seconds, **partition})
-            print(f"  {partition['ranks']:.0f} ranks: balance {partition['balance']:.3f}, "
-                  f"at most {partition['most neighbours']:.0f} neighbours and "
-                  f"{partition['most nodes']:.0f} nodes; predicted step "
-                  f"{1e3 * seconds:.3f} ms, efficiency {100 * ideal / seconds:.0f} %")
+            ranks = len(partition["neighbours"])
+            seconds, without_overlap = predict(partition, core_rate, unknowns, options)
+            ideal = unknowns / core_rate / ranks
+            kept.append({"level": level, "ranks": ranks, "predicted step [ms]": 1e3 * seconds,
+                         "without overlap [ms]": 1e3 * without_overlap,
+                         "efficiency": ideal / seconds,
+                         "balance": max(partition["load over the mean"]),
+                         "most neighbours": max(partition["neighbours"]),
+                         "most nodes": max(partition["nodes exchanged"])})
+            print(f"  {ranks} ranks: balance {kept[-1]['balance']:.3f}, "
+                  f"at most {kept[-1]['most neighbours']} neighbours and "
+                  f"{kept[-1]['most nodes']} nodes; predicted step "
+                  f"{1e3 * seconds:.3f} ms, efficiency {100 * ideal / seconds:.0f} % "
+                  f"({100 * ideal / without_overlap:.0f} % without overlap)")
     options.folder.mkdir(parents=True, exist_ok=True)
     (options.folder / "scaling.json").write_text(json.dumps(kept, indent=1) + "\n")
     plot(kept, options.folder / "scaling.png")

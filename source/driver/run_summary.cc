@@ -42,6 +42,7 @@ namespace Voussoir
     entry("peak memory of a rank [MB]", part.peak_memory);
     entry("names", part.names);
     entry("refined where cracks are expected", part.refinement);
+    entry("counted partitions", part.partitions);
   }
 
 
@@ -351,6 +352,19 @@ namespace Voussoir
                           water->stored_energy(),
                           Utilities::MPI::sum(water->loss, communicator)};
     }
+
+
+    nlohmann::json
+    summary_of(const std::vector<PartitionCounts> &partitions)
+    {
+      nlohmann::json list;
+      for (const PartitionCounts &counts : partitions)
+        list.push_back({{"load over the mean", counts.load},
+                        {"neighbours", counts.neighbours},
+                        {"nodes exchanged", counts.nodes},
+                        {"part of cells without these", counts.inner}});
+      return list;
+    }
   } // namespace
 
 
@@ -397,7 +411,8 @@ namespace Voussoir
                         model.grid,
                         model.contact.get())
               .json(),
-            summary_of_refinement(model.parameters, model.grid.refinement())};
+            summary_of_refinement(model.parameters, model.grid.refinement()),
+            summary_of(model.grid.partition_counts())};
   }
 
 

@@ -47,6 +47,23 @@ namespace Voussoir
         costs.push_back(materials.costs[material]);
       return costs;
     }
+
+
+    // Sets the ranks of the active cells of a mesh that is not distributed.
+    void
+    divide_by_metis(Triangulation<3>          &serial,
+                    const std::vector<double> &costs,
+                    const unsigned int         n_ranks)
+    {
+      std::vector<unsigned int> weights;
+      weights.reserve(costs.size());
+      for (const double cost : costs)
+        weights.push_back(static_cast<unsigned int>(100. * cost));
+      GridTools::partition_triangulation(n_ranks,
+                                         weights,
+                                         serial,
+                                         SparsityTools::Partitioner::metis);
+    }
   } // namespace
 
 
@@ -69,10 +86,6 @@ namespace Voussoir
         check_cell_set(item.set, "\"Local refinement\" in section \"Mesh\"");
     for (const std::string &set : split_list(parameters.refine_where.cell_sets))
       check_cell_set(set, "\"Cell sets\" in section \"Mesh/Refine where\"");
-    if (parameters.partition == Partition::metis &&
-        !parameters.counted_ranks.empty())
-      throw UserError("\"Count partitions\" in section \"Mesh\" needs "
-                      "\"Partition = p4est\".");
     const auto tags = make_tags(coarse, materials.of_cell);
     share_tags();
     if (parameters.partition == Partition::metis)
@@ -197,9 +210,11 @@ namespace Voussoir
       mpi_communicator);
     mesh->create_triangulation(
       part_along_curve(coarse, tags, costs, mpi_communicator));
-    for (const unsigned int n_ranks : parameters.counted_ranks)
-      counts.push_back(
-        count_along_curve(coarse, costs, n_ranks, mpi_communicator));
+    if (Utilities::MPI::this_mpi_process(mpi_communicator) == 0)
+      for (const unsigned int n_ranks : parameters.counted_ranks)
+        counts.push_back(count_partition(
+          coarse.cells, ranks_along_curve(costs, n_ranks), costs, n_ranks));
+    counts = Utilities::MPI::broadcast(mpi_communicator, counts);
   }
 
 
@@ -213,6 +228,40 @@ namespace Voussoir
     for (const auto &[material, sets] :
          Utilities::MPI::broadcast(mpi_communicator, tags))
       all_tags.push_back({material, sets});
+  }
+
+
+  std::vector<double>
+  Grid::costs_of_active_cells(const dealii::Triangulation<3> &serial,
+                              const std::vector<double>      &costs) const
+  {
+    std::vector<double> of_cells;
+    of_cells.reserve(serial.n_active_cells());
+    for (const auto &cell : serial.active_cell_iterators())
+      of_cells.push_back(costs[material(cell)]);
+    return of_cells;
+  }
+
+
+  void
+  Grid::count_by_metis(dealii::Triangulation<3>        &serial,
+                       const std::vector<unsigned int> &n_ranks,
+                       const std::vector<double>       &costs)
+  {
+    if (n_ranks.empty())
+      return;
+    const auto of_cells = costs_of_active_cells(serial, costs);
+    std::vector<std::array<unsigned int, 8>> cells(serial.n_active_cells());
+    for (const auto &cell : serial.active_cell_iterators())
+      for (const unsigned int v : cell->vertex_indices())
+        cells[cell->active_cell_index()][v] = cell->vertex_index(v);
+    std::vector<types::subdomain_id> rank(cells.size());
+    for (const unsigned int n : n_ranks)
+      {
+        divide_by_metis(serial, of_cells, n);
+        GridTools::get_subdomain_association(serial, rank);
+        counts.push_back(count_partition(cells, rank, of_cells, n));
+      }
   }
 
 
@@ -231,15 +280,11 @@ namespace Voussoir
     const auto deal_cells = [&](dealii::Triangulation<3> &serial,
                                 const MPI_Comm           &communicator,
                                 const unsigned int) {
-      std::vector<unsigned int> weights;
-      for (const auto &cell : serial.active_cell_iterators())
-        weights.push_back(
-          static_cast<unsigned int>(100. * materials.costs[material(cell)]));
-      GridTools::partition_triangulation(Utilities::MPI::n_mpi_processes(
-                                           communicator),
-                                         weights,
-                                         serial,
-                                         SparsityTools::Partitioner::metis);
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        count_by_metis(serial, parameters.counted_ranks, materials.costs);
+      divide_by_metis(serial,
+                      costs_of_active_cells(serial, materials.costs),
+                      Utilities::MPI::n_mpi_processes(communicator));
     };
     // one rank of a machine makes the whole mesh, and sends the others their
     // parts
@@ -254,6 +299,7 @@ namespace Voussoir
         dealii::Triangulation<3>::limit_level_difference_at_vertices);
 
     refined_where = Utilities::MPI::broadcast(mpi_communicator, refined_where);
+    counts        = Utilities::MPI::broadcast(mpi_communicator, counts);
 
     auto triangulation =
       std::make_unique<parallel::fullydistributed::Triangulation<3>>(

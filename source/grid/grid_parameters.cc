@@ -54,10 +54,10 @@ namespace Voussoir
     prm.add_parameter(
       "Count partitions",
       counted_ranks,
-      "Numbers of ranks, separated by commas, for which the log describes a "
-      "partition by p4est or along the Hilbert curve: balance, neighbours of a "
-      "rank, nodes that it exchanges with them and the part of its cells "
-      "without these. The run itself may have another number of ranks.",
+      "Numbers of ranks, separated by commas, for which the log describes the "
+      "partition: balance, neighbours of a rank, nodes that it exchanges with "
+      "them and the part of its cells without these; summary.json has them "
+      "rank by rank. The run itself may have another number of ranks.",
       Patterns::List(Patterns::Integer(1, 1000000)));
     prm.enter_subsection("Refine where");
     refine_where.declare(prm);

@@ -1,5 +1,4 @@
 #include <voussoir/base/mpi.h>
-#include <voussoir/grid/curve_partition.h>
 #include <voussoir/grid/partition_counts.h>
 
 #include <deal.II/base/mpi.h>
@@ -9,6 +8,7 @@
 #include <iomanip>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <sstream>
 
@@ -132,28 +132,20 @@ namespace Voussoir
                 neighbours[own].insert(other);
                 nodes[own] += n;
               }
-        const auto loads     = sum_over_ranks(load, communicator),
-                   n_cells   = sum_over_ranks(cells, communicator),
-                   all_inner = sum_over_ranks(inner_cells, communicator);
-        PartitionCounts result{
-          static_cast<unsigned int>(n_ranks), 0., 0., 0., 0, 0, 0., 1.};
-        double total = 0.;
+        PartitionCounts result{sum_over_ranks(load, communicator),
+                               sum_over_ranks(inner_cells, communicator),
+                               {},
+                               nodes};
+        const double    mean =
+          std::accumulate(result.load.begin(), result.load.end(), 0.) / n_ranks;
+        const auto n_cells = sum_over_ranks(cells, communicator);
         for (unsigned int r = 0; r < n_ranks; ++r)
           {
-            const unsigned int n_neighbours = neighbours[r].size();
-            const double       inner =
-              n_cells[r] > 0. ? all_inner[r] / n_cells[r] : 1.;
-            total += loads[r];
-            result.balance = std::max(result.balance, loads[r]);
-            result.neighbours += double(n_neighbours) / n_ranks;
-            result.nodes += double(nodes[r]) / n_ranks;
-            result.inner += inner / n_ranks;
-            result.most_neighbours =
-              std::max(result.most_neighbours, n_neighbours);
-            result.most_nodes  = std::max(result.most_nodes, nodes[r]);
-            result.least_inner = std::min(result.least_inner, inner);
+            result.load[r] /= mean;
+            result.inner[r] =
+              n_cells[r] > 0. ? result.inner[r] / n_cells[r] : 1.;
+            result.neighbours.push_back(neighbours[r].size());
           }
-        result.balance *= n_ranks / total;
         return Utilities::MPI::broadcast(communicator, result);
       }
 
@@ -168,12 +160,20 @@ namespace Voussoir
   std::string
   PartitionCounts::describe() const
   {
+    const auto mean = [](const auto &values) {
+      return std::accumulate(values.begin(), values.end(), 0.) / values.size();
+    };
+    const auto largest = [](const auto &values) {
+      return *std::max_element(values.begin(), values.end());
+    };
     std::ostringstream text;
-    text << std::setprecision(3) << ranks << " ranks: largest load " << balance
-         << " of the mean, neighbours of a rank " << neighbours << " (at most "
-         << most_neighbours << "), nodes it exchanges with them " << nodes
-         << " (at most " << most_nodes << "), part of its cells without these "
-         << inner << " (at least " << least_inner << ")";
+    text << std::setprecision(3) << load.size() << " ranks: largest load "
+         << largest(load) << " of the mean, neighbours of a rank "
+         << mean(neighbours) << " (at most " << largest(neighbours)
+         << "), nodes it exchanges with them " << mean(nodes) << " (at most "
+         << largest(nodes) << "), part of its cells without these "
+         << mean(inner) << " (at least "
+         << *std::min_element(inner.begin(), inner.end()) << ")";
     return text.str();
   }
 
@@ -230,35 +230,35 @@ namespace Voussoir
 
 
   PartitionCounts
-  count_along_curve(const CoarseMesh          &mesh,
-                    const std::vector<double> &costs,
-                    const unsigned int         n_ranks,
-                    const MPI_Comm             communicator)
+  count_partition(const std::vector<std::array<unsigned int, 8>> &cells,
+                  const std::vector<types::subdomain_id>         &rank,
+                  const std::vector<double>                      &costs,
+                  const unsigned int                              n_ranks)
   {
-    Counts counts(n_ranks);
-    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+    unsigned int n_vertices = 0;
+    for (const auto &vertices : cells)
+      for (const unsigned int vertex : vertices)
+        n_vertices = std::max(n_vertices, vertex + 1);
+    RanksAtVertices at(n_vertices);
+    for (unsigned int cell = 0; cell < cells.size(); ++cell)
+      for (const unsigned int vertex : cells[cell])
+        at.add(vertex, rank[cell]);
+    Counts                                          counts(n_ranks);
+    std::set<std::pair<unsigned int, unsigned int>> shared; // node, rank
+    for (unsigned int cell = 0; cell < cells.size(); ++cell)
       {
-        const auto      rank = ranks_along_curve(costs, n_ranks);
-        RanksAtVertices at(mesh.vertices.size());
-        for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
-          for (const unsigned int vertex : mesh.cells[cell])
-            at.add(vertex, rank[cell]);
-        std::set<std::pair<unsigned int, unsigned int>> shared; // node, rank
-        for (unsigned int cell = 0; cell < mesh.cells.size(); ++cell)
-          {
-            bool is_inner = true;
-            for (const unsigned int vertex : mesh.cells[cell])
-              if (at.is_shared(vertex))
-                {
-                  is_inner = false;
-                  if (rank[cell] != at.owner(vertex))
-                    shared.emplace(vertex, rank[cell]);
-                }
-            counts.add_cell(rank[cell], costs[cell], is_inner);
-          }
-        for (const auto &[vertex, other] : shared)
-          ++counts.pairs[{at.owner(vertex), other}];
+        bool is_inner = true;
+        for (const unsigned int vertex : cells[cell])
+          if (at.is_shared(vertex))
+            {
+              is_inner = false;
+              if (rank[cell] != at.owner(vertex))
+                shared.emplace(vertex, rank[cell]);
+            }
+        counts.add_cell(rank[cell], costs[cell], is_inner);
       }
-    return counts.sum(communicator);
+    for (const auto &[vertex, other] : shared)
+      ++counts.pairs[{at.owner(vertex), other}];
+    return counts.sum(MPI_COMM_SELF);
   }
 } // namespace Voussoir

@@ -26,6 +26,7 @@ namespace Voussoir
     double                             peak_memory;  // of a rank [MB]
     nlohmann::json                     names;        // see ResultNames
     nlohmann::json                     refinement; // where cracks are expected
+    nlohmann::json                     partitions; // counted, see Grid
   };
 
   struct DampingSummary

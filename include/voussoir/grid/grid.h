@@ -209,6 +209,19 @@ namespace Voussoir
                  const GridParameters                          &parameters,
                  const Materials                               &materials);
 
+    /** In the order of the active cells of a mesh that is not distributed.
+     *  @param costs of the materials */
+    std::vector<double>
+    costs_of_active_cells(const dealii::Triangulation<3> &serial,
+                          const std::vector<double>      &costs) const;
+
+    /** Counts the partitions by METIS of a mesh that is not distributed, into
+     *  the given numbers of ranks; it changes the ranks of the cells. */
+    void
+    count_by_metis(dealii::Triangulation<3>        &serial,
+                   const std::vector<unsigned int> &n_ranks,
+                   const std::vector<double>       &costs);
+
     void
     find_faces(const CoarseMesh &coarse);
 

@@ -1,32 +1,35 @@
 #ifndef voussoir_grid_partition_counts_h
 #define voussoir_grid_partition_counts_h
 
-#include <voussoir/mesh/coarse_mesh.h>
-
 #include <deal.II/distributed/tria_base.h>
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace Voussoir
 {
-  /** Size of the exchange between ranks if a mesh were distributed to a given
-   *  number of ranks. */
+  /** What the ranks would compute and exchange if a mesh were distributed to a
+   *  given number of them; for each of these ranks: */
   struct PartitionCounts
   {
-    unsigned int ranks;
+    /** The cost of its cells over the mean one. */
+    std::vector<double> load;
 
-    /** The largest cost of the cells of a rank over the mean one. */
-    double balance;
+    /** The part of its cells without shared nodes. */
+    std::vector<double> inner;
 
-    /** Neighbours of a rank, mean and largest number; nodes that it receives or
-     *  sends, mean and largest number. */
-    double       neighbours, nodes;
-    unsigned int most_neighbours, most_nodes;
+    /** Ranks with which it shares nodes, and the nodes that it receives from
+     *  them or sends to them. */
+    std::vector<unsigned int> neighbours, nodes;
 
-    /** Part of a rank's cells that have none of these nodes, mean and least. */
-    double inner, least_inner;
+    template <typename Archive>
+    void
+    serialize(Archive &archive, const unsigned int)
+    {
+      archive &load &inner &neighbours &nodes;
+    }
 
     /** A line for the log. */
     std::string
@@ -49,13 +52,13 @@ namespace Voussoir
                       &cost,
     const unsigned int n_ranks);
 
-  /** The same for a mesh divided along a Hilbert curve, in whose order its
-   *  cells stand; only the first rank needs mesh and costs. */
+  /** The same for cells whose ranks are known, by the numbers of their
+   *  vertices; for one rank of the run. */
   PartitionCounts
-  count_along_curve(const CoarseMesh          &mesh,
-                    const std::vector<double> &costs,
-                    const unsigned int         n_ranks,
-                    const MPI_Comm             communicator);
+  count_partition(const std::vector<std::array<unsigned int, 8>> &cells,
+                  const std::vector<dealii::types::subdomain_id> &rank,
+                  const std::vector<double>                      &costs,
+                  const unsigned int                              n_ranks);
 } // namespace Voussoir
 
 #endif

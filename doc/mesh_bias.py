@@ -184,15 +184,22 @@ def write_mesh(name, points, notch):
         for number, j in ((2, 0), (3, rows)):
             elements.append((3, number, [node(i, j, 0), node(i + 1, j, 0),
                                          node(i + 1, j, 1), node(i, j, 1)]))
+    nodes = [(points[i, j, 0], -k * size, points[i, j, 1])
+             for j in range(rows + 1) for i in range(columns + 1) for k in (0, 1)]
+    write_gmsh(name, {(3, 1): "plate", (3, 5): "ends", (2, 2): "bottom", (2, 3): "top",
+                      (2, 4): "side"}, nodes, elements)
+
+
+def write_gmsh(name, sets, nodes, elements):
+    """Sets by dimension and number, positions of nodes [m], elements as (kind, number of
+    the set, numbers of nodes from 1)."""
     with open(name, "w") as file:
-        file.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n"
-                   '3 1 "plate"\n3 5 "ends"\n2 2 "bottom"\n2 3 "top"\n2 4 "side"\n'
-                   f"$EndPhysicalNames\n$Nodes\n{2 * (columns + 1) * (rows + 1)}\n")
-        for j in range(rows + 1):
-            for i in range(columns + 1):
-                for k in (0, 1):
-                    x, z = points[i, j]
-                    file.write(f"{node(i, j, k)} {x:.9f} {-k * size:.9f} {z:.9f}\n")
+        file.write(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{len(sets)}\n")
+        for (dimension, number), title in sets.items():
+            file.write(f'{dimension} {number} "{title}"\n')
+        file.write(f"$EndPhysicalNames\n$Nodes\n{len(nodes)}\n")
+        for number, place in enumerate(nodes, 1):
+            file.write(f"{number} {' '.join(f'{x:.9f}' for x in place)}\n")
         file.write(f"$EndNodes\n$Elements\n{len(elements)}\n")
         for number, (kind, tag, corners) in enumerate(elements, 1):
             file.write(f"{number} {kind} 2 {tag} {tag} {' '.join(map(str, corners))}\n")
@@ -248,13 +255,15 @@ def read_picture(output):
     return arrays
 
 
-def faces_of(arrays):
-    """Corners of the cells [m], their damage and opening [mm]."""
+def faces_of(arrays, across=1):
+    """Corners of the cells [m] in the plane at right angles to an axis, their damage and
+    opening [mm]."""
     points = arrays["points"].reshape(-1, 3)
+    plane = [axis for axis in range(3) if axis != across]
     cells = arrays["connectivity"].reshape(-1, 8)
     faces = []
     for cell in cells:
-        flat = points[cell[points[cell, 1] > points[cell, 1].mean()]][:, [0, 2]]
+        flat = points[cell[points[cell, across] > points[cell, across].mean()]][:, plane]
         out = flat - flat.mean(axis=0)
         faces.append(flat[np.argsort(np.arctan2(out[:, 1], out[:, 0]))])
     first = cells[:, 0]

@@ -6,11 +6,12 @@ network. Prints a table and writes a figure and numbers to a folder.
 usage: scaling.py PROGRAM [--ranks 1,2] [--levels 1] [--counts 16,191,1024] [...]
 
 The prediction: a step takes as long as its slowest rank, which computes its cells at
-the rate of a core and exchanges nodes in each direction with all its neighbours: for
-each of them a latency, and the bytes over the bandwidth. As in the step, values arrive
-while the first half of the cells without exchanged nodes is computed, and leave during
-the second half. Cores share nothing else. The rate of a core is the lowest of the runs
-on no more ranks than there are cores, or the given one if other work disturbs the runs.
+the rate of a core. Displacements arrive, as they are and filtered for damping, while the
+first half of the cells without exchanged nodes is computed; forces leave during the
+second half. An exchange takes a latency, an overhead of the processor for each neighbour
+and vector, and the bytes over the bandwidth. Cores share nothing else. The rate of a core
+is the lowest of the runs on no more ranks than there are cores, or the given one if other
+work disturbs the runs.
 """
 
 import argparse
@@ -49,15 +50,18 @@ def predict(partition, core_rate, unknowns, options):
     ranks = list(zip(*(partition[name] for name in (
         "load over the mean", "part of cells without these", "neighbours", "nodes exchanged"))))
 
-    def exchange(neighbours, nodes):
-        return neighbours * options.latency + BYTES * nodes / options.bandwidth
+    def exchange(neighbours, nodes, vectors):
+        return options.latency + vectors * (neighbours * options.overhead +
+                                            BYTES * nodes / options.bandwidth)
 
-    def overlapped(load, inner, *exchanged):
-        half = inner * load * mean / 2.
-        return load * mean - 2. * half + 2. * max(half, exchange(*exchanged))
-
-    return (max(overlapped(*rank) for rank in ranks),
-            max(load * mean + 2. * exchange(*exchanged) for load, _, *exchanged in ranks))
+    overlapped, plain = [], []
+    for load, inner, *exchanged in ranks:
+        work = load * mean
+        half = inner * work / 2.
+        arrive, leave = exchange(*exchanged, 2), exchange(*exchanged, 1)
+        overlapped.append(work - 2. * half + max(half, arrive) + max(half, leave))
+        plain.append(work + arrive + leave)
+    return max(overlapped), max(plain)
 
 
 def main():
@@ -68,6 +72,8 @@ def main():
     parser.add_argument("--levels", default="1", help="levels of refinement")
     parser.add_argument("--counts", default="16,64,191,1024", help="numbers of ranks to partition for")
     parser.add_argument("--latency", type=float, default=2e-6, help="latency of a message [s]")
+    parser.add_argument("--overhead", type=float, default=1e-6,
+                        help="time of the processor to send and receive a message [s]")
     parser.add_argument("--bandwidth", type=float, default=1e9, help="bandwidth of a rank [B/s]")
     parser.add_argument("--core-rate", type=float, default=0.,
                         help="rate of a core [million unknowns times steps per second]")

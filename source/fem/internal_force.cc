@@ -43,14 +43,29 @@ namespace Voussoir
     }
 
 
+    // Vectors whose ghost values arrive while cells are computed.
+    using Sources = std::vector<Vector *>;
+
     using CellLoop =
       std::function<void(const dealii::MatrixFree<3, double, Lanes> &,
                          Vector &,
-                         const Vector &,
+                         const Sources &,
                          const std::pair<unsigned int, unsigned int> &)>;
 
-    // A cell loop: run(material, cells, dst, src) for the runs of
-    // batches of one material.
+
+    // The library wants them not const, but changes their ghost values only.
+    Sources
+    sources(const std::vector<const Vector *> &vectors)
+    {
+      Sources result;
+      for (const Vector *vector : vectors)
+        result.push_back(const_cast<Vector *>(vector));
+      return result;
+    }
+
+
+    // A cell loop: run(material, cells, dst) for the runs of batches of one
+    // material.
     template <typename Run>
     CellLoop
     on_runs(const Discretization      &discretization,
@@ -63,8 +78,8 @@ namespace Voussoir
         [&,
          rounding,
          single_precision](const dealii::MatrixFree<3, double, Lanes> &,
-                           Vector                                      &dst,
-                           const Vector                                &src,
+                           Vector &dst,
+                           const Sources &,
                            const std::pair<unsigned int, unsigned int> &range) {
           for_each_run(
             discretization,
@@ -72,7 +87,7 @@ namespace Voussoir
             range.first,
             range.second,
             [&](const unsigned int material, const CellRange &cells) {
-              run(material, cells, dst, src);
+              run(material, cells, dst);
             },
             rounding,
             single_precision);
@@ -218,16 +233,14 @@ namespace Voussoir
                        const RangeWork  &after,
                        double           *seconds) const
   {
-    using Damping  = SweepInput::Damping;
-    const auto run = [&](const unsigned int material,
-                         const CellRange   &cells,
-                         Vector            &dst,
-                         const Vector &) {
-      if (PointHistory *history = memory.of(material))
-        kernels[material]->add_response(cells, input, dst, *history);
-      else
-        kernels[material]->add_force(cells, input, dst);
-    };
+    using Damping = SweepInput::Damping;
+    const auto run =
+      [&](const unsigned int material, const CellRange &cells, Vector &dst) {
+        if (PointHistory *history = memory.of(material))
+          kernels[material]->add_response(cells, input, dst, *history);
+        else
+          kernels[material]->add_force(cells, input, dst);
+      };
     Rounding rounding(discretization.reproducible ? limit_of_sweep(input) : 0.);
     const CellLoop of_cells =
       on_runs(discretization,
@@ -239,10 +252,10 @@ namespace Voussoir
     using Clock = std::chrono::steady_clock;
     std::chrono::duration<double> time_of_cells{};
 
-    const CellLoop loop = [&](const auto   &matrix_free,
-                              Vector       &dst,
-                              const Vector &src,
-                              const auto   &range) {
+    const CellLoop loop = [&](const auto    &matrix_free,
+                              Vector        &dst,
+                              const Sources &src,
+                              const auto    &range) {
       const auto start = Clock::now();
       of_cells(matrix_free, dst, src, range);
       time_of_cells += Clock::now() - start;
@@ -256,25 +269,19 @@ namespace Voussoir
         rounding(force.begin() + begin, force.begin() + end);
     };
 
-    // The library overlaps the exchange of one source vector with the cell
-    // work; the others are exchanged beforehand.
-    const bool reads_undamped =
-      input.damping != Damping::none && !memory.empty();
-    if (reads_undamped)
-      input.displacement.update_ghost_values();
+    std::vector<const Vector *> read{&input.filtered};
+    if (input.damping != Damping::none && !memory.empty())
+      read.push_back(&input.displacement);
     if (input.damping != Damping::by_material)
       discretization.matrix_free.cell_loop(
-        loop, force, input.filtered, begin_sums, after);
+        loop, force, sources(read), begin_sums, after);
     else
       {
         begin_sums(0, force.locally_owned_size());
-        input.damping_memory->update_ghost_values();
+        read.push_back(input.damping_memory);
         discretization.matrix_free.cell_loop(
-          loop, force, input.filtered, {}, after);
-        input.damping_memory->zero_out_ghost_values();
+          loop, force, sources(read), {}, after);
       }
-    if (reads_undamped)
-      input.displacement.zero_out_ghost_values();
     if (seconds != nullptr)
       *seconds += time_of_cells.count();
     return !rounding.exceeded();
@@ -284,20 +291,18 @@ namespace Voussoir
   void
   InternalForce::apply(Vector &force, const SweepInput &input) const
   {
-    const bool by_material = input.damping == SweepInput::Damping::by_material;
-    if (by_material)
-      input.damping_memory->update_ghost_values();
-    const auto run = [&](const unsigned int material,
-                         const CellRange   &cells,
-                         Vector            &dst,
-                         const Vector &) {
-      kernels[material]->add_force(cells, input, dst);
-    };
+    std::vector<const Vector *> read{&input.filtered};
+    if (input.damping == SweepInput::Damping::by_material)
+      read.push_back(input.damping_memory);
+    const auto run =
+      [&](const unsigned int material, const CellRange &cells, Vector &dst) {
+        kernels[material]->add_force(cells, input, dst);
+      };
     const auto loop = [&](Rounding *rounding) {
       discretization.matrix_free.cell_loop(
         on_runs(discretization, factors, run, rounding, input.single_precision),
         force,
-        input.filtered,
+        sources(read),
         true);
     };
     if (!discretization.reproducible)
@@ -305,9 +310,9 @@ namespace Voussoir
     else
       {
         const double longest = discretization.longest_edge;
-        double       motion  = input.filtered.linfty_norm();
-        if (by_material)
-          motion += input.damping_memory->linfty_norm();
+        double       motion  = 0.;
+        for (const Vector *vector : read)
+          motion += vector->linfty_norm();
         force = 0.;
         for (bool exceeded = motion > 0.; exceeded; motion *= 256.)
           {
@@ -318,8 +323,6 @@ namespace Voussoir
                                          discretization.grid.communicator());
           }
       }
-    if (by_material)
-      input.damping_memory->zero_out_ghost_values();
   }
 
 
@@ -426,15 +429,13 @@ namespace Voussoir
   InternalForce::add_thermal_force(Vector       &force,
                                    const Vector &temperature) const
   {
-    const auto run = [&](const unsigned int material,
-                         const CellRange   &cells,
-                         Vector            &dst,
-                         const Vector      &src) {
-      kernels[material]->add_thermal_force(cells, dst, src);
-    };
+    const auto run =
+      [&](const unsigned int material, const CellRange &cells, Vector &dst) {
+        kernels[material]->add_thermal_force(cells, dst, temperature);
+      };
     discretization.matrix_free.cell_loop(on_runs(discretization, factors, run),
                                          force,
-                                         temperature);
+                                         sources({&temperature}));
   }
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from mesh_bias import ROOT, PolyCollection, faces_of, plt, read_energy, read_picture, write_gmsh
 
 HEIGHT, NECK, THICKNESS = 103., 66.5, 1.5  # of the slice [m]
-CELLS = ((14, 36), (20, 52), (28, 72), (40, 104))  # along the river, over the height
+COLUMNS = {36: 14, 52: 20, 72: 28, 104: 40}  # cells along the river, by rows over the height
 SLOPES = (-20., 0., 20.)  # of the rows at the neck: rise towards downstream [degrees]
 LAWS = {
     "eight points": (),
@@ -68,12 +68,11 @@ def write_mesh(name, points):
 
 def run(program, folder, law, rows, slope):
     """Runs one case unless it has results, and returns its output folder."""
-    columns = dict((rows, columns) for columns, rows in CELLS)[rows]
     mesh = os.path.join(folder, f"{rows}_rows_{slope:.0f}_degrees.msh")
     output = os.path.join(folder, law.replace(" ", "_") + "_" + os.path.basename(mesh)[:-4])
     if not os.path.exists(os.path.join(output, "summary.json")):
         print(law, os.path.basename(mesh), file=sys.stderr)
-        write_mesh(mesh, nodes_of_section(columns, rows, slope))
+        write_mesh(mesh, nodes_of_section(COLUMNS[rows], rows, slope))
         subprocess.run([program, os.path.join(ROOT, "prm/koyna.prm"), "--overwrite", "--set",
                         "Mesh/Type=file", f"Mesh/file/File={mesh}", f"Output/Folder={output}",
                         *LAWS[law]], check=True, stdout=subprocess.DEVNULL)
@@ -120,16 +119,16 @@ def main(program, folder):
     os.makedirs(folder, exist_ok=True)
     program, folder = os.path.abspath(program), os.path.abspath(folder)
     results = {(law, rows, slope): result(run(program, folder, law, rows, slope))
-               for law in LAWS for _, rows in CELLS for slope in SLOPES}
+               for law in LAWS for rows in COLUMNS for slope in SLOPES}
     print("| law | rows over the height | slope | crest | energy in cracks | lost by closing "
           "| crack at the neck, from upstream to downstream |\n|---|---|---|---|---|---|---|")
     for (law, rows, slope), values in results.items():
         print(f"| {law} | {rows} | {slope:.0f}° | {values['crest'][0]:.1f} to "
               f"{values['crest'][1]:+.1f} mm | {values['cracks']:.0f} kJ | {values['closing']:.0f} kJ | "
               + ", ".join(f"{z:.1f}" for z in values["path"]) + " m |")
-    print(f"energy-balance error over the input, at most "
+    print("energy-balance error over the input, at most "
           f"{max(values['error'] for values in results.values()):.5f}")
-    draw(results, CELLS[-1][1], os.path.join(ROOT, "doc", "koyna_meshes.png"))
+    draw(results, max(COLUMNS), os.path.join(ROOT, "doc", "koyna_meshes.png"))
 
 
 if __name__ == "__main__":

@@ -58,8 +58,24 @@ namespace Voussoir
     }
 
 
+    // Faces at whose nodes a step has more to do than the mass and the cells.
+    std::map<std::string, double>
+    costs_of_faces(const Case &parameters, const InterfaceSurfaces &surfaces)
+    {
+      const double cost = parameters.discretization.relative_cost_of_face();
+      std::map<std::string, double> result;
+      for (const std::string &set :
+           split_list(parameters.boundaries.absorbing.face_sets))
+        result[set] = cost;
+      for (const std::string &set : surfaces.names())
+        result[set] = result[set + other_side] = 0.5 * cost;
+      return result;
+    }
+
+
     Grid::Materials
     materials_of_grid(const Case                         &parameters,
+                      const InterfaceSurfaces            &surfaces,
                       std::vector<unsigned int>           of_cell,
                       std::shared_ptr<const CellsAndRing> stressed)
     {
@@ -67,7 +83,8 @@ namespace Voussoir
                              {},
                              {},
                              crack_edges(parameters),
-                             std::move(stressed)};
+                             std::move(stressed),
+                             costs_of_faces(parameters, surfaces)};
       for (const Material *material : parameters.material_list())
         {
           result.costs.push_back(
@@ -299,6 +316,7 @@ namespace Voussoir
     , grid(make_grid(meshes.grid,
                      std::move(meshes.solid),
                      materials_of_grid(parameters,
+                                       meshes.surfaces,
                                        std::move(meshes.materials),
                                        std::move(meshes.stressed)),
                      log.communicator()))

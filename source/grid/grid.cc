@@ -38,13 +38,22 @@ namespace Voussoir
 
   namespace
   {
+    // None on a rank that knows the face sets only.
     std::vector<double>
-    costs_of_cells(const Grid::Materials &materials)
+    costs_of_coarse_cells(const CoarseMesh      &coarse,
+                          const Grid::Materials &materials)
     {
       std::vector<double> costs;
       costs.reserve(materials.of_cell.size());
       for (const unsigned int material : materials.of_cell)
         costs.push_back(materials.costs[material]);
+      if (costs.empty())
+        return costs;
+      for (const auto &[name, cost] : materials.face_costs)
+        if (const auto set = coarse.face_sets.find(name);
+            set != coarse.face_sets.end())
+          for (const CoarseMesh::Face &face : set->second)
+            costs[face.cell] += cost;
       return costs;
     }
 
@@ -174,10 +183,6 @@ namespace Voussoir
       std::make_unique<Distributed>(mpi_communicator,
                                     dealii::Triangulation<3>::none,
                                     Distributed::no_automatic_repartitioning);
-    triangulation->signals.weight.connect([&](const auto &cell,
-                                              const auto) -> unsigned int {
-      return static_cast<unsigned int>(1000. * materials.costs[material(cell)]);
-    });
     check_copies(coarse.cells.size(), mpi_communicator);
     create_coarse(coarse, tags, *triangulation);
     refined_where = refine(*triangulation,
@@ -185,14 +190,19 @@ namespace Voussoir
                            parameters,
                            materials,
                            RanksOfMachine(mpi_communicator).n_machines());
+    auto costs    = costs_of_active_cells(*triangulation, coarse, materials);
+    triangulation->signals.weight.connect(
+      [&](const auto &cell, const auto) -> unsigned int {
+        return static_cast<unsigned int>(1000. *
+                                         costs[cell->active_cell_index()]);
+      });
     triangulation->repartition();
     triangulation->signals.weight.disconnect_all_slots();
     place_vertices(coarse.chart, *triangulation);
+    if (!parameters.counted_ranks.empty())
+      costs = costs_of_active_cells(*triangulation, coarse, materials);
     for (const unsigned int n_ranks : parameters.counted_ranks)
-      counts.push_back(count_by_p4est(
-        *triangulation,
-        [&](const Cell &cell) { return materials.costs[material(cell)]; },
-        n_ranks));
+      counts.push_back(count_by_p4est(*triangulation, costs, n_ranks));
     mesh = std::move(triangulation);
   }
 
@@ -205,7 +215,7 @@ namespace Voussoir
                            const GridParameters                  &parameters,
                            const Materials                       &materials)
   {
-    const auto costs = costs_of_cells(materials);
+    const auto costs = costs_of_coarse_cells(coarse, materials);
     mesh = std::make_unique<parallel::fullydistributed::Triangulation<3>>(
       mpi_communicator);
     mesh->create_triangulation(
@@ -232,14 +242,32 @@ namespace Voussoir
 
 
   std::vector<double>
-  Grid::costs_of_active_cells(const dealii::Triangulation<3> &serial,
-                              const std::vector<double>      &costs) const
+  Grid::costs_of_active_cells(const dealii::Triangulation<3> &triangulation,
+                              const CoarseMesh               &coarse,
+                              const Materials                &materials) const
   {
-    std::vector<double> of_cells;
-    of_cells.reserve(serial.n_active_cells());
-    for (const auto &cell : serial.active_cell_iterators())
-      of_cells.push_back(costs[material(cell)]);
-    return of_cells;
+    std::vector<double> costs(triangulation.n_active_cells());
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (!cell->is_artificial())
+        costs[cell->active_cell_index()] = materials.costs[material(cell)];
+
+    CoarseFaces         faces;
+    std::vector<double> costs_of_faces;
+    for (const auto &[name, cost] : materials.face_costs)
+      if (const auto set = coarse.face_sets.find(name);
+          set != coarse.face_sets.end())
+        {
+          for (const CoarseMesh::Face &face : set->second)
+            faces.add(face, costs_of_faces.size());
+          costs_of_faces.push_back(cost);
+        }
+    faces.for_each(triangulation,
+                   [&](const ActiveCell &cell,
+                       const unsigned int,
+                       const unsigned int set) {
+                     costs[cell->active_cell_index()] += costs_of_faces[set];
+                   });
+    return costs;
   }
 
 
@@ -250,7 +278,6 @@ namespace Voussoir
   {
     if (n_ranks.empty())
       return;
-    const auto of_cells = costs_of_active_cells(serial, costs);
     std::vector<std::array<unsigned int, 8>> cells(serial.n_active_cells());
     for (const auto &cell : serial.active_cell_iterators())
       for (const unsigned int v : cell->vertex_indices())
@@ -258,9 +285,9 @@ namespace Voussoir
     std::vector<types::subdomain_id> rank(cells.size());
     for (const unsigned int n : n_ranks)
       {
-        divide_by_metis(serial, of_cells, n);
+        divide_by_metis(serial, costs, n);
         GridTools::get_subdomain_association(serial, rank);
-        counts.push_back(count_partition(cells, rank, of_cells, n));
+        counts.push_back(count_partition(cells, rank, costs, n));
       }
   }
 
@@ -280,10 +307,11 @@ namespace Voussoir
     const auto deal_cells = [&](dealii::Triangulation<3> &serial,
                                 const MPI_Comm           &communicator,
                                 const unsigned int) {
+      const auto costs = costs_of_active_cells(serial, coarse, materials);
       if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        count_by_metis(serial, parameters.counted_ranks, materials.costs);
+        count_by_metis(serial, parameters.counted_ranks, costs);
       divide_by_metis(serial,
-                      costs_of_active_cells(serial, materials.costs),
+                      costs,
                       Utilities::MPI::n_mpi_processes(communicator));
     };
     // one rank of a machine makes the whole mesh, and sends the others their

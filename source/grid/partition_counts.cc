@@ -19,12 +19,13 @@ namespace Voussoir
   namespace
   {
     using Mesh = parallel::DistributedTriangulationBase<3>;
-    using Cost = std::function<double(const Triangulation<3>::cell_iterator &)>;
 
 
     // The rank of each cell, owned ones and ghosts.
     std::vector<unsigned int>
-    deal_cells(const Mesh &mesh, const Cost &cost, const unsigned int n_ranks)
+    deal_cells(const Mesh                &mesh,
+               const std::vector<double> &costs,
+               const unsigned int         n_ranks)
     {
       // a CellId is ordered by the trees of p4est and the children in them
       using Cell = Triangulation<3>::active_cell_iterator;
@@ -39,7 +40,7 @@ namespace Voussoir
       const MPI_Comm communicator = mesh.get_communicator();
       double         mine         = 0.;
       for (const auto &item : cells)
-        mine += cost(item.second);
+        mine += costs[item.second->active_cell_index()];
       double before = 0., total = 0.;
       for (const double of_rank :
            Utilities::MPI::all_gather(communicator, mine))
@@ -48,7 +49,7 @@ namespace Voussoir
       std::vector<unsigned int> rank(mesh.n_active_cells());
       for (const auto &[id, cell] : cells)
         {
-          const double own = cost(cell);
+          const double own = costs[cell->active_cell_index()];
           rank[cell->active_cell_index()] =
             std::min<unsigned int>(n_ranks * ((before + 0.5 * own) / total),
                                    n_ranks - 1);
@@ -179,9 +180,11 @@ namespace Voussoir
 
 
   PartitionCounts
-  count_by_p4est(const Mesh &mesh, const Cost &cost, const unsigned int n_ranks)
+  count_by_p4est(const Mesh                &mesh,
+                 const std::vector<double> &costs,
+                 const unsigned int         n_ranks)
   {
-    const auto rank = deal_cells(mesh, cost, n_ranks);
+    const auto rank = deal_cells(mesh, costs, n_ranks);
 
     RanksAtVertices at(mesh.n_vertices());
     for (const auto &cell : mesh.active_cell_iterators())
@@ -218,7 +221,7 @@ namespace Voussoir
                 node.ranks.insert(own);
               }
           if (cell->is_locally_owned())
-            counts.add_cell(own, cost(cell), is_inner);
+            counts.add_cell(own, costs[cell->active_cell_index()], is_inner);
         }
     for (const auto &[vertex, node] : shared)
       if (node.is_owned)

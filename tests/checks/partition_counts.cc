@@ -112,5 +112,48 @@ namespace Voussoir
     // Reference: closed form
     const Registry<Check>::Add<CountedHalves>
       halves_registered("counted halves", "Exchange of two halves of a bar.");
+
+
+    /** A column of ten layers of as many cells, with an absorbing bottom and a
+     *  joint below the third layer: the costs of its layers are 2, 1.5, 1.5 and
+     *  1 of all others, so that the halves of two ranks are four and six
+     *  layers. */
+    class CountedFaces : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Nodes of a level", nodes, "Number of them.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto counts = counts_of(file, communicator);
+        verdicts.near("largest load over the mean",
+                      largest(counts.load),
+                      1.,
+                      1e-14);
+        verdicts.near("nodes that the first exchanges",
+                      counts.nodes.at(0),
+                      nodes,
+                      0.);
+        verdicts.near("sum of the parts of their cells without these",
+                      sum(counts.inner),
+                      3. / 4. + 5. / 6.,
+                      1e-14);
+      }
+
+    private:
+      double nodes = 4.;
+    };
+
+    // Reference: closed form
+    const Registry<Check>::Add<CountedFaces> faces_registered(
+      "counted faces",
+      "Load of ranks along a column with a boundary and a joint.");
   } // namespace
 } // namespace Voussoir

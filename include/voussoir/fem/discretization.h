@@ -90,6 +90,11 @@ namespace Voussoir
      *  ranks. */
     double
     relative_cost(const bool has_memory) const;
+
+    /** The same of a face of the absorbing boundary, or of the two sides of a
+     *  face of an interface. */
+    double
+    relative_cost_of_face() const;
   };
 
   /** A face set on which displacement components are fixed at zero: all three,

@@ -9,6 +9,7 @@
 #include <deal.II/grid/tria.h>
 
 #include <functional>
+#include <map>
 #include <memory>
 
 namespace Voussoir
@@ -76,6 +77,9 @@ namespace Voussoir
 
       /** Where cracks are expected by another run; null: anywhere. */
       std::shared_ptr<const CellsAndRing> stressed = nullptr;
+
+      /** What a face of each of these face sets costs beside its cell. */
+      std::map<std::string, double> face_costs = {};
     };
 
     /** If METIS or a curve divides the mesh, only the first rank of each
@@ -209,14 +213,15 @@ namespace Voussoir
                  const GridParameters                          &parameters,
                  const Materials                               &materials);
 
-    /** In the order of the active cells of a mesh that is not distributed.
-     *  @param costs of the materials */
+    /** By the numbers of the active cells, of those that are not artificial. */
     std::vector<double>
-    costs_of_active_cells(const dealii::Triangulation<3> &serial,
-                          const std::vector<double>      &costs) const;
+    costs_of_active_cells(const dealii::Triangulation<3> &triangulation,
+                          const CoarseMesh               &coarse,
+                          const Materials                &materials) const;
 
     /** Counts the partitions by METIS of a mesh that is not distributed, into
-     *  the given numbers of ranks; it changes the ranks of the cells. */
+     *  the given numbers of ranks; it changes the ranks of the cells.
+     *  @param costs of the cells */
     void
     count_by_metis(dealii::Triangulation<3>        &serial,
                    const std::vector<unsigned int> &n_ranks,

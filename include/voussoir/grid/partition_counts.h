@@ -4,7 +4,6 @@
 #include <deal.II/distributed/tria_base.h>
 
 #include <array>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,14 +42,13 @@ namespace Voussoir
    * there; other ranks exchange its values with this rank. All ranks must call
    * this together.
    *
-   * @param cost of a cell, as for the balance of ranks
+   * @param costs of the active cells by their numbers, as for the balance of
+   * ranks
    */
   PartitionCounts
-  count_by_p4est(
-    const dealii::parallel::DistributedTriangulationBase<3> &mesh,
-    const std::function<double(const dealii::Triangulation<3>::cell_iterator &)>
-                      &cost,
-    const unsigned int n_ranks);
+  count_by_p4est(const dealii::parallel::DistributedTriangulationBase<3> &mesh,
+                 const std::vector<double>                               &costs,
+                 const unsigned int n_ranks);
 
   /** The same for cells whose ranks are known, by the numbers of their
    *  vertices; for one rank of the run. */

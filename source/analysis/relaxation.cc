@@ -65,8 +65,7 @@ namespace Voussoir
       0.9 * stable_step(discretization,
                         internal_force,
                         mass,
-                        {[](const double) { return 0.; },
-                         [&](Vector &force, const Vector &u, const double) {
+                        {{}, [&](Vector &force, const Vector &u, const double) {
                            terms.add_to(force, u, 0.);
                          }});
   }

@@ -31,14 +31,15 @@ namespace Voussoir
      * dt^2 times an eigenvalue over 4, and grows with dt, at least in
      * proportion. So if it is below one at dt, it is above one at limit^2/dt,
      * and vice versa: each limit bounds the dt from both sides.
+     *
+     * @param dt the first to try
      */
     double
-    fixed_point(const std::function<double(const double)> &limit)
+    fixed_point(double dt, const std::function<double(const double)> &limit)
     {
       constexpr double tolerance = 1e-5;
-      double dt = limit(std::numeric_limits<double>::max()), lower = 0.,
-             upper = std::numeric_limits<double>::infinity(), last = 0.,
-             last_distance = 0.;
+      double lower = 0., upper = std::numeric_limits<double>::infinity(),
+             last = 0., last_distance = 0.;
       while (upper > (1. + tolerance) * lower)
         {
           const double reached = limit(dt);
@@ -68,18 +69,23 @@ namespace Voussoir
     Vector memory = discretization.create_vector(), start(memory),
            stiffer(memory);
     fill_start(discretization, start);
-    return fixed_point([&](const double dt) {
-      const double gamma = limits.stiffening(dt);
+    const auto limit = [&](const double dt) {
+      const double gamma = limits.stiffening ? limits.stiffening(dt) : 0.;
       const auto   apply = [&](Vector &dst, const Vector &src) {
         memory.equ(gamma, src);
         stiffer.equ(1. + 2. * limits.mesh_viscosity / dt, src);
         force.apply(dst,
                     {src, stiffer, SweepInput::Damping::by_material, &memory});
-        limits.add_diagonal(dst, src, dt);
+        if (limits.add_diagonal)
+          limits.add_diagonal(dst, src, dt);
       };
       return 2. / std::sqrt(largest_eigenvalue(
                     start, mass.inverse, apply, discretization.reproducible));
-    });
+    };
+    const double first = limits.guess > 0. ?
+                           limits.guess :
+                           limit(std::numeric_limits<double>::max());
+    return limits.depend_on_step() ? fixed_point(first, limit) : first;
   }
 
 

@@ -31,8 +31,7 @@ namespace Voussoir
             return stable_step(model.solid.discretization,
                                model.solid.internal_force,
                                model.solid.mass,
-                               {stiffening,
-                                [](Vector &, const Vector &, const double) {}});
+                               {stiffening, {}});
           };
         const double free = step_with([](const double) { return 0.; });
         for (const double share : {0.25, 0.5, 0.95})

@@ -29,9 +29,7 @@ namespace Voussoir
                               {0.});
         InternalForce internal_force(tank.discretization, {materials[0]}, {1.});
 
-        StepLimits limits;
-        limits.stiffening   = [](const double) { return 0.; };
-        limits.add_diagonal = [](Vector &, const Vector &, const double) {};
+        StepLimits   limits;
         const double solid =
           stable_step(tank.discretization, internal_force, mass, limits);
         limits.add_diagonal =

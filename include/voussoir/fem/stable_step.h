@@ -17,17 +17,27 @@ namespace Voussoir
    */
   struct StepLimits
   {
-    /** gamma(dt): sum of the Maxwell coefficients, or 2 beta/dt (Rayleigh). */
+    /** gamma(dt): sum of the Maxwell coefficients, or 2 beta/dt (Rayleigh);
+     *  null: zero. */
     std::function<double(const double dt)> stiffening;
 
     /** Adds the diagonal terms (boundary springs; dashpots and mass damping
-     *  times 2/dt where they are not treated centrally). */
+     *  times 2/dt where they are not treated centrally); null: none. */
     std::function<
       void(Vector &force, const Vector &displacement, const double dt)>
       add_diagonal;
 
     /** Damping::mesh_viscosity [s]. */
     double mesh_viscosity = 0.;
+
+    /** A step near the limit, which spares iterations [s]; 0: not known. */
+    double guess = 0.;
+
+    bool
+    depend_on_step() const
+    {
+      return stiffening || add_diagonal || mesh_viscosity > 0.;
+    }
   };
 
   /**

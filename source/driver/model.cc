@@ -68,7 +68,7 @@ namespace Voussoir
            split_list(parameters.boundaries.absorbing.face_sets))
         result[set] = cost;
       for (const std::string &set : surfaces.names())
-        result[set] = result[set + other_side] = 0.5 * cost;
+        result[set] = result[set + other_side] = cost;
       return result;
     }
 

@@ -114,10 +114,9 @@ namespace Voussoir
       halves_registered("counted halves", "Exchange of two halves of a bar.");
 
 
-    /** A column of ten layers of as many cells, with an absorbing bottom and a
-     *  joint below the third layer: the costs of its layers are 2, 1.5, 1.5 and
-     *  1 of all others, so that the halves of two ranks are four and six
-     *  layers. */
+    /** A column of ten layers of as many cells, with absorbing ends and a joint
+     *  below the third layer: the costs of the layers are 2, 2, 2, 1, ..., 1,
+     * 2, so that the halves of two ranks are four and six layers. */
     class CountedFaces : public Check
     {
     public:
@@ -154,6 +153,6 @@ namespace Voussoir
     // Reference: closed form
     const Registry<Check>::Add<CountedFaces> faces_registered(
       "counted faces",
-      "Load of ranks along a column with a boundary and a joint.");
+      "Load of ranks along a column with absorbing ends and a joint.");
   } // namespace
 } // namespace Voussoir

@@ -91,8 +91,8 @@ namespace Voussoir
     double
     relative_cost(const bool has_memory) const;
 
-    /** The same of a face of the absorbing boundary, or of the two sides of a
-     *  face of an interface. */
+    /** The same of a face of the absorbing boundary, or of one side of an
+     *  interface. */
     double
     relative_cost_of_face() const;
   };

@@ -38,6 +38,20 @@ namespace Voussoir
 
   namespace
   {
+    template <typename Visit>
+    void
+    for_each_face_with_cost(const CoarseMesh      &coarse,
+                            const Grid::Materials &materials,
+                            const Visit           &visit)
+    {
+      for (const auto &[name, cost] : materials.face_costs)
+        if (const auto set = coarse.face_sets.find(name);
+            set != coarse.face_sets.end())
+          for (const CoarseMesh::Face &face : set->second)
+            visit(face, cost);
+    }
+
+
     // None on a rank that knows the face sets only.
     std::vector<double>
     costs_of_coarse_cells(const CoarseMesh      &coarse,
@@ -47,13 +61,13 @@ namespace Voussoir
       costs.reserve(materials.of_cell.size());
       for (const unsigned int material : materials.of_cell)
         costs.push_back(materials.costs[material]);
-      if (costs.empty())
-        return costs;
-      for (const auto &[name, cost] : materials.face_costs)
-        if (const auto set = coarse.face_sets.find(name);
-            set != coarse.face_sets.end())
-          for (const CoarseMesh::Face &face : set->second)
-            costs[face.cell] += cost;
+      if (!costs.empty())
+        for_each_face_with_cost(coarse,
+                                materials,
+                                [&](const CoarseMesh::Face &face,
+                                    const double            cost) {
+                                  costs[face.cell] += cost;
+                                });
       return costs;
     }
 
@@ -253,19 +267,16 @@ namespace Voussoir
 
     CoarseFaces         faces;
     std::vector<double> costs_of_faces;
-    for (const auto &[name, cost] : materials.face_costs)
-      if (const auto set = coarse.face_sets.find(name);
-          set != coarse.face_sets.end())
-        {
-          for (const CoarseMesh::Face &face : set->second)
-            faces.add(face, costs_of_faces.size());
-          costs_of_faces.push_back(cost);
-        }
+    for_each_face_with_cost(
+      coarse, materials, [&](const CoarseMesh::Face &face, const double cost) {
+        faces.add(face, costs_of_faces.size());
+        costs_of_faces.push_back(cost);
+      });
     faces.for_each(triangulation,
                    [&](const ActiveCell &cell,
                        const unsigned int,
-                       const unsigned int set) {
-                     costs[cell->active_cell_index()] += costs_of_faces[set];
+                       const unsigned int number) {
+                     costs[cell->active_cell_index()] += costs_of_faces[number];
                    });
     return costs;
   }

@@ -129,14 +129,15 @@ def plot(kept, path):
     for level in sorted({one["level"] for one in kept}):
         measured = {one["ranks"]: one["step [ms]"] for one in kept
                     if one["level"] == level and "step [ms]" in one}
-        predicted = {one["ranks"]: one["predicted step [ms]"] for one in kept
-                     if one["level"] == level and "predicted step [ms]" in one}
+        # over one rank at the rate that the prediction takes
+        predicted = {one["ranks"]: one["efficiency"] * one["ranks"] for one in kept
+                     if one["level"] == level and "efficiency" in one}
         unknowns = next(one["unknowns"] for one in kept if one["level"] == level)
         label = f"{unknowns / 1e6:.1f} million unknowns"
         first = measured[min(measured)] * min(measured)
         axes.loglog(list(measured), [first / ms for ms in measured.values()], "o",
                     label=label + ", measured")
-        axes.loglog(list(predicted), [first / ms for ms in predicted.values()], "x--",
+        axes.loglog(list(predicted), list(predicted.values()), "x--",
                     label=label + ", predicted")
     axes.loglog(list(PAPER), [PAPER[1] / hours for hours in PAPER.values()], "s-",
                 label="PSDAP, 1.3 million unknowns")

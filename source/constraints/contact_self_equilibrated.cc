@@ -276,6 +276,9 @@ namespace Voussoir
               for (unsigned int j = 0; j < m; ++j)
                 for (unsigned int d = 0; d < 3; ++d)
                   row[j] += basis[j][3 * k + d] * direction[d];
+              // twice, as what the first leaves of a dependent row is round-off
+              // in any direction, which is no constraint
+              project(row, constraints);
               project(row, constraints);
               double size = 0.;
               for (const double value : row)

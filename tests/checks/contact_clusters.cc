@@ -4,6 +4,7 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 
+#include <numeric>
 #include <random>
 
 #include "check.h"
@@ -380,8 +381,14 @@ namespace Voussoir
                                "wedge between planes"};
         for (unsigned int kind = 0; kind < 4; ++kind)
           {
-            Worst worst;
-            for (unsigned int trial = 0; trial < 2500; ++trial)
+            Worst                     worst;
+            std::vector<unsigned int> trials(2500);
+            std::iota(trials.begin(), trials.end(), 0);
+            // with nearly dependent constraints on self-equilibrated forces
+            for (const unsigned int trial :
+                 {4227, 12070, 16041, 18158, 36137, 39259, 39545})
+              trials.push_back(trial);
+            for (const unsigned int trial : trials)
               {
                 Random random(4 * trial + kind);
                 add_cluster(random, kind, worst);

@@ -129,6 +129,8 @@ namespace Voussoir
     };
 
     find_moves(points, cluster); // from the forces of the step before
+    for (unsigned int i = 0; i < cluster.n_nodes; ++i) // they have round-off
+      size = std::max(size, moves[i].norm());
     unsigned int n_sweeps = 0;
     for (; n_sweeps < max_sweeps && !found() && !run_away(); ++n_sweeps)
       last = n_sweeps % sweeps_per_jump == sweeps_per_jump - 1 ?
@@ -236,10 +238,10 @@ namespace Voussoir
         if (force[0] < limits.opening_force() ||
             tangential_norm(force) > limits.shear(false, force[0]))
           return false;
-        holding[k] = force;
+        candidates[k].force = force;
       }
     for (unsigned int k = 0; k < cluster.n_points; ++k)
-      points[cluster.first_point + k].force = holding[k];
+      points[cluster.first_point + k].force = candidates[k].force;
     return true;
   }
 
@@ -311,19 +313,23 @@ namespace Voussoir
                                   const Sweep   &before)
   {
     for (unsigned int k = 0; k < cluster.n_points; ++k)
-      holding[k] = points[cluster.first_point + k].force;
+      {
+        const ContactPoint &point = points[cluster.first_point + k];
+        candidates[k]             = {point.force, point.status};
+      }
     iterate_newton(points, cluster, before.largest);
     find_moves(points, cluster);
-    Sweep result = sweep(points, cluster);
-    if (!(result.change <= before.change)) // no improvement
+    const Sweep result = sweep(points, cluster);
+    if (result.change <= before.change)
+      return result;
+    for (unsigned int k = 0; k < cluster.n_points; ++k)
       {
-        for (unsigned int k = 0; k < cluster.n_points; ++k)
-          points[cluster.first_point + k].force = holding[k];
-        find_moves(points, cluster);
-        result.change = before.change;
-        result.moved  = before.moved;
+        ContactPoint &point = points[cluster.first_point + k];
+        point.force         = candidates[k].force;
+        point.status        = candidates[k].status;
       }
-    return result;
+    find_moves(points, cluster);
+    return before;
   }
 
 

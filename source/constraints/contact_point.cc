@@ -19,6 +19,9 @@ namespace Voussoir
     // singular Delassus operator.
     constexpr double round_off = 1e-14, left_over = 1e-9;
 
+    // Share of the largest compliance below which a direction is fixed.
+    constexpr double fixed = 1e-12;
+
 
     /** The normal force if the gap without it is @p gap. */
     double
@@ -130,7 +133,7 @@ namespace Voussoir
           gap(std::abs(g0) < std::abs(g1) ? x0 : x1);
           return;
         }
-      const double size   = std::max(std::abs(g0), std::abs(g1));
+      const double size   = std::min(std::abs(g0), std::abs(g1));
       double       best_x = x1, best_g = g1;
       bool         best_is_last = false;
       const auto   remember     = [&](const double x) {
@@ -174,11 +177,16 @@ namespace Voussoir
   DelassusOperator::DelassusOperator(const Tensor<2, 3> &delassus)
     : full(delassus)
   {
+    // a fixed direction has round-off
+    for (unsigned int d = 0; d < 3; ++d)
+      if (full[d][d] <= fixed * trace(full))
+        for (unsigned int e = 0; e < 3; ++e)
+          full[d][e] = full[e][d] = 0.;
     const SymmetricTensor<2, 3> symmetric = symmetrize(full);
     const auto                  system =
       eigenvectors(symmetric, SymmetricTensorEigenvectorMethod::jacobi);
     for (const auto &[value, vector] : system)
-      if (value > 1e-12 * system[0].first)
+      if (value > fixed * system[0].first)
         inverse += outer_product(vector, vector) / value;
 
     const double mean       = 0.5 * (full[1][1] + full[2][2]),
@@ -186,7 +194,7 @@ namespace Voussoir
                  radius     = std::hypot(difference, full[1][2]);
     const double angle      = 0.5 * std::atan2(full[1][2], difference);
     tangential              = {{mean + radius, mean - radius}};
-    if (tangential[1] < 1e-12 * tangential[0])
+    if (tangential[1] < fixed * tangential[0])
       tangential[1] = 0.;
     axes[0][0] = axes[1][1] = std::cos(angle);
     axes[0][1]              = std::sin(angle);
@@ -230,18 +238,26 @@ namespace Voussoir
         const auto closed_gap = [&](const double normal) {
           return gap(normal, limits.shear(false, normal));
         };
-        double below = lowest, gap_below = closed_gap(below);
         if (D[0][0] == 0.)
           {
             if (b[0] <= 0.)
               closed_gap(0.);
             return b[0] <= 0.;
           }
+        double below = lowest, gap_below = closed_gap(below);
         if (gap_below >= 0.)
           return false;
+        // a bond may be much stronger than the force
+        if (lowest < 0.)
+          if (const double without = closed_gap(0.); without < 0.)
+            {
+              below     = 0.;
+              gap_below = without;
+            }
 
-        double above     = lowest - gap_below / D[0][0],
-               gap_above = closed_gap(above);
+        const double start = below;
+        double       above = start - gap_below / D[0][0],
+               gap_above   = closed_gap(above);
         // where a singular Delassus operator lets the point stick, the gap is
         // zero
         for (unsigned int i = 0; i < 100 && gap_above < -round_off * b.norm();
@@ -249,7 +265,7 @@ namespace Voussoir
           {
             below     = above;
             gap_below = gap_above;
-            above += std::max(above - lowest, -gap_above / D[0][0]);
+            above += std::max(above - start, -gap_above / D[0][0]);
             gap_above = closed_gap(above);
           }
         close_gap(closed_gap, below, gap_below, above, gap_above);
@@ -259,21 +275,17 @@ namespace Voussoir
       void
       open()
       {
-        // bond and shear in turn; once is enough if they are not coupled
-        bool is_open = true, found = false;
-        F[1] = F[2] = 0.;
-        for (unsigned int i = 0; i < 20 && !found; ++i)
+        const double limit = limits.shear(true, 0.);
+        if (D[0][0] == 0.) // no normal force has an effect
+          gap(0., limit);
+        else if (gap(lowest, limit) < 0. && !limits.locked)
           {
-            const Tensor<1, 3> before = F;
-            const double       normal = normal_force(
-              b[0] + D[0][1] * F[1] + D[0][2] * F[2], D[0][0], limits, is_open);
-            gap(std::min(normal, 0.), limits.shear(true, normal));
-            found = (F - before).norm() <= 1e-15 * F.norm();
+            close_with_cohesion();
+            return;
           }
-        if (!found && is_open && limits.opening > 0.) // an opened bond
+        else if (limits.opening > 0. && limits.tension > 0.) // an opened bond
           {
-            const double limit    = limits.shear(true, 0.);
-            const auto   too_much = [&](const double normal) {
+            const auto too_much = [&](const double normal) {
               return normal +
                      limits.tension *
                        std::min(gap(normal, limit) / limits.opening, 1.);
@@ -284,10 +296,7 @@ namespace Voussoir
                       0.,
                       too_much(0.));
           }
-        if ((!is_open || b[0] + D[0] * F < 0.) && !limits.locked)
-          close_with_cohesion();
-        else
-          result.status = ContactStatus::open;
+        result.status = ContactStatus::open;
       }
 
       ContactForce result;

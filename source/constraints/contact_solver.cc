@@ -70,7 +70,7 @@ namespace Voussoir
         gaps.resize(std::max<std::size_t>(gaps.size(), cluster.n_points));
         moves.resize(std::max<std::size_t>(moves.size(), cluster.n_nodes));
       }
-    holding.resize(gaps.size());
+    candidates.resize(gaps.size());
   }
 
 

@@ -4,6 +4,7 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 
+#include <array>
 #include <numeric>
 #include <random>
 
@@ -17,6 +18,14 @@ namespace Voussoir
   {
     constexpr double accuracy = 1e-9;
 
+    // Trials that once failed: nearly dependent constraints on
+    // self-equilibrated forces; bonds under keys, or much stronger than the
+    // forces; motions that cancel.
+    // clang-format off
+    constexpr std::array<unsigned int, 16> failed_once{
+      {4227, 12070, 16041, 18158, 36137, 39259, 39545, 17403, 38476, 6076,
+       3931, 6837, 11989, 18392, 33467, 45136}};
+    // clang-format on
 
     class ConstantStrength : public InterfaceLaw
     {
@@ -384,10 +393,7 @@ namespace Voussoir
             Worst                     worst;
             std::vector<unsigned int> trials(2500);
             std::iota(trials.begin(), trials.end(), 0);
-            // with nearly dependent constraints on self-equilibrated forces
-            for (const unsigned int trial :
-                 {4227, 12070, 16041, 18158, 36137, 39259, 39545})
-              trials.push_back(trial);
+            trials.insert(trials.end(), failed_once.begin(), failed_once.end());
             for (const unsigned int trial : trials)
               {
                 Random random(4 * trial + kind);
@@ -465,7 +471,8 @@ namespace Voussoir
         solver.prepare_step(contact, cluster.inverse_mass, 1.);
         std::vector<Tensor<1, 3>> displacement(n_nodes), force(n_nodes);
         contact.start(displacement, displacement);
-        const double size = random.one_in(8) ? 1e-6 : 1.;
+        const double size   = random.one_in(8) ? 1e-6 : 1.;
+        double       motion = 1e-20; // largest so far; less counts as none
         for (unsigned int step = 0; step < 3; ++step)
           {
             // fixed nodes do not move
@@ -479,7 +486,8 @@ namespace Voussoir
             const auto effort    = solver.solve(contact, displacement, force);
             worst.paths += effort.paths;
             worst.unsolved += effort.unsolved;
-            check(cluster, before, predicted, contact, displacement, worst);
+            check(
+              cluster, before, predicted, contact, displacement, motion, worst);
           }
       }
 
@@ -489,10 +497,10 @@ namespace Voussoir
             const std::vector<Tensor<1, 3>> &predicted,
             const ContactPoints             &contact,
             const std::vector<Tensor<1, 3>> &displacement,
+            double                          &motion,
             Worst                           &worst)
       {
-        // a smaller motion counts as none
-        double motion_size = 1e-20, force_size = 0., compliance = 0.;
+        double                    force_size = 0., compliance = 0.;
         std::vector<Tensor<1, 3>> force(predicted.size());
         for (unsigned int k = 0; k < before.size(); ++k)
           {
@@ -502,22 +510,22 @@ namespace Voussoir
             total[0] += before[k].uplift * before[k].area;
             force[point.second] += total * point.frame;
             force[point.first] -= total * point.frame;
-            keep_largest(motion_size, point.initial_gap[0]);
+            keep_largest(motion, point.initial_gap[0]);
           }
         for (unsigned int i = 0; i < predicted.size(); ++i)
           {
-            keep_largest(motion_size, predicted[i].norm());
-            keep_largest(motion_size, displacement[i].norm());
+            keep_largest(motion, predicted[i].norm());
+            keep_largest(motion, displacement[i].norm());
             keep_largest(compliance, cluster.inverse_mass[i].norm());
           }
-        keep_largest(force_size, motion_size / compliance);
-        keep_largest(motion_size, compliance * force_size);
+        keep_largest(force_size, motion / compliance);
+        const double motion_size = std::max(motion, compliance * force_size);
         for (unsigned int i = 0; i < predicted.size(); ++i)
           keep_largest(worst.motion,
                        (displacement[i] - predicted[i] -
                         cluster.inverse_mass[i] * force[i])
                            .norm() /
-                         std::max(motion_size, compliance * force_size));
+                         motion_size);
 
         double violation = 0.;
         for (unsigned int k = 0; k < before.size(); ++k)

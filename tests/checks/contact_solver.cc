@@ -293,6 +293,7 @@ namespace Voussoir
         between_fixed_nodes(verdicts);
         blocks_on_a_base(verdicts);
         friction_that_fades(verdicts);
+        fixed_along_the_normal(verdicts);
       }
 
     private:
@@ -464,6 +465,39 @@ namespace Voussoir
         verdicts.below("friction that fades: gap, or force where open",
                        closed,
                        1e-15);
+      }
+
+      /** The compliance across an interface whose nodes are fixed along its
+       *  normal, and the motion of these, are round-off. */
+      static void
+      fixed_along_the_normal(Verdicts &verdicts)
+      {
+        Random random;
+        double normal = 0., shear = 0.;
+        for (unsigned int trial = 0; trial < 200; ++trial)
+          {
+            const Tensor<2, 3> frame = frame_of(random.vector());
+            Tensor<2, 3>       inverse_mass(unit_symmetric_tensor<3>());
+            inverse_mass -= outer_product(frame[0], frame[0]);
+            Tensor<1, 3> b = frame * (inverse_mass * random.vector());
+            b[0]           = trial % 2 == 0 ? 1e-17 : -1e-17;
+            ContactLimits limits;
+            limits.friction = 1.;
+            limits.tension  = trial % 4 < 2 ? 0. : 1.;
+            limits.bond     = 0.2;
+            const ContactForce found =
+              solve_contact(b,
+                            DelassusOperator(frame * inverse_mass *
+                                             transpose(frame)),
+                            limits);
+            keep_largest(normal, std::abs(found.force[0]));
+            const double slip = std::hypot(b[1], b[2]);
+            keep_largest(shear,
+                         std::abs(std::hypot(found.force[1], found.force[2]) -
+                                  std::min(slip, 0.2)));
+          }
+        verdicts.below("fixed along the normal: normal force", normal, 1e-15);
+        verdicts.below("fixed along the normal: shear", shear, 1e-12);
       }
 
       static Made

@@ -202,9 +202,10 @@ namespace Voussoir
     std::vector<DelassusOperator>     point_operator;
     std::vector<unsigned int>         operator_of_point;
 
-    // of the present cluster: gaps without contact forces, forces that keep its
-    // points sticking, motion of its nodes
-    std::vector<dealii::Tensor<1, 3>> gaps, holding, moves;
+    // of the present cluster: gaps without contact forces, motion of its nodes,
+    // forces that may come to be those of its points
+    std::vector<dealii::Tensor<1, 3>> gaps, moves;
+    std::vector<ContactForce>         candidates;
   };
 } // namespace Voussoir
 

@@ -148,6 +148,7 @@ namespace Voussoir
   ParameterFile::with(const std::vector<std::string> &changes) const
   {
     ParameterFile copy = *this;
+    ++copy.n_sets_of_changes;
     copy.change(changes);
     return copy;
   }
@@ -185,7 +186,8 @@ namespace Voussoir
                           "\" has no \"=\"; write it as "
                           "--set \"Section/Entry=value\".");
         const Value value{trim(item.substr(equals + 1)),
-                          "--set \"" + item + "\""};
+                          "--set \"" + item + "\"",
+                          n_sets_of_changes};
         const auto  path = join_path(split_list(item.substr(0, equals), '/'));
         if (!is_utf8(item))
           throw UserError(value.place + " is not written in UTF-8.");
@@ -297,7 +299,8 @@ namespace Voussoir
 
   bool
   ParameterFile::is_replaced(const std::string &entry,
-                             const std::string &place) const
+                             const std::string &place,
+                             const unsigned int set_of_changes) const
   {
     // the file, or --set
     const auto source = [](const std::string &text) {
@@ -306,23 +309,25 @@ namespace Voussoir
     };
     const auto now = values.find(entry);
     return replaced.count(entry) > 0 &&
-           source(now->second.place) != source(place);
+           (source(now->second.place) != source(place) ||
+            now->second.set_of_changes > set_of_changes);
   }
 
 
   std::string
   ParameterFile::cause_of_no_use(const std::string &path,
-                                 const std::string &place) const
+                                 const std::string &place,
+                                 const unsigned int set_of_changes) const
   {
     for (std::string part = path; !part.empty(); part = section_of(part))
       {
         const std::string section = section_of(part);
         for (const std::string entry : {"Class", "Law"})
-          if (is_replaced(section + "/" + entry, place))
+          if (is_replaced(section + "/" + entry, place, set_of_changes))
             return section + "/" + entry;
         for (const std::string entry : {"Names", "Type"})
           if (const std::string chooser = section + "/" + entry;
-              is_replaced(chooser, place))
+              is_replaced(chooser, place, set_of_changes))
             for (const std::string &before : replaced.at(chooser))
               for (const std::string &name : split_list(before))
                 if (name == entry_of(part))
@@ -365,8 +370,9 @@ namespace Voussoir
     std::vector<std::string> notes;
     const auto               is_left_out = [&](const std::string &what,
                                  const std::string &path,
-                                 const std::string &place) {
-      const std::string cause = cause_of_no_use(path, place);
+                                 const std::string &place,
+                                 const unsigned int set_of_changes = 0) {
+      const std::string cause = cause_of_no_use(path, place, set_of_changes);
       if (!cause.empty())
         notes.push_back(what + " is not used, as \"" + entry_of(cause) + "\" " +
                         section_text(section_of(cause)) + " is now \"" +
@@ -383,12 +389,16 @@ namespace Voussoir
         {
           // a note on the section covers its entries
           if (declared_sections.count(section_of(path)) == 0 &&
-              !cause_of_no_use(section_of(path), value.place).empty())
+              !cause_of_no_use(section_of(path),
+                               value.place,
+                               value.set_of_changes)
+                 .empty())
             continue;
           if (is_left_out("entry \"" + entry_of(path) + "\" " +
                             section_text(section_of(path)),
                           path,
-                          value.place))
+                          value.place,
+                          value.set_of_changes))
             continue;
           const std::string section = section_of(path);
           if (declared_sections.count(section) == 0)

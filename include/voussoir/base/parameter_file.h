@@ -31,7 +31,8 @@ namespace Voussoir
     explicit ParameterFile(const std::string              &filename,
                            const std::vector<std::string> &changes = {});
 
-    /** A copy with further entries set ("Section/Entry=value"). */
+    /** A copy with further entries set ("Section/Entry=value"), which take
+     *  precedence over those of --set as these do over those of the file. */
     ParameterFile
     with(const std::vector<std::string> &changes) const;
 
@@ -81,8 +82,9 @@ namespace Voussoir
   private:
     struct Value
     {
-      std::string text;
-      std::string place; // "case.prm, line 12" or "--set"
+      std::string  text;
+      std::string  place; // "case.prm, line 12" or "--set"
+      unsigned int set_of_changes = 0;
     };
 
     /** Entries of a file take precedence over those of the files that it
@@ -94,20 +96,26 @@ namespace Voussoir
     void
     change(const std::vector<std::string> &changes);
 
-    /** Whether a later place, in another file or --set, has changed the value
-     *  that an entry had at this place. */
+    /** Whether a later place, in another file, --set or a later set of
+     *  changes, has changed the value that an entry had at this place. */
     bool
-    is_replaced(const std::string &entry, const std::string &place) const;
+    is_replaced(const std::string &entry,
+                const std::string &place,
+                const unsigned int set_of_changes) const;
 
     /** The entry whose change makes a section or an entry unused; "" if there
      *  is none.
      *  @param path  of the section or the entry
-     *  @param place where it stands */
+     *  @param place where it stands
+     *  @param set_of_changes that gave it */
     std::string
-    cause_of_no_use(const std::string &path, const std::string &place) const;
+    cause_of_no_use(const std::string &path,
+                    const std::string &place,
+                    const unsigned int set_of_changes = 0) const;
 
     std::string                  filename;
     std::map<std::string, Value> values; // by "Section/Subsection/Entry"
+    unsigned int n_sets_of_changes = 0;  // by `with`, after --set
 
     // replaced texts of the entries; "" stands for the default value
     std::map<std::string, std::vector<std::string>> replaced;

@@ -16,7 +16,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "source"
 
 from voussoir_report import charts  # noqa: E402
 from voussoir_report.damage import of_cells  # noqa: E402
-from voussoir_report.faces import SIDES, developed  # noqa: E402
+from voussoir_report.faces import SIDES, panel_of  # noqa: E402
 from voussoir_report.grid import Dam, dam_materials, grid_of  # noqa: E402
 from voussoir_report.run import Run  # noqa: E402
 from matplotlib.collections import PolyCollection  # noqa: E402
@@ -50,11 +50,13 @@ def faces(states):
             quads = dam.side(side)
             axes = charts.place(figure, 0.55 + column * (width + gap),
                                 size - 0.25 - (row + 1) * (height + head), width, height)
-            axes.add_collection(PolyCollection(developed(dam, dam.grid.points[quads], side),
-                                               array=dam.grid.values[FIELD][quads].mean(axis=1),
+            panel = panel_of(dam, side, dam.grid.points[quads], dam.grid.values[FIELD][quads])
+            axes.add_collection(PolyCollection(panel.places, array=panel.values.mean(axis=1),
                                                norm=SCALE.norm, cmap=SCALE.colours,
                                                edgecolors="face", linewidths=0.2))
             axes.autoscale()
+            if panel.runs_left:
+                axes.invert_xaxis()
             axes.set_aspect("equal")
             axes.set_axis_off()
             if row == 0:
@@ -63,7 +65,7 @@ def faces(states):
                 axes.text(-0.02, 0.5, title, ha="right", va="center", transform=axes.transAxes,
                           fontsize=8)
     SCALE.bar(figure)
-    return charts.picture(figure, "", "")
+    return charts.picture(figure, "", vector=False)
 
 
 def main():
@@ -75,7 +77,7 @@ def main():
     states += [(f"{factor_of(run):g}" if len(runs) > 1 else f"{run.summary['end time [s]']:g} s",
                 dam_at(run, -1)) for run in runs]
     for kind, draw in (("crown", crown), ("faces", faces)):
-        pathlib.Path(f"{name}_{kind}.png").write_bytes(draw(states).png)
+        pathlib.Path(f"{name}_{kind}.png").write_bytes(draw(states).data)
 
 
 main()

@@ -36,6 +36,8 @@ compare = functools.partial(verdicts.compare, round_off=1e-9)
 LENGTH, THICKNESS, HEIGHT, LEVELS = 40., 8., 20., 4  # of the wall [m], and cells upwards
 UPSTREAM, DOWNSTREAM = 1., 0.5  # opening of the joint over the elevation [mm/m]
 
+UNIT_CELL = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], float)
+
 PARAMETERS = """set Title = A wall of two blocks
 subsection Ground motion
   set Type = none
@@ -108,9 +110,8 @@ def make_wall(folder, summary=SUMMARY, log=LOG):
     (folder / "parameters.prm").write_text(PARAMETERS)
     (folder / "summary.json").write_text(json.dumps(summary))
     (folder / "log.txt").write_text(log)
-    unit = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], float)
     size = np.array([0.5 * LENGTH, THICKNESS, HEIGHT / LEVELS])
-    cells = np.array([(unit + (i, 0, k)) * size - (0.5 * LENGTH, 0.5 * THICKNESS, 0.)
+    cells = np.array([(UNIT_CELL + (i, 0, k)) * size - (0.5 * LENGTH, 0.5 * THICKNESS, 0.)
                       for i in range(2) for k in range(LEVELS)])
     write_grid(folder / "envelopes.vtu", cells, VTK_HEXAHEDRON, {"material": np.zeros(cells.shape[:2])},
                {"material_names": ["concrete"]})
@@ -137,6 +138,27 @@ def check_profiles(run):
         compare(f"levels of the profile {side}", len(levels), LEVELS + 1, 0.)
         compare(f"opening at the crest, {side} [mm]", opening[-1], slope * HEIGHT, 1e-3)
         compare(f"opening at half the height, {side} [mm]", opening[LEVELS // 2], slope * HEIGHT / 2., 1e-3)
+
+
+def check_refined(run, folder):
+    """Dimensions of the wall with two cells refined, one at the crest and once more in a
+    corner, are those of the wall: faces at hanging nodes are no faces of the dam."""
+    cells = list(grid.dam_of(run).grid.points.reshape(-1, 8, 3))
+    for cell in (LEVELS + 1, LEVELS - 1, -1):
+        corners = cells.pop(cell)
+        low, size = corners.min(axis=0), np.ptp(corners, axis=0)
+        cells += [low + 0.5 * size * (UNIT_CELL + corner) for corner in UNIT_CELL]
+    write_grid(folder / "refined.vtu", np.array(cells), VTK_HEXAHEDRON,
+               {"material": np.zeros((len(cells), 8))}, {"material_names": ["concrete"]})
+    dam = grid.Dam(grid.Grid(folder / "refined.vtu"), ["concrete"])
+    for side in ("upstream", "downstream"):
+        areas = np.linalg.norm(grid.area_vectors(dam.grid.points[dam.side(side)]), axis=1)
+        compare(f"refined: area of the {side} face [m2]", areas.sum(), LENGTH * HEIGHT, 0.)
+    outer = np.linalg.norm(grid.area_vectors(dam.grid.points[dam.exposed]), axis=1).sum()
+    compare("refined: outer area [m2]", outer, 2. * (LENGTH * HEIGHT + LENGTH * THICKNESS + THICKNESS * HEIGHT), 0.)
+    compare("refined: length of the crest [m]", dam.crest_length, LENGTH, 1e-9)
+    compare("refined: length of the crest's upstream edge [m]", np.ptp(dam.crest_line[1]), LENGTH, 1e-9)
+    compare("refined: slenderness", dam.slenderness, LENGTH**2 * HEIGHT / dam.volume, 1e-9)
 
 
 def check_abscissa(run):
@@ -505,6 +527,7 @@ def main():
         scratch = pathlib.Path(name)
         run = make_wall(scratch / "wall")
         check_profiles(run)
+        check_refined(run, scratch)
         check_abscissa(run)
         check_colours()
         check_input(run)

@@ -40,6 +40,33 @@ def point_keys(points):
     return np.floor(100. * points + 0.137).astype(np.int64) @ SCATTER
 
 
+def occur_once(keys):
+    """Whether a number of a list (n) occurs in it once."""
+    _, inverse, counts = np.unique(keys, return_inverse=True, return_counts=True)
+    return counts[inverse.reshape(-1)] == 1
+
+
+def at_hanging_nodes(places):
+    """Whether an edge (n, 2) or a face (n, 4) of a list, by the places of its corners, is halved
+    into others of the list, or is one of these: each of them has a corner of the larger
+    one, and opposite to it all have the same node."""
+    n, corners = places.shape
+    corner, opposite = places.reshape(-1), np.roll(places, corners // 2, axis=1).reshape(-1)
+    order = np.argsort(corner, kind="stable")
+    first = np.searchsorted(corner[order], corner)
+    numbers = np.searchsorted(corner[order], corner, side="right") - first
+    # all pairs of one that may be halved and one with the same place at a corner
+    larger = np.repeat(np.arange(n * corners), numbers)
+    smaller = order[np.arange(len(larger)) + np.repeat(first - np.cumsum(numbers) + numbers, numbers)]
+    pair = larger // corners * (places.max(initial=0) + 1) + opposite[smaller]
+    at_corners = np.unique(pair * corners + larger % corners) // corners
+    pairs, found = np.unique(at_corners, return_counts=True)
+    halved = np.isin(pair, pairs[found == corners])
+    result = np.zeros(n, bool)
+    result[larger[halved] // corners] = result[smaller[halved] // corners] = True
+    return result
+
+
 class Fields(dict):
     """Values at corners by the name of the field."""
 
@@ -112,12 +139,11 @@ class Grid:
     def outer_faces(self, cells, among=None):
         """Corners (n, 4) of the faces of some hexahedra that are shared with no other
         cell @p among these (by default the same); both sides of a joint are one place."""
-        mine = self.faces(cells)
-        others = mine if among is None else self.faces(among)
-        keys = np.concatenate([self.face_keys(mine), self.face_keys(others)])
-        _, inverse, counts = np.unique(keys, return_inverse=True, return_counts=True)
-        # each face of these cells is among the others, too, and so occurs twice
-        return mine[counts[inverse.reshape(-1)[:len(mine)]] == 2]
+        among = cells if among is None else among
+        faces = self.faces(among)
+        alone = np.flatnonzero(occur_once(self.face_keys(faces)))
+        alone = alone[~at_hanging_nodes(self.places[faces[alone]])]
+        return faces[alone[np.isin(among, cells)[alone // len(HEXAHEDRON_FACES)]]]
 
     @functools.cached_property
     def quality(self):
@@ -223,10 +249,10 @@ class Dam:
         corners = self.grid.points[self.crest]
         area = np.linalg.norm(area_vectors(corners), axis=1).sum()
         places = self.grid.places[self.crest]
-        edges = keys_of_sets(np.stack([places, np.roll(places, -1, axis=1)], axis=2)).reshape(-1)
+        edges = np.stack([places, np.roll(places, -1, axis=1)], axis=2).reshape(-1, 2)
         lengths = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).reshape(-1)
-        _, inverse, counts = np.unique(edges, return_inverse=True, return_counts=True)
-        outline = lengths[counts[inverse.reshape(-1)] == 1].sum()
+        alone = np.flatnonzero(occur_once(keys_of_sets(edges)))
+        outline = lengths[alone[~at_hanging_nodes(edges[alone])]].sum()
         half = 0.5 * outline
         return 0.5 * (half + np.sqrt(max(half**2 - 4. * area, 0.)))
 

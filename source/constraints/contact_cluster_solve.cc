@@ -24,7 +24,8 @@ namespace Voussoir
     constexpr unsigned int max_sweeps = 100;
 
     // Forces diverge if they would move a point more than this many times the
-    // widest gap: the nodes are jammed.
+    // widest gap, or the motion by those of the step before: the nodes are
+    // jammed.
     constexpr double too_large = 1e4;
 
     // Compliance of a point in Newton's iteration, as a share of its own
@@ -128,9 +129,14 @@ namespace Voussoir
       return softest * last.largest > too_large * widest;
     };
 
-    find_moves(points, cluster); // from the forces of the step before
-    for (unsigned int i = 0; i < cluster.n_nodes; ++i) // they have round-off
-      size = std::max(size, moves[i].norm());
+    // the forces of the step before, from which the search starts, may be much
+    // larger than those of this step, and move points by round-off of their own
+    find_moves(points, cluster);
+    for (unsigned int i = 0; i < cluster.n_nodes; ++i)
+      {
+        size   = std::max(size, moves[i].norm());
+        widest = std::max(widest, moves[i].norm());
+      }
     unsigned int n_sweeps = 0;
     for (; n_sweeps < max_sweeps && !found() && !run_away(); ++n_sweeps)
       last = n_sweeps % sweeps_per_jump == sweeps_per_jump - 1 ?

@@ -24,7 +24,7 @@ namespace Voussoir
     constexpr unsigned int max_sweeps = 100;
 
     // Forces diverge if they would move a point more than this many times the
-    // widest gap, or the motion by those of the step before: the nodes are
+    // widest gap, or the motion by a force of the step before: the nodes are
     // jammed.
     constexpr double too_large = 1e4;
 
@@ -130,13 +130,15 @@ namespace Voussoir
     };
 
     // the forces of the step before, from which the search starts, may be much
-    // larger than those of this step, and move points by round-off of their own
-    find_moves(points, cluster);
-    for (unsigned int i = 0; i < cluster.n_nodes; ++i)
+    // larger than those of this step, and their motions have round-off
+    for (unsigned int k = 0; k < cluster.n_points; ++k)
       {
-        size   = std::max(size, moves[i].norm());
-        widest = std::max(widest, moves[i].norm());
+        const double by_itself =
+          softest * points[cluster.first_point + k].force.norm();
+        size   = std::max(size, by_itself);
+        widest = std::max(widest, by_itself);
       }
+    find_moves(points, cluster);
     unsigned int n_sweeps = 0;
     for (; n_sweeps < max_sweeps && !found() && !run_away(); ++n_sweeps)
       last = n_sweeps % sweeps_per_jump == sweeps_per_jump - 1 ?

@@ -19,7 +19,6 @@ from voussoir_report.damage import of_cells  # noqa: E402
 from voussoir_report.faces import SIDES, panel_of  # noqa: E402
 from voussoir_report.grid import Dam, dam_materials, grid_of  # noqa: E402
 from voussoir_report.run import Run  # noqa: E402
-from matplotlib.collections import PolyCollection  # noqa: E402
 
 FIELD = "tension_damage"
 SCALE = charts.Scale([], "damage in tension [-]", cut=0., colours="inferno_r", low=0., high=1.)
@@ -50,14 +49,9 @@ def faces(states):
             quads = dam.side(side)
             axes = charts.place(figure, 0.55 + column * (width + gap),
                                 size - 0.25 - (row + 1) * (height + head), width, height)
-            panel = panel_of(dam, side, dam.grid.points[quads], dam.grid.values[FIELD][quads])
-            axes.add_collection(PolyCollection(panel.places, array=panel.values.mean(axis=1),
-                                               norm=SCALE.norm, cmap=SCALE.colours,
-                                               edgecolors="face", linewidths=0.2))
-            axes.autoscale()
-            if panel.runs_left:
-                axes.invert_xaxis()
-            axes.set_aspect("equal")
+            values = dam.grid.values[FIELD][quads].mean(axis=1)
+            charts.draw_panel(axes, panel_of(dam, side, dam.grid.points[quads], values), SCALE)
+            axes.set_title("", loc="left")
             axes.set_axis_off()
             if row == 0:
                 axes.set_title(f"{side} face", pad=12)

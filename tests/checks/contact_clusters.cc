@@ -27,6 +27,7 @@ namespace Voussoir
        3931, 6837, 11989, 18392, 33467, 45136}};
     // clang-format on
 
+
     class ConstantStrength : public InterfaceLaw
     {
     public:

@@ -320,11 +320,11 @@ namespace Voussoir
       text << widest << " m, beyond which " << what
            << " would snap back; to keep its energy their " << strength
            << " is lowered by up to "
-           << 100. * (1. - strength_factor(element_length)) << " %.";
+           << 100. * (1. - strength_factor(element_length)) << " %";
     else if (element_length > widest_of_curve)
       text << widest_of_curve << " m, beyond which " << what
            << " would snap back at first; in them the stress falls in a "
-              "straighter line, with the same strength and energy.";
+              "straighter line, with the same strength and energy";
     else
       return {};
     return text.str();

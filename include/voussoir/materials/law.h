@@ -161,7 +161,7 @@ namespace Voussoir
       return false;
     }
 
-    /** A sentence for the log if cells of this length [m] do not suit the law;
+    /** A clause for the log if cells of this length [m] do not suit the law;
      *  else empty. */
     std::string
     remark(const double /*element_length*/) const

@@ -160,10 +160,10 @@ namespace Voussoir
             static_material->law.remark(element_length);
           if (!at_rest.empty() && at_rest != text)
             text += (text.empty() ? "in the static state " :
-                                    " In the static state ") +
+                                    "; in the static state ") +
                     at_rest;
         }
-      return text;
+      return text.empty() ? text : text + ".";
     }
 
     unsigned int

@@ -212,7 +212,7 @@ namespace Voussoir
     static std::vector<Node>
     exponential(const double strength, const double energy);
 
-    /** A sentence for the log if the failure @p what, which begins at @p
+    /** A clause for the log if the failure @p what, which begins at @p
      *  strength, snaps back in cells of this length [m]; else empty. */
     std::string
     remark(const double       element_length,

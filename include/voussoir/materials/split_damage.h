@@ -183,7 +183,9 @@ namespace Voussoir
                           compression.remark(element_length,
                                              "crushing",
                                              "compressive strength");
-      return in_tension + (in_tension.empty() ? "" : " ") + in_compression;
+      return in_tension +
+             (in_tension.empty() || in_compression.empty() ? "" : ", and ") +
+             in_compression;
     }
 
     /** Internal variables of one curve and of both. */

@@ -60,9 +60,9 @@ namespace Voussoir
           stress_interval,
           "Time between two samples of the stresses [s]; 0 for a twentieth "
           "of the shortest period that the mesh carries with eight nodes per "
-          "wavelength, or longer if samples would take more than 2 % of the "
-          "time of the steps, which depends on the number of cells. "
-          "summary.json has the interval.",
+          "wavelength, but at least twelve steps times the share of the cells "
+          "that are sampled, as a sample of all cells takes up to the time of "
+          "a step. summary.json has the interval.",
           Patterns::Double(0.));
         prm.add_parameter(
           "Stress in",
@@ -316,7 +316,8 @@ namespace Voussoir
         last_step   = state.step;
       }
 
-      // a sample of all cells costs about a quarter of a step
+      // a sample of all cells takes as long as a step where the cells are
+      // elastic (prm/quickstart.prm), less where they crack
       static constexpr double steps_per_sample = 12.;
 
       bool        wants_stress = true;

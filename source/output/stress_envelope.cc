@@ -111,7 +111,7 @@ namespace Voussoir
         for (unsigned int p = 0; p < points.size(); ++p)
           {
             const SymmetricTensor3<Lanes> now =
-              batch.laws[p](strain(cells, batch, p));
+              batch.law(p)(strain(cells, batch, p));
             const auto [below, above] = principal_bounds(now);
             if (are_within(below, above, low, high))
               continue;
@@ -205,7 +205,12 @@ namespace Voussoir
     batch.damping_factor =
       run.solid.materials[run.solid.discretization.material_of_batch[number]]
         ->damping_factor();
-    batch.laws.resize(points.size());
+    // The law of a point depends on its history and its static strain.
+    const bool is_common =
+      !is_static &&
+      run.material_memory.of(
+        run.solid.discretization.material_of_batch[number]) == nullptr;
+    batch.laws.resize(is_common ? 1 : points.size());
     for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
       {
         const bool exists =
@@ -216,7 +221,7 @@ namespace Voussoir
           for (unsigned int d = 0; d < 3; ++d)
             batch.vertices[v][d][lane] = cell->vertex(v)[d];
         if (watched[lane])
-          for (unsigned int p = 0; p < points.size(); ++p)
+          for (unsigned int p = 0; p < batch.laws.size(); ++p)
             batch.laws[p].set(lane, {run, cell, points.point(p)});
       }
     if (!is_static)

@@ -55,16 +55,30 @@ namespace Voussoir
     }
 
 
-    /** x^T K x and x^T K v of the elastic points of each cell, with x and v of
-     *  @p field and @p moving. */
-    template <typename Law, typename Cell>
+    /** Strains of a batch at its points. */
+    template <typename Cell>
     auto
-    elastic_products(const Law          &law,
-                     const double        stress_factor,
-                     Cell               &field,
-                     Cell               &moving,
-                     const PointHistory *history,
-                     const unsigned int  batch)
+    strains_of(Cell &cell)
+    {
+      std::vector<std::decay_t<decltype(cell.get_symmetric_gradient(0))>> list;
+      list.reserve(cell.quadrature_point_indices().size());
+      for (const unsigned int q : cell.quadrature_point_indices())
+        list.push_back(cell.get_symmetric_gradient(q));
+      return list;
+    }
+
+
+    /** x^T K x and x^T K v of the elastic points of each cell, with x and v of
+     *  @p field and @p moving; @p rates are the strains of v. */
+    template <typename Law, typename Cell, typename Strain>
+    auto
+    elastic_products(const Law                 &law,
+                     const double               stress_factor,
+                     Cell                      &field,
+                     Cell                      &moving,
+                     const std::vector<Strain> &rates,
+                     const PointHistory        *history,
+                     const unsigned int         batch)
     {
       using Number = std::decay_t<decltype(field.JxW(0))>;
       std::array<Number, 2> sums{{Number(0.), Number(0.)}};
@@ -76,7 +90,7 @@ namespace Voussoir
             stress_factor * law.stress(strain);
           const Number weight = where_elastic(history, batch, q, field.JxW(q));
           sums[0] += weight * (stress * strain);
-          sums[1] += weight * (stress * moving.get_symmetric_gradient(q));
+          sums[1] += weight * (stress * rates[q]);
         }
       if constexpr (is_one_point<Cell>)
         {
@@ -188,9 +202,11 @@ namespace Voussoir
           damping.mesh_viscosity;
         using Number = decltype(reduce(cell.JxW(0)));
 
+        read(moving, motion.velocity);
+        const auto rates    = strains_of(moving);
         const auto products = [&](Cell &field) {
           const auto sums = elastic_products(
-            law, cells.stress_factor, field, moving, history, batch);
+            law, cells.stress_factor, field, moving, rates, history, batch);
           return std::array<Number, 2>{{reduce(sums[0]), reduce(sums[1])}};
         };
         const auto products_of = [&](const Vector &vector) {
@@ -198,7 +214,6 @@ namespace Voussoir
           return products(cell);
         };
 
-        read(moving, motion.velocity);
         const auto [uu, uv] = products_of(motion.displacement);
         add_cells(total.strain, cells, batch, Number(0.5 * (uu - dt * uv)));
         if constexpr (std::is_same_v<std::decay_t<decltype(cell.JxW(0))>,

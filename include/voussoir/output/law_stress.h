@@ -103,8 +103,6 @@ namespace Voussoir
     void
     take_active_lanes(Lanes &ratio, SymmetricTensor3<Lanes> &stress) const;
 
-    std::array<std::optional<LawStress>, Lanes::size()> laws;
-
     // of the laws where they are isotropic and elastic [Pa]
     Lanes lame_lambda = 0., shear_modulus = 0.;
 
@@ -123,6 +121,10 @@ namespace Voussoir
     // whether the nearest integration points of all lanes have one number in
     // one batch of cells
     bool are_in_one_batch = true;
+
+    // Few evaluations read these; all read the members above, which are hence
+    // side by side.
+    std::array<std::optional<LawStress>, Lanes::size()> laws;
   };
 } // namespace Voussoir
 

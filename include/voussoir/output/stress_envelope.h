@@ -66,7 +66,15 @@ namespace Voussoir
       LaneSet                                    watched;
       std::array<dealii::Tensor<1, 3, Lanes>, 8> vertices;
 
-      std::vector<LawStressLanes> laws; // of each point
+      /** Law at a point. */
+      const LawStressLanes &
+      law(const unsigned int point) const
+      {
+        return laws[laws.size() == 1 ? 0 : point];
+      }
+
+      // of each point, or one where it is the same at all points
+      std::vector<LawStressLanes> laws;
 
       std::array<StressExtremes, Lanes::size()> extremes;
     };

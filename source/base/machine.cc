@@ -1,5 +1,9 @@
 #include <voussoir/base/machine.h>
 
+#include <deal.II/base/utilities.h>
+
+#include <fstream>
+
 namespace Voussoir
 {
   using namespace dealii;
@@ -42,5 +46,16 @@ namespace Voussoir
   {
     return Utilities::MPI::all_gather(communicator,
                                       Utilities::MPI::this_mpi_process(all));
+  }
+
+
+  double
+  largest_memory(const MPI_Comm communicator)
+  {
+    Utilities::System::MemoryStats memory{};
+    // without this file the loop of deal.II that reads it has no end
+    if (std::ifstream("/proc/self/status"))
+      Utilities::System::get_memory_stats(memory);
+    return Utilities::MPI::max(memory.VmHWM / 1024., communicator);
   }
 } // namespace Voussoir

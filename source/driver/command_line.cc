@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/base/interruption.h>
+#include <voussoir/base/machine.h>
 #include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/command_line.h>
@@ -161,8 +162,6 @@ namespace Voussoir
       Run       &run = simulation.run;
       check_summary_paths(run);
       const double seconds = double(run.n_steps()) * seconds_per_step(run);
-      Utilities::System::MemoryStats memory;
-      Utilities::System::get_memory_stats(memory);
       std::vector<std::string> notes     = parameters.notes;
       const auto               on_cracks = simulation.model.notes_on_cracks();
       for (unsigned int m = 0; m < on_cracks.size(); ++m)
@@ -172,7 +171,7 @@ namespace Voussoir
       return {simulation.model.solid.discretization.dof_handler.n_dofs(),
               run.time_step.length,
               seconds,
-              Utilities::MPI::max(memory.VmHWM / 1024., communicator),
+              largest_memory(communicator),
               run.n_steps(),
               notes,
               simulation.log.warnings(),

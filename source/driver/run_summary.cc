@@ -1,4 +1,5 @@
 #include <voussoir/base/json_entries.h>
+#include <voussoir/base/machine.h>
 #include <voussoir/base/text.h>
 #include <voussoir/base/version.h>
 #include <voussoir/driver/crack_refinement.h>
@@ -395,9 +396,7 @@ namespace Voussoir
   ModelSummary
   summary_of(const Model &model)
   {
-    const MPI_Comm                 communicator = model.grid.communicator();
-    Utilities::System::MemoryStats memory;
-    Utilities::System::get_memory_stats(memory);
+    const MPI_Comm communicator = model.grid.communicator();
     return {version(),
             model.parameters.title,
             static_cast<unsigned int>(64 * Lanes::size()),
@@ -406,7 +405,7 @@ namespace Voussoir
             model.solid.discretization.dof_handler.n_dofs(),
             model.solid.discretization.degree,
             worst_cells(model),
-            Utilities::MPI::max(memory.VmHWM / 1024., communicator),
+            largest_memory(communicator),
             ResultNames(model.parameters.material_names(),
                         model.grid,
                         model.contact.get())

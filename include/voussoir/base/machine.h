@@ -34,6 +34,12 @@ namespace Voussoir
     const MPI_Comm all;
     MPI_Comm       communicator; // of the machine's ranks
   };
+
+
+  /** Largest memory that one of the ranks has taken so far [MB]; 0 where the
+   *  system does not tell (no /proc). All ranks must call it together. */
+  double
+  largest_memory(const MPI_Comm communicator);
 } // namespace Voussoir
 
 #endif

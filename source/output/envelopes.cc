@@ -317,7 +317,7 @@ namespace Voussoir
       }
 
       // a sample of all cells takes as long as a step where the cells are
-      // elastic (prm/quickstart.prm), less where they crack
+      // elastic (prm/quickstart.prm)
       static constexpr double steps_per_sample = 12.;
 
       bool        wants_stress = true;

@@ -202,14 +202,12 @@ namespace Voussoir
     Batch batch;
     batch.number  = number;
     batch.watched = watched;
-    batch.damping_factor =
-      run.solid.materials[run.solid.discretization.material_of_batch[number]]
-        ->damping_factor();
+    const unsigned int material =
+      run.solid.discretization.material_of_batch[number];
+    batch.damping_factor = run.solid.materials[material]->damping_factor();
     // The law of a point depends on its history and its static strain.
     const bool is_common =
-      !is_static &&
-      run.material_memory.of(
-        run.solid.discretization.material_of_batch[number]) == nullptr;
+      !is_static && run.material_memory.of(material) == nullptr;
     batch.laws.resize(is_common ? 1 : points.size());
     for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
       {

@@ -1,3 +1,5 @@
+#include <voussoir/base/parse_numbers.h>
+
 #include <iomanip>
 
 #include "check.h"
@@ -19,13 +21,6 @@ namespace Voussoir
       {
         prm.add_parameter("Length", length, "Of the cells [m].");
         prm.add_parameter("Small length", small_length, "Without a note [m].");
-        prm.add_parameter("Modulus", modulus, "E [Pa].");
-        prm.add_parameter("Static factor", static_factor, "k.");
-        prm.add_parameter("Strength increase", increase, "Of the earthquake.");
-        prm.add_parameter("Fracture energy", fracture_energy, "[N/m]");
-        prm.add_parameter("Tensile strength", tensile_strength, "[Pa]");
-        prm.add_parameter("Crushing energy", crushing_energy, "[N/m]");
-        prm.add_parameter("Compressive strength", compressive_strength, "[Pa]");
         prm.add_parameter("Residual strength",
                           residual,
                           "In compression, share of the strength.");
@@ -43,14 +38,27 @@ namespace Voussoir
         const auto        has      = [&](const std::string &clause) {
           return note.find(clause) != std::string::npos;
         };
-        const double crack =
-          1.8 * modulus * fracture_energy / square(tensile_strength);
-        const double crushing =
-          1.8 * modulus * crushing_energy /
-          (square(compressive_strength) * (1. - square(residual)));
+        const auto of_concrete = [&](const std::string &entry) {
+          return parse_number(file.given("Materials/concrete/" + entry))
+            .value();
+        };
+        const auto limit = [&](const std::string &energy,
+                               const std::string &strength,
+                               const double       share_left) {
+          return 1.8 * of_concrete("Young's modulus") * of_concrete(energy) /
+                 (Utilities::fixed_power<2>(of_concrete(strength)) *
+                  (1. - Utilities::fixed_power<2>(share_left)));
+        };
+        const double static_factor = of_concrete("Static factor");
+        const double crack = limit("Fracture energy", "Tensile strength", 0.),
+                     crushing = limit("Crushing energy",
+                                      "Compressive strength",
+                                      residual);
 
         verdicts.is_true("crushing",
-                         has(clause_of(crushing / increase, "crushing")));
+                         has(clause_of(crushing /
+                                         of_concrete("Strength increase"),
+                                       "crushing")));
         verdicts.is_true("a crack in the static state",
                          has("in the static state " +
                              clause_of(static_factor * crack, "a crack")));
@@ -65,12 +73,6 @@ namespace Voussoir
       }
 
     private:
-      static double
-      square(const double x)
-      {
-        return x * x;
-      }
-
       std::string
       clause_of(const double limit, const std::string &what) const
       {
@@ -81,10 +83,7 @@ namespace Voussoir
         return text.str();
       }
 
-      double length = 3., small_length = 0.5, modulus = 30e9,
-             static_factor = 0.6, increase = 1.2, fracture_energy = 350.,
-             tensile_strength = 2e6, crushing_energy = 30e3,
-             compressive_strength = 25e6, residual = 0.05;
+      double length = 3., small_length = 0.5, residual = 0.05;
     };
 
     // Reference: closed form

@@ -16,11 +16,13 @@ namespace Voussoir
                   const ArchDamSweep               &sweep,
                   const std::vector<AbutmentWedge> &wedges,
                   const unsigned int                columns_per_block,
+                  const Lifts                      &lifts,
                   const unsigned int                water_end)
         : section(section)
         , sweep(sweep)
         , wedges(wedges)
         , columns_per_block(columns_per_block)
+        , lifts(lifts)
         , n_layers(sweep.n_layers)
         , dam_begin(sweep.first_in_dam)
         , dam_end(n_layers - sweep.first_in_dam)
@@ -274,20 +276,35 @@ namespace Voussoir
         if (quad.inside != other.inside)
           name_contour(quad.inside ? first : second,
                        quad.inside ? second : first);
-        else if (is_below_surface(quad) != is_below_surface(other))
-          name_faces("water surface",
-                     is_below_surface(quad) ? first : second,
-                     dam_end,
-                     water_end);
-        else if (const int column = column_of(edge);
-                 quad.inside && column >= 0 &&
-                 (column - section.first_dam_column) % columns_per_block == 0)
-          name_faces("joint " +
-                       std::to_string((column - section.first_dam_column) /
-                                      columns_per_block),
-                     quad.column < other.column ? first : second,
-                     dam_begin,
-                     dam_end);
+        else if (quad.inside)
+          {
+            const int column = column_of(edge),
+                      in_dam = column - section.first_dam_column;
+            if (column >= 0 && in_dam % columns_per_block == 0)
+              name_faces("joint " + std::to_string(in_dam / columns_per_block),
+                         quad.column < other.column ? first : second,
+                         dam_begin,
+                         dam_end);
+            else if (quad.half_row < other.half_row)
+              name_faces_between_rows(first, second);
+            else if (quad.half_row > other.half_row)
+              name_faces_between_rows(second, first);
+          }
+      }
+
+
+      // Names the lift joint of the dam and the surface of the reservoir.
+      void
+      name_faces_between_rows(const Side &lower, const Side &upper)
+      {
+        const Quad &below = section.quads[lower.quad],
+                   &above = section.quads[upper.quad];
+        if (const std::string joint =
+              lifts.joint_below(above.half_row - section.first_half_row());
+            !joint.empty())
+          name_faces(joint, upper, dam_begin, dam_end);
+        if (is_below_surface(below) && !is_below_surface(above))
+          name_faces("water surface", lower, dam_end, water_end);
       }
 
 
@@ -312,6 +329,7 @@ namespace Voussoir
       const ArchDamSweep               &sweep;
       const std::vector<AbutmentWedge> &wedges;
       const unsigned int                columns_per_block;
+      const Lifts                      &lifts;
       const unsigned int                n_layers, dam_begin, dam_end, water_end;
 
       CoarseMesh mesh;
@@ -328,9 +346,11 @@ namespace Voussoir
                      const ArchDamSweep               &sweep,
                      const std::vector<AbutmentWedge> &wedges,
                      const unsigned int                columns_per_block,
+                     const Lifts                      &lifts,
                      const unsigned int                water_end)
   {
-    return ArchDamMesh(section, sweep, wedges, columns_per_block, water_end)
+    return ArchDamMesh(
+             section, sweep, wedges, columns_per_block, lifts, water_end)
       .run();
   }
 } // namespace Voussoir

@@ -147,6 +147,19 @@ namespace Voussoir
   }
 
 
+  std::vector<double>
+  ArchDamCrossSection::elevations() const
+  {
+    std::vector<double> result{rows[base_row]};
+    for (unsigned int k = base_row + 1; k < rows.size(); ++k)
+      {
+        result.push_back(0.5 * (rows[k - 1] + rows[k]));
+        result.push_back(rows[k]);
+      }
+    return result;
+  }
+
+
   // Finds the row next to the contour in each column.
   void
   ArchDamCrossSection::step_rows()

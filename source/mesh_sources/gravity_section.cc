@@ -2,6 +2,7 @@
 #include <voussoir/mesh/mesh_check.h>
 #include <voussoir/mesh_sources/generator.h>
 #include <voussoir/mesh_sources/grading.h>
+#include <voussoir/mesh_sources/lifts.h>
 
 #include <deal.II/base/numbers.h>
 
@@ -63,6 +64,7 @@ namespace Voussoir
                           "Number of cells in the dam along the axis, from "
                           "downstream to upstream, and over the height.",
                           Patterns::List(Patterns::Integer(1), 3, 3));
+        lifts.declare(prm);
         prm.add_parameter("Rock extent",
                           rock_extent,
                           "Extent of the rock below, upstream and downstream "
@@ -138,7 +140,9 @@ namespace Voussoir
         const Lattice      lattice = make_lattice();
         const unsigned int n_x = cells[0], n_y = lattice.base.size() - 1,
                            n_z = lattice.elevations.size() - 1;
-        CoarseMesh                mesh;
+        CoarseMesh mesh;
+        if (const std::string text = lattice.lifts.describe(); !text.empty())
+          mesh.remarks.push_back(text);
         std::vector<unsigned int> vertices((n_x + 1) * (n_y + 1) * (n_z + 1),
                                            numbers::invalid_unsigned_int);
         const auto                vertex = [&](const unsigned int i,
@@ -177,6 +181,7 @@ namespace Voussoir
         std::vector<double> base, elevations;
         unsigned int        toe, heel, base_row;    // limits of the dam
         unsigned int        water_end, surface_row; // and of the water
+        Lifts               lifts;
 
         bool
         is_rock(const unsigned int k) const
@@ -203,6 +208,9 @@ namespace Voussoir
         Lattice result;
         result.elevations = rows();
         result.base_row   = result.elevations.size() - 1 - cells[2];
+        result.lifts      = lifts;
+        result.lifts.lay({result.elevations.begin() + result.base_row,
+                          result.elevations.end()});
 
         std::vector<double> &base = result.base;
         for (unsigned int j = 0; j <= cells[1]; ++j)
@@ -301,6 +309,11 @@ namespace Voussoir
         side(is_dam && j == lattice.heel - 1, "upstream face", 3);
         side(is_dam && k == n_z - 1, "crest", 5);
         side(is_dam && k == lattice.base_row, "base", 4);
+        if (is_dam)
+          if (const std::string joint =
+                lattice.lifts.joint_below(k - lattice.base_row);
+              !joint.empty())
+            side(true, joint, 4);
         side(is_water && k == lattice.surface_row - 1, "water surface", 5);
         side(is_water && j == lattice.water_end - 1, "reservoir end", 3);
         side(is_rock && j == 0, "downstream end", 2);
@@ -403,6 +416,7 @@ namespace Voussoir
       double                    crest_width      = 14.8;
       double                    thickness        = 1.;
       std::vector<unsigned int> cells{1, 10, 40};
+      Lifts                     lifts;
       double                    rock_extent  = 0.;
       double                    growth       = 1.2;
       double                    water_level  = 0.;

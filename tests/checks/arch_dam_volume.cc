@@ -163,7 +163,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm) override
       {
-        run_cylinder(file.with(cylinder), verdicts);
+        run_cylinder(file.with(CylinderDam::entries()), verdicts);
         run_parabola(file.with(parabola), verdicts);
         run_table(file, verdicts);
       }
@@ -320,27 +320,17 @@ namespace Voussoir
 
 
       const std::string              place = "Mesh/arch dam/Custom shape/";
-      const std::vector<std::string> cylinder{place + "Arch=circle",
-                                              place + "Crest radius=120",
-                                              place + "Base radius=120",
-                                              place +
-                                                "Crest half width=100, 80",
-                                              place + "Base half width=20, 20",
-                                              place + "Canyon exponent=1",
-                                              place + "Crown face=0, 0, 0",
-                                              place +
-                                                "Crown thickness=10, 0, 0, 0",
-                                              place + "Abutment thickness=1"},
-        parabola{place + "Arch=parabola",
-                 place + "Crest radius=150",
-                 place + "Base radius=150",
-                 place + "Crest half width=150, 150",
-                 place + "Base half width=20, 20",
-                 place + "Canyon exponent=0.8",
-                 // half the thickness: the middle surface is upright
-                 place + "Crown face=10, 3, 0",
-                 place + "Crown thickness=8, 20, 6, 0",
-                 place + "Abutment thickness=1.3"};
+      const std::vector<std::string> parabola{
+        place + "Arch=parabola",
+        place + "Crest radius=150",
+        place + "Base radius=150",
+        place + "Crest half width=150, 150",
+        place + "Base half width=20, 20",
+        place + "Canyon exponent=0.8",
+        // half the thickness: the middle surface is upright
+        place + "Crown face=10, 3, 0",
+        place + "Crown thickness=8, 20, 6, 0",
+        place + "Abutment thickness=1.3"};
       std::vector<double> sizes;
       double              tolerance = 0.01;
     };

@@ -12,7 +12,8 @@ namespace Voussoir
      * A slice of 2 m: heel at y = 6, the upstream face upright above z = 60,
      * neck of 20 m at z = 70, crest of 10 m at z = 100, base of 80 m; water up
      * to the bend, from the heel to y = 56. All faces are plane, so that the
-     * mesh has the dimensions of the drawing.
+     * mesh has the dimensions of the drawing. Lifts of 35 m end at the
+     * fourth of seven rows up to the bend, and at the neck.
      */
     class GravitySection : public Check
     {
@@ -66,6 +67,16 @@ namespace Voussoir
                       2. * (std::hypot(54., 70.) + std::hypot(10., 30.)),
                       1e-12,
                       "m2");
+        const double z = 4. / 7. * 60.;
+        verdicts.near("lower lift joint",
+                      area("lift 1"),
+                      2. * (80. - (6. / 60. + 54. / 70.) * z),
+                      1e-12,
+                      "m2");
+        verdicts.near(
+          "upper lift joint", area("lift 2"), 2. * 20., 1e-12, "m2");
+        verdicts.is_true("two lift joints",
+                         mesh.face_sets.count("lift 3") == 0);
       }
     };
 

@@ -5,6 +5,7 @@
 #include <voussoir/mesh_sources/abutment_wedge.h>
 #include <voussoir/mesh_sources/arch_dam_section.h>
 #include <voussoir/mesh_sources/arch_dam_sweep.h>
+#include <voussoir/mesh_sources/lifts.h>
 
 namespace Voussoir
 {
@@ -14,8 +15,8 @@ namespace Voussoir
    *
    * Cell sets are "dam", "block 1", "block 2" and so on from the right bank,
    * "rock", "reservoir" and those of the wedges; face sets are the dam's faces,
-   * joints and interface with the rock, the walls and ends of the canyon, and
-   * the sides of the rock.
+   * joints, lift joints and interface with the rock, the walls and ends of the
+   * canyon, and the sides of the rock.
    *
    * @param columns_per_block columns of the section's grid between two joints
    * @param water_end         layer in which the reservoir ends, exclusive
@@ -25,6 +26,7 @@ namespace Voussoir
                      const ArchDamSweep               &sweep,
                      const std::vector<AbutmentWedge> &wedges,
                      const unsigned int                columns_per_block,
+                     const Lifts                      &lifts,
                      const unsigned int                water_end);
 } // namespace Voussoir
 

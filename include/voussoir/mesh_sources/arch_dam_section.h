@@ -115,6 +115,18 @@ namespace Voussoir
     std::pair<double, double>
     height_and_length() const;
 
+    /** Elevations of the dam's rows of quadrilaterals from base to crest [m],
+     *  the first of which has the half_row first_half_row(). Next to the banks
+     *  and to the surface of a reservoir they bend. */
+    std::vector<double>
+    elevations() const;
+
+    int
+    first_half_row() const
+    {
+      return 2 * base_row;
+    }
+
     /** The line of a ledge at the middle of the dam. */
     LedgeLine
     middle_line(const unsigned int bank) const;

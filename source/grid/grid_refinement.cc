@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace Voussoir
 {
@@ -132,6 +133,76 @@ namespace Voussoir
         }
       return Utilities::MPI::sum(flagged, communicator) > 0;
     }
+
+
+    /** Flags own cells that have an undivided edge on an interface all of whose
+     *  cells on another side are refined, so that its middle would hang on one
+     *  side only: coarse rock beside the foot of a refined dam, for example.
+     *  Returns whether there are any. */
+    bool
+    flag_one_sided_edges(Triangulation<3>        &triangulation,
+                         const CoarseMesh::Chart &chart,
+                         const CoarseFaces       &on_interfaces)
+    {
+      const MPI_Comm communicator = communicator_of(triangulation);
+      const Places   places       = positions(triangulation, chart);
+      const auto     middle       = [&](const auto &line) {
+        return places[line->vertex_index(0)] +
+               0.5 * (places[line->vertex_index(1)] -
+                      places[line->vertex_index(0)]);
+      };
+      // each side has its own vertices, and so its own edges
+      std::set<unsigned int> undivided;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const unsigned int line : cell->line_indices())
+            if (cell->line(line)->has_children())
+              undivided.insert(cell->line_index(line));
+
+      std::vector<std::array<double, 3>> divided;
+      on_interfaces.for_each(
+        triangulation,
+        [&](const Grid::ActiveCell &cell,
+            const unsigned int      face,
+            const unsigned int) {
+          if (!cell->is_locally_owned() || cell->level() == 0)
+            return;
+          const auto         parent = cell->parent();
+          const unsigned int corner =
+            parent->vertex_index(children_upwards(cell).front());
+          for (const unsigned int i : parent->face(face)->line_indices())
+            if (const auto line = parent->face(face)->line(i);
+                (line->vertex_index(0) == corner ||
+                 line->vertex_index(1) == corner) &&
+                undivided.count(line->index()) == 0)
+              {
+                const Point<3> x = middle(line);
+                divided.push_back({{x[0], x[1], x[2]}});
+              }
+        });
+      Places middles;
+      for (const auto &x : join_over_ranks(divided, communicator))
+        middles.emplace_back(x[0], x[1], x[2]);
+      const auto   tree    = pack_rtree(middles);
+      unsigned int flagged = 0;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          for (const unsigned int i : cell->line_indices())
+            if (const auto line = cell->line(i); line->has_children())
+              {
+                Places nearest;
+                tree.query(boost::geometry::index::nearest(middle(line), 1),
+                           std::back_inserter(nearest));
+                if (!nearest.empty() &&
+                    nearest[0].distance(middle(line)) < 1e-6 * line->diameter())
+                  {
+                    cell->set_refine_flag();
+                    ++flagged;
+                    break;
+                  }
+              }
+      return Utilities::MPI::sum(flagged, communicator) > 0;
+    }
   } // namespace
 
 
@@ -207,7 +278,8 @@ namespace Voussoir
     do
       triangulation.execute_coarsening_and_refinement();
     while (!on_interfaces.empty() &&
-           flag_partners(triangulation, coarse.chart, on_interfaces));
+           (flag_partners(triangulation, coarse.chart, on_interfaces) ||
+            flag_one_sided_edges(triangulation, coarse.chart, on_interfaces)));
     return true;
   }
 

@@ -309,11 +309,9 @@ namespace Voussoir
         side(is_dam && j == lattice.heel - 1, "upstream face", 3);
         side(is_dam && k == n_z - 1, "crest", 5);
         side(is_dam && k == lattice.base_row, "base", 4);
-        if (is_dam)
-          if (const std::string joint =
-                lattice.lifts.joint_below(k - lattice.base_row);
-              !joint.empty())
-            side(true, joint, 4);
+        const std::string joint =
+          is_dam ? lattice.lifts.joint_below(k - lattice.base_row) : "";
+        side(!joint.empty(), joint, 4);
         side(is_water && k == lattice.surface_row - 1, "water surface", 5);
         side(is_water && j == lattice.water_end - 1, "reservoir end", 3);
         side(is_rock && j == 0, "downstream end", 2);

@@ -148,7 +148,7 @@ def draw(results, picture):
                         fontsize=10)
         panel.set(ylabel="crest along the river [mm]", xlabel="time [s]")
         panel.grid(alpha=0.3)
-    axes[1].legend(loc="lower right", ncol=3, fontsize=8)
+    axes[-1].legend(loc="upper left", ncol=2, fontsize=8)
     figure.savefig(picture, dpi=110)
 
 

@@ -9,14 +9,14 @@ Runs those cases that have no results in FOLDER yet, an hour on one core. Needs 
 packages python3-numpy and python3-matplotlib.
 """
 
-import csv
 import json
 import os
 import subprocess
 import sys
 
 import numpy as np
-from mesh_bias import ROOT, plt, read_energy
+from koyna_meshes import COLUMNS, LAWS as LAWS_OF_CELLS
+from mesh_bias import ROOT, largest_error, plt, read_crest, read_energy
 
 KOYNA, ARCH_DAM = "koyna.prm", "arch_dam_damage.prm"
 REAL_JOINTS = (4, 8, 12, 16)  # of 19 between the blocks of the arch dam
@@ -29,9 +29,8 @@ CONCRETE = {
 }
 # meshes of each case: rows over the height, or length of the cells along the crest
 MESHES = {
-    KOYNA: {"36 rows": ("Mesh/gravity section/Cells=1, 14, 36",),
-            "72 rows": (),
-            "104 rows": ("Mesh/gravity section/Cells=1, 40, 104",)},
+    KOYNA: {f"{rows} rows": (f"Mesh/gravity section/Cells=1, {COLUMNS[rows]}, {rows}",)
+            for rows in (36, 72, 104)},
     ARCH_DAM: {"6.5 m": (),
                "3.25 m": ("Mesh/arch dam/Cell size=3.25",
                           "Mesh/arch dam/Cells through thickness=6")},
@@ -42,15 +41,13 @@ LIFTS = {KOYNA: ("Mesh/gravity section/Lift height=1",),
 FACES = {KOYNA: "lift *",
          ARCH_DAM: ", ".join(["lift *", "dam-rock interface"] +
                              [f"joint {joint}" for joint in OTHER_JOINTS])}
-PLANES = ("Discretization/Quadrature=one point",
-          "Materials/concrete/Crack growth=along planes")
 # cohesion of the interfaces over their tensile strength: with 2 the shear strength is that of
 # concrete, with 1 an oblique crack along rows and joints begins at the tensile strength
 COHESION = {"interfaces": 2., "weak interfaces": 1.}
 # fracture energy with which no cell lowers its tensile strength [N/m]
 KEPT = {"6.5 m": 1520., "3.25 m": 800.}
-LAWS = (*COHESION, "eight points", "along planes", "eight points, strength kept",
-        "along planes, strength kept")
+KEEPS = ", strength kept"
+LAWS = (*COHESION, *LAWS_OF_CELLS, *(law + KEEPS for law in LAWS_OF_CELLS))
 # case, times its motion, mesh
 RUNS = ((KOYNA, 1., "36 rows"), (KOYNA, 1., "72 rows"), (KOYNA, 1., "104 rows"),
         (ARCH_DAM, 1., "6.5 m"), (ARCH_DAM, 2., "6.5 m"), (ARCH_DAM, 2., "3.25 m"))
@@ -82,17 +79,13 @@ def interfaces_of(case, cohesion):
 def entries_of(case, mesh, law):
     if law in COHESION:
         return interfaces_of(case, COHESION[law])
-    softening = []
-    if case == KOYNA:
-        strength, energy, _ = CONCRETE[case]
-        softening = ["Materials/concrete/Tension law=linear",
-                     f"Materials/concrete/Fracture energy={energy:g}",
-                     f"Materials/concrete/Tensile strength={strength:g}"]
-    else:
-        softening = ["Materials/concrete/Tension law=linear"]
-        if law.endswith("strength kept"):
-            softening.append(f"Materials/concrete/Fracture energy={KEPT[mesh]:g}")
-    return softening + list(PLANES if law.startswith("along planes") else ())
+    strength, energy, _ = CONCRETE[case]
+    if law.endswith(KEEPS):
+        energy = KEPT[mesh]
+    return ["Materials/concrete/Tension law=linear",
+            f"Materials/concrete/Tensile strength={strength:g}",
+            f"Materials/concrete/Fracture energy={energy:g}",
+            *LAWS_OF_CELLS[law.removesuffix(KEEPS)]]
 
 
 def run(program, folder, case, factor, mesh, law):
@@ -111,11 +104,7 @@ def run(program, folder, case, factor, mesh, law):
 def result(output):
     """Times [s], displacement of the crest along the river [mm], energy in cracks [MJ],
     largest opening of a contraction joint [mm], energy-balance error over the input."""
-    with open(os.path.join(output, "histories.csv")) as file:
-        rows = list(csv.reader(file))
-    (column,) = (n for n, title in enumerate(rows[0])
-                 if "crest" in title and "displacement y" in title)
-    times, crest = np.array([(row[0], row[column]) for row in rows[1:]], float).T
+    times, crest = read_crest(output)
     with open(os.path.join(output, "summary.json")) as file:
         summary = json.load(file)
     energy = read_energy(output)
@@ -124,9 +113,8 @@ def result(output):
     joints = ([f"joint {n}" for n in REAL_JOINTS] if "joint 19" in surfaces
               else [name for name in surfaces if name.startswith("joint")])
     opening = max((surfaces[name]["largest opening [mm]"] for name in joints), default=0.)
-    error = np.abs(energy["energy-balance error [J]"]).max() / energy["input [J]"].max()
-    return {"times": times, "crest": 1e3 * crest, "cracks": 1e-6 * in_cracks, "opening": opening,
-            "error": error}
+    return {"times": times, "crest": crest, "cracks": 1e-6 * in_cracks, "opening": opening,
+            "error": largest_error(energy)}
 
 
 def difference(values, reference):
@@ -157,7 +145,7 @@ def main(program, folder):
     program, folder = os.path.abspath(program), os.path.abspath(folder)
     results = {(*case, law): result(run(program, folder, *case, law))
                for case in RUNS for law in LAWS
-               if case[0] == ARCH_DAM or not law.endswith("strength kept")}
+               if case[0] == ARCH_DAM or not law.endswith(KEEPS)}
     print("| case | motion | cells | cracks | crest | difference | energy in cracks "
           "| joints open by |\n|---|---|---|---|---|---|---|---|")
     for (case, factor, mesh, law), values in results.items():

@@ -8,13 +8,13 @@ Writes meshes into FOLDER and runs the case on those that have no results there 
 an hour on one core. Needs the Debian packages python3-numpy and python3-matplotlib.
 """
 
-import csv
 import os
 import subprocess
 import sys
 
 import numpy as np
-from mesh_bias import ROOT, PolyCollection, faces_of, plt, read_energy, read_picture, write_gmsh
+from mesh_bias import (ROOT, PolyCollection, faces_of, largest_error, plt, read_crest, read_energy,
+                       read_picture, write_gmsh)
 
 HEIGHT, NECK, THICKNESS = 103., 66.5, 1.5  # of the slice [m]
 COLUMNS = {36: 14, 52: 20, 72: 28, 104: 40}  # cells along the river, by rows over the height
@@ -82,10 +82,7 @@ def run(program, folder, law, rows, slope):
 def result(output):
     """Extremes of the crest [mm], energies [kJ], elevation of the cracks at the neck in
     the quarters of the section from upstream [m], cells with their damage."""
-    with open(os.path.join(output, "histories.csv")) as file:
-        rows = list(csv.reader(file))
-    (column,) = (n for n, title in enumerate(rows[0]) if "crest" in title and "displacement y" in title)
-    crest = 1e3 * np.array([row[column] for row in rows[1:]], float)
+    _, crest = read_crest(output)
     energy = read_energy(output)
     faces, damage, opening = faces_of(read_picture(output), across=0)
     y, z = faces.mean(axis=1).T
@@ -93,9 +90,8 @@ def result(output):
     neck = (z > 50.) & (z < 90.)
     path = [np.average(z[neck & (quarter == q)], weights=opening[neck & (quarter == q)])
             for q in range(4)]
-    error = np.abs(energy["energy-balance error [J]"]).max() / energy["input [J]"].max()
     return {"crest": (crest.min(), crest.max()), "cracks": 1e-3 * energy["material [J]"][-1],
-            "closing": 1e-3 * energy["closing cracks [J]"][-1], "path": path, "error": error,
+            "closing": 1e-3 * energy["closing cracks [J]"][-1], "path": path, "error": largest_error(energy),
             "cells": (faces, damage)}
 
 

@@ -230,6 +230,21 @@ def read_energy(output):
     return {title: np.array(column, float) for title, column in zip(rows[0], zip(*rows[1:]))}
 
 
+def read_crest(output):
+    """Times [s] and displacement of the crest along the river [mm]."""
+    with open(os.path.join(output, "histories.csv")) as file:
+        rows = list(csv.reader(file))
+    (column,) = (n for n, title in enumerate(rows[0])
+                 if "crest" in title and "displacement y" in title)
+    times, crest = np.array([(row[0], row[column]) for row in rows[1:]], float).T
+    return times, 1e3 * crest
+
+
+def largest_error(energy):
+    """Largest energy-balance error over the input."""
+    return np.abs(energy["energy-balance error [J]"]).max() / energy["input [J]"].max()
+
+
 def read_picture(output):
     """Arrays of the last picture, from the compressed XML of VTK."""
     with open(os.path.join(output, "fields.txt")) as file:

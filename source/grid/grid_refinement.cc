@@ -89,17 +89,47 @@ namespace Voussoir
     }
 
 
+    /** Places on all ranks. */
+    class PlacesOfRanks
+    {
+    public:
+      PlacesOfRanks(const Places &own, const MPI_Comm communicator)
+      {
+        std::vector<std::array<double, 3>> numbers;
+        for (const Point<3> &x : own)
+          numbers.push_back({{x[0], x[1], x[2]}});
+        Places all;
+        for (const auto &x : join_over_ranks(numbers, communicator))
+          all.emplace_back(x[0], x[1], x[2]);
+        tree = pack_rtree(all);
+      }
+
+      /** Whether @p place is one of them, but for round-off.
+       *  @param size of the face or edge there */
+      bool
+      contain(const Point<3> &place, const double size) const
+      {
+        Places nearest;
+        tree.query(boost::geometry::index::nearest(place, 1),
+                   std::back_inserter(nearest));
+        return !nearest.empty() && nearest[0].distance(place) < 1e-6 * size;
+      }
+
+    private:
+      RTree<Point<3>> tree;
+    };
+
+
     /** Flags own cells whose face on an interface has been refined on its other
      *  side; returns whether there are any. */
     bool
-    flag_partners(Triangulation<3>        &triangulation,
-                  const CoarseMesh::Chart &chart,
-                  const CoarseFaces       &on_interfaces)
+    flag_partners(Triangulation<3>  &triangulation,
+                  const Places      &places,
+                  const CoarseFaces &on_interfaces)
     {
       const MPI_Comm communicator = communicator_of(triangulation);
-      const Places   places       = positions(triangulation, chart);
       std::vector<std::pair<Grid::ActiveCell, FacePlace>> whole;
-      std::vector<std::array<double, 3>>                  refined;
+      Places                                              refined;
       on_interfaces.for_each(
         triangulation,
         [&](const Grid::ActiveCell &cell,
@@ -108,29 +138,17 @@ namespace Voussoir
           if (!cell->is_locally_owned())
             return;
           whole.emplace_back(cell, FacePlace(cell, face, places));
-          if (cell->level() == 0)
-            return;
-          const Point<3> of_parent =
-            FacePlace(cell->parent(), face, places).centre;
-          refined.push_back({{of_parent[0], of_parent[1], of_parent[2]}});
+          if (cell->level() > 0)
+            refined.push_back(FacePlace(cell->parent(), face, places).centre);
         });
-      Places centres;
-      for (const auto &x : join_over_ranks(refined, communicator))
-        centres.emplace_back(x[0], x[1], x[2]);
-      const auto   tree    = pack_rtree(centres);
-      unsigned int flagged = 0;
+      const PlacesOfRanks all_refined(refined, communicator);
+      unsigned int        flagged = 0;
       for (const auto &[cell, face] : whole)
-        {
-          Places nearest;
-          tree.query(boost::geometry::index::nearest(face.centre, 1),
-                     std::back_inserter(nearest));
-          if (!nearest.empty() &&
-              nearest[0].distance(face.centre) < 1e-6 * face.size)
-            {
-              cell->set_refine_flag();
-              ++flagged;
-            }
-        }
+        if (all_refined.contain(face.centre, face.size))
+          {
+            cell->set_refine_flag();
+            ++flagged;
+          }
       return Utilities::MPI::sum(flagged, communicator) > 0;
     }
 
@@ -140,12 +158,11 @@ namespace Voussoir
      *  side only: coarse rock beside the foot of a refined dam, for example.
      *  Returns whether there are any. */
     bool
-    flag_one_sided_edges(Triangulation<3>        &triangulation,
-                         const CoarseMesh::Chart &chart,
-                         const CoarseFaces       &on_interfaces)
+    flag_one_sided_edges(Triangulation<3>  &triangulation,
+                         const Places      &places,
+                         const CoarseFaces &on_interfaces)
     {
       const MPI_Comm communicator = communicator_of(triangulation);
-      const Places   places       = positions(triangulation, chart);
       const auto     middle       = [&](const auto &line) {
         return places[line->vertex_index(0)] +
                0.5 * (places[line->vertex_index(1)] -
@@ -159,7 +176,7 @@ namespace Voussoir
             if (cell->line(line)->has_children())
               undivided.insert(cell->line_index(line));
 
-      std::vector<std::array<double, 3>> divided;
+      Places divided;
       on_interfaces.for_each(
         triangulation,
         [&](const Grid::ActiveCell &cell,
@@ -175,33 +192,38 @@ namespace Voussoir
                 (line->vertex_index(0) == corner ||
                  line->vertex_index(1) == corner) &&
                 undivided.count(line->index()) == 0)
-              {
-                const Point<3> x = middle(line);
-                divided.push_back({{x[0], x[1], x[2]}});
-              }
+              divided.push_back(middle(line));
         });
-      Places middles;
-      for (const auto &x : join_over_ranks(divided, communicator))
-        middles.emplace_back(x[0], x[1], x[2]);
-      const auto   tree    = pack_rtree(middles);
-      unsigned int flagged = 0;
+      const PlacesOfRanks all_divided(divided, communicator);
+      unsigned int        flagged = 0;
       for (const auto &cell : triangulation.active_cell_iterators())
         if (cell->is_locally_owned())
           for (const unsigned int i : cell->line_indices())
-            if (const auto line = cell->line(i); line->has_children())
+            if (const auto line = cell->line(i);
+                line->has_children() &&
+                all_divided.contain(middle(line), line->diameter()))
               {
-                Places nearest;
-                tree.query(boost::geometry::index::nearest(middle(line), 1),
-                           std::back_inserter(nearest));
-                if (!nearest.empty() &&
-                    nearest[0].distance(middle(line)) < 1e-6 * line->diameter())
-                  {
-                    cell->set_refine_flag();
-                    ++flagged;
-                    break;
-                  }
+                cell->set_refine_flag();
+                ++flagged;
+                break;
               }
       return Utilities::MPI::sum(flagged, communicator) > 0;
+    }
+
+
+    /** Flags own cells that must follow the refinement of others, so that both
+     *  sides of an interface have the same faces and hanging nodes; returns
+     *  whether there are any. */
+    bool
+    flag_followers(Triangulation<3>        &triangulation,
+                   const CoarseMesh::Chart &chart,
+                   const CoarseFaces       &on_interfaces)
+    {
+      if (on_interfaces.empty())
+        return false;
+      const Places places = positions(triangulation, chart);
+      return flag_partners(triangulation, places, on_interfaces) ||
+             flag_one_sided_edges(triangulation, places, on_interfaces);
     }
   } // namespace
 
@@ -277,9 +299,7 @@ namespace Voussoir
     const CoarseFaces on_interfaces = faces_on_interfaces(coarse);
     do
       triangulation.execute_coarsening_and_refinement();
-    while (!on_interfaces.empty() &&
-           (flag_partners(triangulation, coarse.chart, on_interfaces) ||
-            flag_one_sided_edges(triangulation, coarse.chart, on_interfaces)));
+    while (flag_followers(triangulation, coarse.chart, on_interfaces));
     return true;
   }
 

@@ -5,7 +5,7 @@
 #include <voussoir/mesh_sources/arch_dam_mesh.h>
 #include <voussoir/mesh_sources/generator.h>
 #include <voussoir/mesh_sources/grading.h>
-#include <voussoir/mesh_sources/lifts.h>
+#include <voussoir/mesh_sources/lift_joints.h>
 
 #include <deal.II/base/quadrature_lib.h>
 
@@ -65,7 +65,7 @@ namespace Voussoir
                           "Number of cells from the downstream to the upstream "
                           "face.",
                           Patterns::Integer(1, 200));
-        lifts.declare(prm);
+        LiftJoints::declare(prm, lift_height);
         prm.add_parameter("Rock extent",
                           rock_extent,
                           "Extent of the rock below and on all sides of the "
@@ -175,12 +175,12 @@ namespace Voussoir
         return bank == 0 ? "Right wedge" : "Left wedge";
       }
 
-      std::string  shape_name  = "Baihetan-like";
-      unsigned int n_joints    = 9;
-      double       cell_size   = 16.;
-      double       row_height  = 0.;
-      unsigned int n_thickness = 2;
-      Lifts        lifts;
+      std::string  shape_name            = "Baihetan-like";
+      unsigned int n_joints              = 9;
+      double       cell_size             = 16.;
+      double       row_height            = 0.;
+      unsigned int n_thickness           = 2;
+      double       lift_height           = 0.;
       double       rock_extent           = 2.;
       double       growth                = 1.4;
       double       largest_cell          = 60.;
@@ -333,13 +333,12 @@ namespace Voussoir
           sweep->n_layers;
       const std::vector<AbutmentWedge> wedges = make_wedges(*sweep, section);
 
-      Lifts lifts = this->lifts;
-      lifts.lay(section.elevations());
+      const LiftJoints   lift_joints(lift_height, section.elevations());
       CoarseMesh         mesh = make_arch_dam_mesh(section,
                                            *sweep,
                                            wedges,
                                            columns_per_block(*sections),
-                                           lifts,
+                                           lift_joints,
                                            water_end);
       std::ostringstream cells;
       cells << std::setprecision(3)
@@ -347,8 +346,7 @@ namespace Voussoir
             << " m along the crest, " << section.height_and_length().first
             << " m high";
       mesh.remarks.push_back(cells.str());
-      if (const std::string text = lifts.describe(); !text.empty())
-        mesh.remarks.push_back(text);
+      lift_joints.add_remark(mesh);
       for (const AbutmentWedge &wedge : wedges)
         mesh.remarks.push_back(describe_wedge(wedge, *sweep, section, mesh));
       add_surfaces(sections, sweep, mesh.chart);

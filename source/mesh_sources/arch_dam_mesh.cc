@@ -16,13 +16,13 @@ namespace Voussoir
                   const ArchDamSweep               &sweep,
                   const std::vector<AbutmentWedge> &wedges,
                   const unsigned int                columns_per_block,
-                  const Lifts                      &lifts,
+                  const LiftJoints                 &lift_joints,
                   const unsigned int                water_end)
         : section(section)
         , sweep(sweep)
         , wedges(wedges)
         , columns_per_block(columns_per_block)
-        , lifts(lifts)
+        , lift_joints(lift_joints)
         , n_layers(sweep.n_layers)
         , dam_begin(sweep.first_in_dam)
         , dam_end(n_layers - sweep.first_in_dam)
@@ -300,7 +300,7 @@ namespace Voussoir
         const Quad &below = section.quads[lower.quad],
                    &above = section.quads[upper.quad];
         if (const std::string joint =
-              lifts.joint_below(above.half_row - section.first_half_row());
+              lift_joints.below(above.half_row - section.first_half_row());
             !joint.empty())
           name_faces(joint, upper, dam_begin, dam_end);
         if (is_below_surface(below) && !is_below_surface(above))
@@ -329,7 +329,7 @@ namespace Voussoir
       const ArchDamSweep               &sweep;
       const std::vector<AbutmentWedge> &wedges;
       const unsigned int                columns_per_block;
-      const Lifts                      &lifts;
+      const LiftJoints                 &lift_joints;
       const unsigned int                n_layers, dam_begin, dam_end, water_end;
 
       CoarseMesh mesh;
@@ -346,11 +346,11 @@ namespace Voussoir
                      const ArchDamSweep               &sweep,
                      const std::vector<AbutmentWedge> &wedges,
                      const unsigned int                columns_per_block,
-                     const Lifts                      &lifts,
+                     const LiftJoints                 &lift_joints,
                      const unsigned int                water_end)
   {
     return ArchDamMesh(
-             section, sweep, wedges, columns_per_block, lifts, water_end)
+             section, sweep, wedges, columns_per_block, lift_joints, water_end)
       .run();
   }
 } // namespace Voussoir

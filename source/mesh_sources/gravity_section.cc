@@ -2,7 +2,7 @@
 #include <voussoir/mesh/mesh_check.h>
 #include <voussoir/mesh_sources/generator.h>
 #include <voussoir/mesh_sources/grading.h>
-#include <voussoir/mesh_sources/lifts.h>
+#include <voussoir/mesh_sources/lift_joints.h>
 
 #include <deal.II/base/numbers.h>
 
@@ -64,7 +64,7 @@ namespace Voussoir
                           "Number of cells in the dam along the axis, from "
                           "downstream to upstream, and over the height.",
                           Patterns::List(Patterns::Integer(1), 3, 3));
-        lifts.declare(prm);
+        LiftJoints::declare(prm, lift_height);
         prm.add_parameter("Rock extent",
                           rock_extent,
                           "Extent of the rock below, upstream and downstream "
@@ -140,9 +140,12 @@ namespace Voussoir
         const Lattice      lattice = make_lattice();
         const unsigned int n_x = cells[0], n_y = lattice.base.size() - 1,
                            n_z = lattice.elevations.size() - 1;
-        CoarseMesh mesh;
-        if (const std::string text = lattice.lifts.describe(); !text.empty())
-          mesh.remarks.push_back(text);
+        CoarseMesh       mesh;
+        const LiftJoints lift_joints(lift_height,
+                                     {lattice.elevations.begin() +
+                                        lattice.base_row,
+                                      lattice.elevations.end()});
+        lift_joints.add_remark(mesh);
         std::vector<unsigned int> vertices((n_x + 1) * (n_y + 1) * (n_z + 1),
                                            numbers::invalid_unsigned_int);
         const auto                vertex = [&](const unsigned int i,
@@ -168,7 +171,7 @@ namespace Voussoir
                     corners[v] =
                       vertex(i + (v & 1), j + ((v >> 1) & 1), k + (v >> 2));
                   mesh.cells.push_back(corners);
-                  name_last_cell(mesh, lattice, i, j, k);
+                  name_last_cell(mesh, lattice, lift_joints, i, j, k);
                 }
         return mesh;
       }
@@ -181,7 +184,6 @@ namespace Voussoir
         std::vector<double> base, elevations;
         unsigned int        toe, heel, base_row;    // limits of the dam
         unsigned int        water_end, surface_row; // and of the water
-        Lifts               lifts;
 
         bool
         is_rock(const unsigned int k) const
@@ -208,9 +210,6 @@ namespace Voussoir
         Lattice result;
         result.elevations = rows();
         result.base_row   = result.elevations.size() - 1 - cells[2];
-        result.lifts      = lifts;
-        result.lifts.lay({result.elevations.begin() + result.base_row,
-                          result.elevations.end()});
 
         std::vector<double> &base = result.base;
         for (unsigned int j = 0; j <= cells[1]; ++j)
@@ -283,6 +282,7 @@ namespace Voussoir
       void
       name_last_cell(CoarseMesh        &mesh,
                      const Lattice     &lattice,
+                     const LiftJoints  &lift_joints,
                      const unsigned int i,
                      const unsigned int j,
                      const unsigned int k) const
@@ -310,7 +310,7 @@ namespace Voussoir
         side(is_dam && k == n_z - 1, "crest", 5);
         side(is_dam && k == lattice.base_row, "base", 4);
         const std::string joint =
-          is_dam ? lattice.lifts.joint_below(k - lattice.base_row) : "";
+          is_dam ? lift_joints.below(k - lattice.base_row) : "";
         side(!joint.empty(), joint, 4);
         side(is_water && k == lattice.surface_row - 1, "water surface", 5);
         side(is_water && j == lattice.water_end - 1, "reservoir end", 3);
@@ -414,7 +414,7 @@ namespace Voussoir
       double                    crest_width      = 14.8;
       double                    thickness        = 1.;
       std::vector<unsigned int> cells{1, 10, 40};
-      Lifts                     lifts;
+      double                    lift_height  = 0.;
       double                    rock_extent  = 0.;
       double                    growth       = 1.2;
       double                    water_level  = 0.;

@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "cylinder_dam.h"
+#include "falling_errors.h"
 
 namespace Voussoir
 {
@@ -302,20 +303,10 @@ namespace Voussoir
           name + ": height", MeasuredDam(mesh).height(), 100., 1e-12, "m");
         verdicts.is_true(name + ": missing volume falls below 0.4 of it "
                                 "with half the cell size",
-                         falls(of_volume));
+                         fall(of_volume));
         verdicts.is_true(name + ": so does the missing crest length",
-                         falls(of_length));
+                         fall(of_length));
         return mesh;
-      }
-
-
-      static bool
-      falls(const std::vector<double> &errors)
-      {
-        for (std::size_t i = 1; i < errors.size(); ++i)
-          if (!(std::abs(errors[i]) < 0.4 * std::abs(errors[i - 1])))
-            return false;
-        return true;
       }
 
 

@@ -5,7 +5,7 @@
 #include <voussoir/mesh_sources/abutment_wedge.h>
 #include <voussoir/mesh_sources/arch_dam_section.h>
 #include <voussoir/mesh_sources/arch_dam_sweep.h>
-#include <voussoir/mesh_sources/lifts.h>
+#include <voussoir/mesh_sources/lift_joints.h>
 
 namespace Voussoir
 {
@@ -26,7 +26,7 @@ namespace Voussoir
                      const ArchDamSweep               &sweep,
                      const std::vector<AbutmentWedge> &wedges,
                      const unsigned int                columns_per_block,
-                     const Lifts                      &lifts,
+                     const LiftJoints                 &lift_joints,
                      const unsigned int                water_end);
 } // namespace Voussoir
 

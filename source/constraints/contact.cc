@@ -36,6 +36,28 @@ namespace Voussoir
   }
 
 
+  const BondTips *
+  Contact::find_tips(
+    const Discretization                            &discretization,
+    const std::function<double(const Grid::Cell &)> &young_modulus)
+  {
+    if (std::any_of(interfaces.surfaces.begin(),
+                    interfaces.surfaces.end(),
+                    [](const ContactSurface &surface) {
+                      return surface.law->tip_strength(1., 1.) < 1.;
+                    }))
+      tips.emplace(discretization, interfaces, young_modulus);
+    return tips ? &*tips : nullptr;
+  }
+
+
+  void
+  Contact::begin_earthquake()
+  {
+    in_earthquake = true;
+  }
+
+
   void
   Contact::apply_uplift(const std::vector<std::string> &loads)
   {
@@ -148,6 +170,8 @@ namespace Voussoir
             last_velocity[i][d] = v[d];
           }
       }
+    if (tips && in_earthquake)
+      tips->update(state.step, interfaces);
     wall_time += std::chrono::steady_clock::now() - start;
     return result;
   }

@@ -174,6 +174,20 @@ namespace Voussoir
   }
 
 
+  double
+  ContactPoint::used_bond() const
+  {
+    double used =
+      limits.tension > 0. ? std::max(0., -force[0] / limits.tension) : 0.;
+    if (!limits.locked && limits.bond > 0.)
+      used = std::max(used,
+                      (std::hypot(force[1], force[2]) -
+                       limits.shear(false, force[0]) + limits.bond) /
+                        limits.bond);
+    return used;
+  }
+
+
   DelassusOperator::DelassusOperator(const Tensor<2, 3> &delassus)
     : full(delassus)
   {

@@ -25,7 +25,8 @@ namespace Voussoir
                      point.mean_pressure,  static_cast<double>(point.status),
                      point.gap[0],         point.gap[1],
                      point.gap[2],         point.velocity[0],
-                     point.velocity[1],    point.velocity[2]}};
+                     point.velocity[1],    point.velocity[2],
+                     point.history.tip}};
         values.items.emplace_back(interfaces.keys[k], point_memory[k].data());
       }
     return values;
@@ -92,6 +93,7 @@ namespace Voussoir
         point.stick_point[1]  = memory[4];
         point.history.opening = memory[5];
         point.history.slip    = memory[6];
+        point.history.tip     = memory[20];
         point.bar_extension   = memory[7];
         point.largest_slip    = memory[8];
         point.status          = static_cast<ContactStatus>(memory[13]);

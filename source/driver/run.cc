@@ -115,6 +115,8 @@ namespace Voussoir
   {
     if (folder.exists())
       open_output();
+    if (contact)
+      contact->begin_earthquake();
     const bool resumes = folder.exists() && folder.restarts();
     if (resumes)
       checkpoints.read(state, energy);

@@ -18,7 +18,7 @@ namespace Voussoir
 
   namespace
   {
-    constexpr int format = 4; // since cells are numbered along a curve
+    constexpr int format = 5; // since bonds may be weaker at tips of cracks
 
 
     Bytes

@@ -2,6 +2,7 @@
 #define voussoir_constraints_contact_h
 
 #include <voussoir/base/keyed_values.h>
+#include <voussoir/constraints/bond_tips.h>
 #include <voussoir/constraints/contact_solver.h>
 #include <voussoir/constraints/interface_points.h>
 #include <voussoir/constraints/projection.h>
@@ -37,6 +38,16 @@ namespace Voussoir
     double
     set_delay(const Discretization                            &discretization,
               const std::function<double(const Grid::Cell &)> &wave_speed);
+
+    /** Finds where cracks along bonds can have tips, if any bond softens.
+     *  @param young_modulus of a cell [Pa] */
+    const BondTips *
+    find_tips(const Discretization                            &discretization,
+              const std::function<double(const Grid::Cell &)> &young_modulus);
+
+    /** From now on cracks grow from their tips where the law says so. */
+    void
+    begin_earthquake();
 
     void
     prepare_step(const InverseMass &inverse_mass,
@@ -150,12 +161,14 @@ namespace Voussoir
     cluster_nodes() const;
 
   private:
-    static constexpr unsigned int memory_width = 20;
+    static constexpr unsigned int memory_width = 21;
     using PointMemory = std::array<double, memory_width>;
 
     bool                     exact_sums; // of the work
     InterfacePoints          interfaces;
     ContactSolver            solver;
+    std::optional<BondTips>  tips;
+    bool                     in_earthquake = false;
     std::vector<PointMemory> point_memory;
 
     struct Slid

@@ -108,6 +108,11 @@ namespace Voussoir
     {
       return coefficient * (1. - at_once) * mean_pressure;
     }
+
+    /** Share of the strength of an intact bond that the force uses, in tension
+     *  or in shear beyond friction. */
+    double
+    used_bond() const;
   };
 
 

@@ -12,6 +12,7 @@ namespace Voussoir
   {
     double opening = 0.; // largest so far, with the initial gap [m]
     double slip    = 0.; // accumulated length of its path [m]
+    double tip     = 1.; // factor on the strength of a bond ahead of a crack
   };
 
   /** Resistance of a point of an interface. */
@@ -47,6 +48,23 @@ namespace Voussoir
     virtual void
     check(const std::string &) const
     {}
+
+    /** Whether the cracks of a bond propagate from their tips. */
+    virtual bool
+    grows_from_tips() const
+    {
+      return false;
+    }
+
+    /** Factor on the strength of an intact point beside a cracked one.
+     *  @param distance between them [m]
+     *  @param young_modulus of the softer side [Pa] */
+    virtual double
+    tip_strength(const double /*distance*/,
+                 const double /*young_modulus*/) const
+    {
+      return 1.;
+    }
 
     /** Strength in the step that follows this history. */
     virtual InterfaceStrength

@@ -1,0 +1,332 @@
+#include <voussoir/base/error.h>
+#include <voussoir/constraints/bond_tips.h>
+#include <voussoir/mesh/interfaces.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // A set of surfaces as the bits of the three components of a node.
+    constexpr unsigned int bits_of_component = 52;
+
+    std::uint64_t
+    bits(const double component)
+    {
+      return static_cast<std::uint64_t>(component);
+    }
+
+    bool
+    contains(const double *set, const unsigned int surface)
+    {
+      return (bits(set[surface % 3]) >> (surface / 3)) & 1;
+    }
+
+    void
+    insert(Tensor<1, 3> &set, const unsigned int surface)
+    {
+      double &component = set[surface % 3];
+      component         = bits(component) | (std::uint64_t(1) << (surface / 3));
+    }
+
+    /** Number of surfaces of a set before this one. */
+    unsigned int
+    place_in(const double *set, const unsigned int surface)
+    {
+      unsigned int n = 0;
+      for (unsigned int s = 0; s < surface; ++s)
+        n += contains(set, s);
+      return n;
+    }
+
+
+    bool
+    has_tips(const InterfacePoints &points, const unsigned int surface)
+    {
+      return points.surfaces[surface].law->tip_strength(1., 1.) < 1.;
+    }
+
+
+    bool
+    has_bond(const InterfacePoints &points, const unsigned int point)
+    {
+      const ContactSurface &surface =
+        points.surfaces[points.points[point].surface];
+      return surface.tied || surface.law->strength({}).tension > 0.;
+    }
+
+
+    bool
+    is_cracked(const ContactPoint &point)
+    {
+      return point.joined &&
+             (point.history.opening > 0. || point.history.slip > 0.);
+    }
+
+
+    /** Pairs of neighbours among the nodes of a cell, by their numbers. */
+    std::vector<std::pair<unsigned int, unsigned int>>
+    neighbours_in_cell(const FiniteElement<3> &scalar)
+    {
+      const auto                 &nodes = scalar.get_unit_support_points();
+      const std::vector<Point<1>> line =
+        QGaussLobatto<1>(scalar.degree + 1).get_points();
+      const auto index = [&](const unsigned int node, const unsigned int d) {
+        return std::lower_bound(line.begin(),
+                                line.end(),
+                                nodes[node][d] - 1e-8,
+                                [](const Point<1> &point, const double x) {
+                                  return point[0] < x;
+                                }) -
+               line.begin();
+      };
+      std::vector<std::pair<unsigned int, unsigned int>> pairs;
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        for (unsigned int j = 0; j < nodes.size(); ++j)
+          {
+            unsigned int apart = 0;
+            for (unsigned int d = 0; d < 3; ++d)
+              apart += std::abs(index(i, d) - index(j, d));
+            if (apart == 1)
+              pairs.emplace_back(i, j);
+          }
+      return pairs;
+    }
+  } // namespace
+
+
+  BondTips::BondTips(
+    const Discretization                            &discretization,
+    InterfacePoints                                 &points,
+    const std::function<double(const Grid::Cell &)> &young_modulus)
+    : component(points.points.size())
+    , tip(points.points.size())
+    , sets(discretization.owned_dofs,
+           discretization.relevant_dofs,
+           points.communicator)
+  {
+    if (points.surfaces.size() > 3 * bits_of_component)
+      throw UserError("Cracks grow from tips along 156 face sets at most; join "
+                      "face sets of the interfaces, or set \"Crack growth = "
+                      "local\".");
+    find_moduli(discretization, points, young_modulus);
+    for (const ContactPoints::Cluster &cluster : points.clusters())
+      {
+        bool all = true;
+        for (unsigned int k = 0; k < cluster.n_points; ++k)
+          all &=
+            has_tips(points, points.points[cluster.first_point + k].surface);
+        crosses.push_back(all);
+        const auto point = [&](const unsigned int k) -> const ContactPoint & {
+          return points.points[cluster.first_point + k];
+        };
+        for (unsigned int k = 0; k < cluster.n_points; ++k)
+          for (unsigned int l = 0; l < cluster.n_points; ++l)
+            if (has_tips(points, point(k).surface) &&
+                point(k).surface != point(l).surface &&
+                std::minmax(point(k).first, point(k).second) ==
+                  std::minmax(point(l).first, point(l).second))
+              continued.push_back(
+                {{cluster.first_point + k, cluster.first_point + l}});
+      }
+    find_neighbours(discretization, points);
+    farthest = distances(points, std::vector<bool>(points.points.size(), true));
+  }
+
+
+  void
+  BondTips::find_moduli(
+    const Discretization                            &discretization,
+    InterfacePoints                                 &points,
+    const std::function<double(const Grid::Cell &)> &young_modulus)
+  {
+    Vector compliance(sets);
+    for (const std::string &name : points.names)
+      for (const std::string &side : {name, name + other_side})
+        discretization.grid.for_each_face(
+          side, [&](const auto &cell, const unsigned int) {
+            for (const types::global_dof_index node :
+                 discretization.cell_nodes(discretization.dof_cell(cell)))
+              compliance(3 * node) =
+                std::max(compliance(3 * node), 1. / young_modulus(cell));
+          });
+    compliance.compress(VectorOperation::max);
+    std::vector<Tensor<1, 3>> at_nodes(points.n_nodes());
+    points.exchange().to_clusters(compliance, at_nodes);
+    for (const ContactPoint &point : points.points)
+      modulus.push_back(
+        1. / std::max(at_nodes[point.first][0], at_nodes[point.second][0]));
+  }
+
+
+  void
+  BondTips::find_neighbours(const Discretization &discretization,
+                            InterfacePoints      &points)
+  {
+    ContactExchange          &exchange = points.exchange();
+    const auto               &owned    = exchange.owned_nodes();
+    std::vector<Tensor<1, 3>> surfaces(points.n_nodes()),
+      at_owned(owned.size());
+    for (const ContactPoint &point : points.points)
+      if (has_tips(points, point.surface))
+        insert(surfaces[point.first], point.surface);
+    for (unsigned int k = 0; k < points.points.size(); ++k)
+      component[k] = place_in(surfaces[points.points[k].first].begin_raw(),
+                              points.points[k].surface);
+    exchange.to_owners(surfaces, at_owned);
+
+    const auto &scalar = discretization.fe.base_element(0);
+    const auto  pairs  = neighbours_in_cell(scalar);
+    for (unsigned int s = 0; s < points.surfaces.size(); ++s)
+      if (has_tips(points, s))
+        for (const auto &[cell, face] :
+             discretization.grid.faces(points.names[s]))
+          {
+            const auto nodes =
+              discretization.cell_nodes(discretization.dof_cell(cell));
+            const auto on_face = [&, f = face](const unsigned int node) {
+              return scalar.has_support_on_face(node, f);
+            };
+            for (const auto &[node, other] : pairs)
+              {
+                if (!on_face(node) || !on_face(other) ||
+                    !discretization.owned_dofs.is_element(3 * nodes[node]))
+                  continue;
+                const unsigned int local =
+                  discretization.owned_node(nodes[node]);
+                const auto at =
+                  std::lower_bound(owned.begin(), owned.end(), local);
+                if (at == owned.end() || *at != local ||
+                    !contains(at_owned[at - owned.begin()].begin_raw(), s))
+                  continue; // at the end of the surface, or hanging
+                const unsigned int place = at - owned.begin(),
+                                   among =
+                                     place_in(at_owned[place].begin_raw(), s);
+                AssertIndexRange(among, 3);
+                const auto position = [&, &c = cell](const unsigned int i) {
+                  return discretization.mapping.transform_unit_to_real_cell(
+                    c, scalar.unit_support_point(i));
+                };
+                neighbours.push_back(
+                  {s,
+                   place,
+                   among,
+                   sets.get_partitioner()->global_to_local(3 * nodes[other]),
+                   position(node).distance(position(other))});
+              }
+          }
+  }
+
+
+  std::vector<double>
+  BondTips::distances(InterfacePoints &points, const std::vector<bool> &set)
+  {
+    const auto &list = points.points;
+    // the surfaces in the set at each node, everywhere at a place where cracks
+    // cross another interface
+    std::vector<Tensor<1, 3>> at_nodes(points.n_nodes()),
+      at_owned(points.exchange().owned_nodes().size());
+    for (unsigned int k = 0; k < list.size(); ++k)
+      if (set[k] && has_tips(points, list[k].surface))
+        insert(at_nodes[list[k].first], list[k].surface);
+    const auto for_twins = [&](const auto &function) {
+      for (unsigned int c = 0; c < crosses.size(); ++c)
+        if (const auto &cluster = points.clusters()[c]; crosses[c])
+          for (unsigned int k = 0; k < cluster.n_points; ++k)
+            for (unsigned int l = 0; l < cluster.n_points; ++l)
+              if (const unsigned int one = cluster.first_point + k,
+                  other                  = cluster.first_point + l;
+                  list[one].surface == list[other].surface)
+                function(one, other);
+    };
+    for_twins([&](const unsigned int one, const unsigned int other) {
+      if (set[one])
+        insert(at_nodes[list[other].first], list[other].surface);
+    });
+    points.exchange().to_owners(at_nodes, at_owned);
+    sets                = 0.;
+    const auto &numbers = points.exchange().owned_nodes();
+    for (unsigned int i = 0; i < numbers.size(); ++i)
+      for (unsigned int d = 0; d < 3; ++d)
+        sets.local_element(3 * numbers[i] + d) = at_owned[i][d];
+    sets.update_ghost_values();
+    for (Tensor<1, 3> &value : at_owned)
+      value = 0.;
+    for (const Neighbour &neighbour : neighbours)
+      if (contains(sets.begin() + neighbour.beside, neighbour.surface))
+        {
+          double &distance = at_owned[neighbour.node][neighbour.component];
+          distance         = std::max(distance, neighbour.distance);
+        }
+    sets.zero_out_ghost_values();
+    points.exchange().to_clusters(at_owned, at_nodes);
+
+    std::vector<double> result(list.size());
+    for (unsigned int k = 0; k < list.size(); ++k)
+      if (has_tips(points, list[k].surface))
+        result[k] = at_nodes[list[k].first][component[k]];
+    std::vector<double> with_twins(result);
+    for_twins([&](const unsigned int one, const unsigned int other) {
+      with_twins[other] = std::max(with_twins[other], result[one]);
+    });
+    return with_twins;
+  }
+
+
+  double
+  BondTips::smallest_factor(const InterfacePoints &points,
+                            const bool             grows) const
+  {
+    double smallest = 1.;
+    for (unsigned int k = 0; k < points.points.size(); ++k)
+      if (const InterfaceLaw &law =
+            *points.surfaces[points.points[k].surface].law;
+          law.grows_from_tips() == grows)
+        smallest =
+          std::min(smallest, law.tip_strength(farthest[k], modulus[k]));
+    return Utilities::MPI::min(smallest, points.communicator);
+  }
+
+
+  void
+  BondTips::update(const unsigned long long step, InterfacePoints &points)
+  {
+    if (step % 4 != 0)
+      return;
+    std::vector<bool> cracked(points.points.size());
+    for (unsigned int k = 0; k < cracked.size(); ++k)
+      cracked[k] = is_cracked(points.points[k]);
+    const unsigned int now = std::count(cracked.begin(), cracked.end(), true);
+    if (Utilities::MPI::max(now != n_cracked ? 1 : 0, points.communicator) > 0)
+      tip = distances(points, cracked);
+    n_cracked = now;
+    for (const auto &[k, other] : continued)
+      if (cracked[other] || !has_bond(points, other))
+        tip[k] = std::max(tip[k], farthest[k]);
+
+    // A tip may arrive where the stress is higher already; there the crack
+    // begins just below this stress, so that neither energy nor stress jumps.
+    constexpr double just_below = 1. - 1e-9;
+    for (unsigned int k = 0; k < cracked.size(); ++k)
+      if (tip[k] > 0. && !cracked[k])
+        {
+          ContactPoint       &point = points.points[k];
+          const InterfaceLaw &law   = *points.surfaces[point.surface].law;
+          if (!law.grows_from_tips() || !point.joined)
+            continue;
+          point.history.tip = 1.;
+          points.update_limits(point);
+          point.history.tip =
+            std::min(1.,
+                     std::max(law.tip_strength(tip[k], modulus[k]),
+                              just_below * point.used_bond()));
+          points.update_limits(point);
+        }
+  }
+} // namespace Voussoir

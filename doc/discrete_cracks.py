@@ -59,9 +59,10 @@ MESHES = {
                          *LIFTS_OF_OVERLOAD),
                "3.1 m": LIFTS_OF_OVERLOAD},
 }
+FROM_TIPS = "interfaces, from tips"
 # cohesion of the interfaces over their tensile strength: with 2 the shear strength is that of
 # concrete, with 1 an oblique crack along rows and joints begins at the tensile strength
-COHESION = {"interfaces": 2., "weak interfaces": 1.}
+COHESION = {"interfaces": 2., FROM_TIPS: 2., "weak interfaces": 1.}
 # fracture energy with which no cell lowers its tensile strength [N/m]
 KEPT = {"6.5 m": 1520., "3.25 m": 800., "6.2 m": 2600., "3.1 m": 2600.}
 FACE_TO_FACE = "largest opening from face to face at one moment [mm]"
@@ -87,9 +88,9 @@ DRAWN = {"discrete_cracks": ((KOYNA, 1., "104 rows"), (ARCH_DAM, 1., "6.5 m"),
                                       (OVERLOAD, 1.6, "6.2 m"))}
 
 
-def interfaces_of(case, cohesion):
-    """Entries of the model whose cracks are interfaces with this cohesion over their tensile
-    strength. Slip takes ten times the fracture energy."""
+def interfaces_of(case, law):
+    """Entries of the model whose cracks are interfaces. Slip takes ten times the fracture
+    energy."""
     strength, energy, increase, concrete = CONCRETE[case]
     strength, energy = increase * strength, increase * energy
     names = ["cracks"] if case == KOYNA else ["joints", "cracks"]
@@ -101,10 +102,11 @@ def interfaces_of(case, cohesion):
                "Interfaces/cracks/Law=softening bond",
                f"Interfaces/cracks/Tensile strength={strength:g}",
                f"Interfaces/cracks/Fracture energy={energy:g}",
-               f"Interfaces/cracks/Cohesion={cohesion * strength:g}",
+               f"Interfaces/cracks/Cohesion={COHESION[law] * strength:g}",
                "Interfaces/cracks/Friction coefficient=1",
                "Interfaces/cracks/Residual friction coefficient=1",
                f"Interfaces/cracks/Shear fracture energy={10. * energy:g}",
+               f"Interfaces/cracks/Crack growth={'from tips' if law == FROM_TIPS else 'local'}",
                "Materials/Names=solid" + ("" if case == KOYNA else ", rock"),
                "Materials/solid/Cell sets=dam", "Output/Observers=" + ", ".join(observers)]
     return entries + [f"Materials/solid/{entry}" for entry in concrete] + list(LIFTS.get(case, ()))
@@ -112,7 +114,7 @@ def interfaces_of(case, cohesion):
 
 def entries_of(case, mesh, law):
     if law in COHESION:
-        return interfaces_of(case, COHESION[law])
+        return interfaces_of(case, law)
     strength, energy, *_ = CONCRETE[case]
     if law.endswith(KEEPS):
         energy = KEPT[mesh]

@@ -70,6 +70,16 @@ namespace Voussoir
     }
 
 
+    /** Largest share of a row of cells that belongs to a node, of a cell. */
+    double
+    largest_share(const unsigned int degree)
+    {
+      const auto weights = QGaussLobatto<1>(degree + 1).get_weights();
+      return std::max(2. * weights.front(),
+                      *std::max_element(weights.begin(), weights.end()));
+    }
+
+
     /** Pairs of neighbours among the nodes of a cell, by their numbers. */
     std::vector<std::pair<unsigned int, unsigned int>>
     neighbours_in_cell(const FiniteElement<3> &scalar)
@@ -181,8 +191,9 @@ namespace Voussoir
                               points.points[k].surface);
     exchange.to_owners(surfaces, at_owned);
 
-    const auto &scalar = discretization.fe.base_element(0);
-    const auto  pairs  = neighbours_in_cell(scalar);
+    const auto  &scalar = discretization.fe.base_element(0);
+    const auto   pairs  = neighbours_in_cell(scalar);
+    const double share  = largest_share(scalar.degree);
     for (unsigned int s = 0; s < points.surfaces.size(); ++s)
       if (has_tips(points, s))
         for (const auto &[cell, face] :
@@ -209,16 +220,19 @@ namespace Voussoir
                                    among =
                                      place_in(at_owned[place].begin_raw(), s);
                 AssertIndexRange(among, 3);
-                const auto position = [&, &c = cell](const unsigned int i) {
-                  return discretization.mapping.transform_unit_to_real_cell(
-                    c, scalar.unit_support_point(i));
+                const Point<3> unit[]   = {scalar.unit_support_point(node),
+                                           scalar.unit_support_point(other)};
+                const auto     position = [&, &c = cell](const Point<3> &p) {
+                  return discretization.mapping.transform_unit_to_real_cell(c,
+                                                                            p);
                 };
                 neighbours.push_back(
                   {s,
                    place,
                    among,
                    sets.get_partitioner()->global_to_local(3 * nodes[other]),
-                   position(node).distance(position(other))});
+                   share * position(unit[0]).distance(position(unit[1])) /
+                     unit[0].distance(unit[1])});
               }
           }
   }

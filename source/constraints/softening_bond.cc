@@ -58,9 +58,9 @@ namespace Voussoir
           growth,
           "Whether a point cracks by the strength of the bond alone, or, in the "
           "earthquake, beside a cracked point by the lower strength ft / "
-          "sqrt(1 + 1.3 h ft^2 / (E Gf)) at a distance h of these points, with "
-          "which cracks propagate at about the load of fracture mechanics in "
-          "cells of any size.");
+          "sqrt(1 + h ft^2 / (E Gf)) at a distance h of these points, with which "
+          "cracks propagate at about the load of fracture mechanics in cells of "
+          "any size.");
       }
 
       bool
@@ -73,11 +73,8 @@ namespace Voussoir
       tip_strength(const double distance,
                    const double young_modulus) const override
       {
-        // fitted to the load at which a crack propagates through a plate
-        // (doc/joints.md)
-        constexpr double fitted = 1.3;
-        return 1. / std::sqrt(1. + fitted * distance * intact.tension *
-                                     intact.tension /
+        // as SofteningCurve::tip_strength for a cell of this size
+        return 1. / std::sqrt(1. + distance * intact.tension * intact.tension /
                                      (young_modulus * opening_energy));
       }
 

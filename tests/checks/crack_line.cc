@@ -66,6 +66,8 @@ namespace Voussoir
         double force = 0.;
         for (const unsigned int node : pulled)
           force += run.scheme.support_force(run.state, node)[2];
+        force =
+          Utilities::MPI::sum(force, simulation.run.model.grid.communicator());
         forces.push_back(force);
         sum += force;
         if (forces.size() > steps)

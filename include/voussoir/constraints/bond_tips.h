@@ -46,7 +46,7 @@ namespace Voussoir
       unsigned int node;      // among the owned nodes of the contact
       unsigned int component; // of the surface at this node
       unsigned int beside;    // first entry of the other node in `sets`
-      double       distance;  // [m]
+      double       distance;  // of nodes of degree one in rows as wide [m]
     };
 
     void

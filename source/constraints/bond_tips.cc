@@ -49,7 +49,7 @@ namespace Voussoir
     bool
     has_tips(const InterfacePoints &points, const unsigned int surface)
     {
-      return points.surfaces[surface].law->tip_strength(1., 1.) < 1.;
+      return points.surfaces[surface].law->grows_from_tips();
     }
 
 
@@ -122,9 +122,10 @@ namespace Voussoir
            points.communicator)
   {
     if (points.surfaces.size() > 3 * bits_of_component)
-      throw UserError("Cracks grow from tips along 156 face sets at most; join "
-                      "face sets of the interfaces, or set \"Crack growth = "
-                      "local\".");
+      throw UserError(
+        "Cracks can grow from tips in cases whose interfaces have "
+        "156 face sets at most; set \"Crack growth = local\" in "
+        "their sections.");
     find_moduli(discretization, points, young_modulus);
     for (const ContactPoints::Cluster &cluster : points.clusters())
       {
@@ -187,8 +188,17 @@ namespace Voussoir
       if (has_tips(points, point.surface))
         insert(surfaces[point.first], point.surface);
     for (unsigned int k = 0; k < points.points.size(); ++k)
-      component[k] = place_in(surfaces[points.points[k].first].begin_raw(),
-                              points.points[k].surface);
+      if (has_tips(points, points.points[k].surface))
+        component[k] = place_in(surfaces[points.points[k].first].begin_raw(),
+                                points.points[k].surface);
+    const bool too_many =
+      std::any_of(component.begin(), component.end(), [](const unsigned int c) {
+        return c >= 3;
+      });
+    if (Utilities::MPI::max(too_many ? 1 : 0, points.communicator) > 0)
+      throw UserError("Cracks cannot grow from tips where more than three face "
+                      "sets of interfaces meet at one side of a node; set "
+                      "\"Crack growth = local\" in the sections of some.");
     exchange.to_owners(surfaces, at_owned);
 
     const auto  &scalar = discretization.fe.base_element(0);
@@ -219,7 +229,6 @@ namespace Voussoir
                 const unsigned int place = at - owned.begin(),
                                    among =
                                      place_in(at_owned[place].begin_raw(), s);
-                AssertIndexRange(among, 3);
                 const Point<3> unit[]   = {scalar.unit_support_point(node),
                                            scalar.unit_support_point(other)};
                 const auto     position = [&, &c = cell](const Point<3> &p) {
@@ -294,16 +303,14 @@ namespace Voussoir
 
 
   double
-  BondTips::smallest_factor(const InterfacePoints &points,
-                            const bool             grows) const
+  BondTips::smallest_factor(const InterfacePoints &points) const
   {
     double smallest = 1.;
     for (unsigned int k = 0; k < points.points.size(); ++k)
-      if (const InterfaceLaw &law =
-            *points.surfaces[points.points[k].surface].law;
-          law.grows_from_tips() == grows)
-        smallest =
-          std::min(smallest, law.tip_strength(farthest[k], modulus[k]));
+      smallest =
+        std::min(smallest,
+                 points.surfaces[points.points[k].surface].law->tip_strength(
+                   farthest[k], modulus[k]));
     return Utilities::MPI::min(smallest, points.communicator);
   }
 
@@ -332,7 +339,7 @@ namespace Voussoir
         {
           ContactPoint       &point = points.points[k];
           const InterfaceLaw &law   = *points.surfaces[point.surface].law;
-          if (!law.grows_from_tips() || !point.joined)
+          if (!has_tips(points, point.surface) || !point.joined)
             continue;
           point.history.tip = 1.;
           points.update_limits(point);

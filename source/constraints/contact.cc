@@ -44,7 +44,7 @@ namespace Voussoir
     if (std::any_of(interfaces.surfaces.begin(),
                     interfaces.surfaces.end(),
                     [](const ContactSurface &surface) {
-                      return surface.law->tip_strength(1., 1.) < 1.;
+                      return surface.law->grows_from_tips();
                     }))
       tips.emplace(discretization, interfaces, young_modulus);
     return tips ? &*tips : nullptr;

@@ -60,7 +60,8 @@ namespace Voussoir
           "earthquake, beside a cracked point by the lower strength ft / "
           "sqrt(1 + h ft^2 / (E Gf)) at a distance h of these points, with which "
           "cracks propagate at about the load of fracture mechanics in cells of "
-          "any size.");
+          "any size. \"Local\" lets them propagate at too high a load where h is "
+          "not much smaller than E Gf / ft^2.");
       }
 
       bool
@@ -96,7 +97,7 @@ namespace Voussoir
 
     private:
       double     opening_energy = 200., slip_energy = 2000.;
-      BondGrowth growth = BondGrowth::local;
+      BondGrowth growth = BondGrowth::from_tips;
     };
 
     const Registry<InterfaceLaw>::Add<SofteningBond> registered_softening_bond(

@@ -225,27 +225,6 @@ namespace Voussoir
     }
 
 
-    void
-    report_tips(const BondTips &tips, const InterfacePoints &points, Log &log)
-    {
-      // a crack in cells of this size runs at a load too high by a quarter
-      constexpr double too_long = 0.8;
-      if (const double factor = tips.smallest_factor(points, true); factor < 1.)
-        log.line("At tips of cracks along interfaces the strength of the bond "
-                 "is lowered to ",
-                 std::round(100. * factor),
-                 " % in the longest cells");
-      if (const double factor = tips.smallest_factor(points, false);
-          factor < too_long)
-        log.line("  note: in the longest cells a crack along an interface with "
-                 "softening bond propagates at up to ",
-                 std::round(10. / factor) / 10.,
-                 " times the load of fracture mechanics; \"Crack growth = from "
-                 "tips\" in its section lowers the strength of the bond ahead "
-                 "of the crack");
-    }
-
-
     std::unique_ptr<const Contact>
     make_contact(const Solid                &solid,
                  const InterfacesParameters &interfaces,
@@ -280,12 +259,15 @@ namespace Voussoir
                "Hz acts with ",
                std::round(100. * at_5_hz),
                " %");
-      const BondTips *tips =
-        contact->find_tips(discretization, [&](const Grid::Cell &cell) {
-          return solid.material_of(cell).elastic_constants().young_modulus;
-        });
-      if (tips != nullptr)
-        report_tips(*tips, contact->points_of_interfaces(), log);
+      if (const BondTips *tips =
+            contact->find_tips(discretization, [&](const Grid::Cell &cell) {
+              return solid.material_of(cell).elastic_constants().young_modulus;
+            }))
+        log.line("At tips of cracks along interfaces the strength of the bond "
+                 "is lowered to ",
+                 std::round(100. * tips->smallest_factor(
+                                     contact->points_of_interfaces())),
+                 " % in the longest cells");
       return contact;
     }
   } // namespace

@@ -22,16 +22,16 @@ namespace Voussoir
   class BondTips
   {
   public:
-    /** @param young_modulus of a cell [Pa] */
+    /** Throws UserError, on all ranks, if these are more surfaces than it can
+     *  tell apart.
+     *  @param young_modulus of a cell [Pa] */
     BondTips(const Discretization                            &discretization,
              InterfacePoints                                 &points,
              const std::function<double(const Grid::Cell &)> &young_modulus);
 
-    /** Smallest factor on the strength at a tip, on all ranks; 1 if no law
-     *  softens.
-     *  @param grows of laws whose cracks grow from tips, or of the others */
+    /** Smallest factor on the strength at a tip, on all ranks. */
     double
-    smallest_factor(const InterfacePoints &points, const bool grows) const;
+    smallest_factor(const InterfacePoints &points) const;
 
     /** Finds new cracks after every fourth step, and weakens the intact points
      *  at their tips. Called on all ranks. */

@@ -39,7 +39,8 @@ namespace Voussoir
     set_delay(const Discretization                            &discretization,
               const std::function<double(const Grid::Cell &)> &wave_speed);
 
-    /** Finds where cracks along bonds can have tips, if any bond softens.
+    /** Finds where cracks along bonds can have tips; null if none grows from
+     *  its tips.
      *  @param young_modulus of a cell [Pa] */
     const BondTips *
     find_tips(const Discretization                            &discretization,

@@ -5,8 +5,8 @@ a table and draws doc/discrete_cracks.png and doc/discrete_cracks_overload.png.
 
 usage: doc/discrete_cracks.py PROGRAM FOLDER
 
-Runs those cases that have no results in FOLDER yet, two and a half hours on one core. Needs the Debian
-packages python3-numpy and python3-matplotlib.
+Runs those cases that have no results in FOLDER yet, two and a half hours on one core.
+Needs the Debian packages python3-numpy and python3-matplotlib.
 """
 
 import json

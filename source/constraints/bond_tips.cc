@@ -1,5 +1,6 @@
 #include <voussoir/base/error.h>
 #include <voussoir/constraints/bond_tips.h>
+#include <voussoir/fem/crack_growth.h>
 #include <voussoir/mesh/interfaces.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -127,27 +128,37 @@ namespace Voussoir
         "156 face sets at most; set \"Crack growth = local\" in "
         "their sections.");
     find_moduli(discretization, points, young_modulus);
-    for (const ContactPoints::Cluster &cluster : points.clusters())
-      {
-        bool all = true;
-        for (unsigned int k = 0; k < cluster.n_points; ++k)
-          all &=
-            has_tips(points, points.points[cluster.first_point + k].surface);
-        crosses.push_back(all);
-        const auto point = [&](const unsigned int k) -> const ContactPoint & {
-          return points.points[cluster.first_point + k];
-        };
-        for (unsigned int k = 0; k < cluster.n_points; ++k)
-          for (unsigned int l = 0; l < cluster.n_points; ++l)
-            if (has_tips(points, point(k).surface) &&
-                point(k).surface != point(l).surface &&
-                std::minmax(point(k).first, point(k).second) ==
-                  std::minmax(point(l).first, point(l).second))
-              continued.push_back(
-                {{cluster.first_point + k, cluster.first_point + l}});
-      }
+    find_pairs(points);
     find_neighbours(discretization, points);
     farthest = distances(points, std::vector<bool>(points.points.size(), true));
+  }
+
+
+  void
+  BondTips::find_pairs(const InterfacePoints &points)
+  {
+    for (const ContactPoints::Cluster &cluster : points.clusters())
+      {
+        const unsigned int end   = cluster.first_point + cluster.n_points;
+        bool               cross = true;
+        for (unsigned int k = cluster.first_point; k < end; ++k)
+          cross &= has_tips(points, points.points[k].surface);
+        for (unsigned int k = cluster.first_point; k < end; ++k)
+          for (unsigned int l = cluster.first_point; l < end; ++l)
+            {
+              const ContactPoint &one   = points.points[k],
+                                 &other = points.points[l];
+              if (one.surface == other.surface)
+                {
+                  if (cross && k != l)
+                    twins.push_back({{k, l}});
+                }
+              else if (has_tips(points, one.surface) &&
+                       std::minmax(one.first, one.second) ==
+                         std::minmax(other.first, other.second))
+                continued.push_back({{k, l}});
+            }
+      }
   }
 
 
@@ -251,27 +262,15 @@ namespace Voussoir
   BondTips::distances(InterfacePoints &points, const std::vector<bool> &set)
   {
     const auto &list = points.points;
-    // the surfaces in the set at each node, everywhere at a place where cracks
-    // cross another interface
+    // the surfaces in the set at each node, and at the nodes of twins
     std::vector<Tensor<1, 3>> at_nodes(points.n_nodes()),
       at_owned(points.exchange().owned_nodes().size());
     for (unsigned int k = 0; k < list.size(); ++k)
       if (set[k] && has_tips(points, list[k].surface))
         insert(at_nodes[list[k].first], list[k].surface);
-    const auto for_twins = [&](const auto &function) {
-      for (unsigned int c = 0; c < crosses.size(); ++c)
-        if (const auto &cluster = points.clusters()[c]; crosses[c])
-          for (unsigned int k = 0; k < cluster.n_points; ++k)
-            for (unsigned int l = 0; l < cluster.n_points; ++l)
-              if (const unsigned int one = cluster.first_point + k,
-                  other                  = cluster.first_point + l;
-                  list[one].surface == list[other].surface)
-                function(one, other);
-    };
-    for_twins([&](const unsigned int one, const unsigned int other) {
-      if (set[one])
-        insert(at_nodes[list[other].first], list[other].surface);
-    });
+    for (const auto &[k, twin] : twins)
+      if (set[k])
+        insert(at_nodes[list[twin].first], list[twin].surface);
     points.exchange().to_owners(at_nodes, at_owned);
     sets                = 0.;
     const auto &numbers = points.exchange().owned_nodes();
@@ -295,9 +294,8 @@ namespace Voussoir
       if (has_tips(points, list[k].surface))
         result[k] = at_nodes[list[k].first][component[k]];
     std::vector<double> with_twins(result);
-    for_twins([&](const unsigned int one, const unsigned int other) {
-      with_twins[other] = std::max(with_twins[other], result[one]);
-    });
+    for (const auto &[k, twin] : twins)
+      with_twins[twin] = std::max(with_twins[twin], result[k]);
     return with_twins;
   }
 
@@ -318,7 +316,7 @@ namespace Voussoir
   void
   BondTips::update(const unsigned long long step, InterfacePoints &points)
   {
-    if (step % 4 != 0)
+    if (step % steps_between_looks != 0)
       return;
     std::vector<bool> cracked(points.points.size());
     for (unsigned int k = 0; k < cracked.size(); ++k)
@@ -331,22 +329,16 @@ namespace Voussoir
       if (cracked[other] || !has_bond(points, other))
         tip[k] = std::max(tip[k], farthest[k]);
 
-    // A tip may arrive where the stress is higher already; there the crack
-    // begins just below this stress, so that neither energy nor stress jumps.
-    constexpr double just_below = 1. - 1e-9;
     for (unsigned int k = 0; k < cracked.size(); ++k)
-      if (tip[k] > 0. && !cracked[k])
+      if (ContactPoint &point = points.points[k];
+          tip[k] > 0. && !cracked[k] && point.joined)
         {
-          ContactPoint       &point = points.points[k];
-          const InterfaceLaw &law   = *points.surfaces[point.surface].law;
-          if (!has_tips(points, point.surface) || !point.joined)
-            continue;
           point.history.tip = 1.;
           points.update_limits(point);
-          point.history.tip =
-            std::min(1.,
-                     std::max(law.tip_strength(tip[k], modulus[k]),
-                              just_below * point.used_bond()));
+          point.history.tip = strength_where_tip_arrives(
+            points.surfaces[point.surface].law->tip_strength(tip[k],
+                                                             modulus[k]),
+            point.used_bond());
           points.update_limits(point);
         }
   }

@@ -1,9 +1,8 @@
-#include <voussoir/base/option.h>
 #include <voussoir/base/usual_range.h>
 #include <voussoir/constraints/bond.h>
+#include <voussoir/fem/crack_growth.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace Voussoir
 {
@@ -11,20 +10,6 @@ namespace Voussoir
 
   namespace
   {
-    enum class BondGrowth
-    {
-      local,
-      from_tips
-    };
-
-    OptionNames<BondGrowth>
-    option_names(const BondGrowth)
-    {
-      return {{BondGrowth::local, "local"},
-              {BondGrowth::from_tips, "from tips"}};
-    }
-
-
     /**
      * A bond that softens linearly: with w the largest opening and s the
      * accumulated slip, the share of its strength that is left is
@@ -61,22 +46,23 @@ namespace Voussoir
           "sqrt(1 + h ft^2 / (E Gf)) at a distance h of these points, with which "
           "cracks propagate at about the load of fracture mechanics in cells of "
           "any size. \"Local\" lets them propagate at too high a load where h is "
-          "not much smaller than E Gf / ft^2.");
+          "not much smaller than E Gf / ft^2.",
+          {CrackGrowth::local, CrackGrowth::from_tips});
       }
 
       bool
       grows_from_tips() const override
       {
-        return growth == BondGrowth::from_tips;
+        return growth == CrackGrowth::from_tips;
       }
 
       double
       tip_strength(const double distance,
                    const double young_modulus) const override
       {
-        // as SofteningCurve::tip_strength for a cell of this size
-        return 1. / std::sqrt(1. + distance * intact.tension * intact.tension /
-                                     (young_modulus * opening_energy));
+        return strength_at_tip(distance,
+                               young_modulus * opening_energy /
+                                 (intact.tension * intact.tension));
       }
 
       InterfaceStrength
@@ -96,8 +82,8 @@ namespace Voussoir
       }
 
     private:
-      double     opening_energy = 200., slip_energy = 2000.;
-      BondGrowth growth = BondGrowth::from_tips;
+      double      opening_energy = 200., slip_energy = 2000.;
+      CrackGrowth growth = CrackGrowth::from_tips;
     };
 
     const Registry<InterfaceLaw>::Add<SofteningBond> registered_softening_bond(

@@ -1,4 +1,5 @@
 #include <voussoir/fem/cell_neighbors.h>
+#include <voussoir/fem/crack_growth.h>
 #include <voussoir/fem/crack_tips.h>
 
 #include <deal.II/grid/grid_tools.h>
@@ -57,7 +58,7 @@ namespace Voussoir
   void
   CrackTips::update(const unsigned long long step, MaterialMemory &memory) const
   {
-    if (step % 4 != 0 || !is_needed())
+    if (step % steps_between_looks != 0 || !is_needed())
       return;
     std::vector<Crack> cracks = new_cracks(memory);
     exchange(cracks);

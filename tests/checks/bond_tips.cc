@@ -1,4 +1,4 @@
-#include "check.h"
+#include "contact_sums.h"
 #include "crack_line.h"
 #include "slice_mesh.h"
 
@@ -77,17 +77,14 @@ namespace Voussoir
               make_case(file.with({"Mesh/file/File=" + mesh}));
             const auto simulation = make_simulation(*parameters, communicator);
             const Pull pull       = march_under_pull(*simulation, 0.05);
-            double     bond       = 0.;
-            for (const ContactSurface &surface :
-                 simulation->run.contact->surfaces())
-              bond += surface.energy.bond;
+            constexpr unsigned int ligament = 1; // surface
             verdicts.near("stress at which the crack runs" + size.str(),
                           1e-6 * pull.largest / (width * h),
                           1e-6 * fictitious_crack,
                           0.08,
                           "MPa");
             verdicts.near("energy of the bond per area" + size.str(),
-                          Utilities::MPI::sum(bond, communicator) /
+                          contact_sums(*simulation, ligament).bond_work /
                             (h * (width - slit)),
                           fracture_energy,
                           0.1,

@@ -55,6 +55,9 @@ namespace Voussoir
                 const std::function<double(const Grid::Cell &)> &young_modulus);
 
     void
+    find_pairs(const InterfacePoints &points);
+
+    void
     find_neighbours(const Discretization &discretization,
                     InterfacePoints      &points);
 
@@ -65,11 +68,12 @@ namespace Voussoir
 
     std::vector<double>       modulus; // of the softer side of each point [Pa]
     std::vector<unsigned int> component; // of each point's surface at its node
-    std::vector<bool>         crosses;   // each cluster of several points
     std::vector<double>       farthest;  // neighbour of each point [m]
     std::vector<double>       tip;       // distance of a cracked neighbour [m]
     std::vector<Neighbour>    neighbours;
-    std::vector<std::array<unsigned int, 2>> continued; // points, by the other
+    // pairs of points: of one surface at a place where cracks cross another
+    // one; of which the second continues the surface of the first
+    std::vector<std::array<unsigned int, 2>> twins, continued;
     Vector                                   sets; // of surfaces, of each node
     unsigned int n_cracked = 0;                    // points, at the last look
   };

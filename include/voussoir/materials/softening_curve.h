@@ -1,6 +1,7 @@
 #ifndef voussoir_materials_softening_curve_h
 #define voussoir_materials_softening_curve_h
 
+#include <voussoir/fem/crack_growth.h>
 #include <voussoir/materials/law.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -173,16 +174,12 @@ namespace Voussoir
              std::max(Number(1.), Number(0.5 + half_inverse_widest * band));
     }
 
-    /**
-     * Factor on the strength of a cell of size h [m] at the tip of a crack,
-     *   1 / sqrt(1 + h / (E Gf / ft^2)) :
-     * the cell averages the stress at the tip, which for h above E Gf / ft^2
-     * would let a crack run at too high a load.
+    /** Factor on the strength of a cell of this size [m] at the tip of a crack.
      */
     double
     tip_strength(const double cell_size) const
     {
-      return 1. / std::sqrt(1. + cell_size / failure().crack_length);
+      return strength_at_tip(cell_size, failure().crack_length);
     }
 
     TensileFailure

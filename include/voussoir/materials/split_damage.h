@@ -2,6 +2,7 @@
 #define voussoir_materials_split_damage_h
 
 #include <voussoir/base/option.h>
+#include <voussoir/fem/crack_growth.h>
 #include <voussoir/materials/softening_curve.h>
 #include <voussoir/materials/tension_split.h>
 
@@ -19,23 +20,6 @@ namespace Voussoir
   {
     return {{CrackDirection::rotating, "rotating"},
             {CrackDirection::fixed, "fixed"}};
-  }
-
-
-  /** Where cracks begin. */
-  enum class CrackGrowth
-  {
-    local,
-    from_tips,
-    along_planes
-  };
-
-  inline OptionNames<CrackGrowth>
-  option_names(const CrackGrowth)
-  {
-    return {{CrackGrowth::local, "local"},
-            {CrackGrowth::from_tips, "from tips"},
-            {CrackGrowth::along_planes, "along planes"}};
   }
 
 
@@ -300,13 +284,9 @@ namespace Voussoir
       using dealii::compare_and_apply_mask;
       using Comparison  = dealii::SIMDComparison;
       const Number zero = 0., one = 1.;
-      // A tip may arrive where the stress is higher already; there the crack
-      // begins just below this stress, so that neither energy nor stress jumps.
-      constexpr double just_below = 1. - 1e-9;
-      const Number     now        = std::min(
-        std::max(situation.tip_strength,
-                 Number(just_below * tension.yield_ratio(equivalent, zero))),
-        one);
+      const Number now =
+        strength_where_tip_arrives(situation.tip_strength,
+                                   tension.yield_ratio(equivalent, zero));
       Number      &kept = history[strength_at];
       const Number factor =
         compare_and_apply_mask<Comparison::equal>(kept, zero, now, kept);

@@ -145,7 +145,8 @@ namespace Voussoir
     if (additions.contact != nullptr)
       {
         static_contact.emplace(additions.contact->points_of_interfaces(),
-                               stiffness);
+                               stiffness,
+                               additions.contact->bond_tips());
         static_contact->tie(*additions.displacement);
         add_diagonal(stiffness, contact, layout);
       }

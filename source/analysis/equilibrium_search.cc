@@ -56,7 +56,7 @@ namespace Voussoir
 
     try
       {
-        approach();
+        follow_cracks();
       }
     catch (const NotSolved &)
       {
@@ -75,6 +75,20 @@ namespace Voussoir
           contact->restore();
       }
     return effort;
+  }
+
+
+  void
+  EquilibriumSearch::follow_cracks()
+  {
+    approach();
+    while (effort.found && contact != nullptr && contact->find_tips())
+      {
+        effort.found    = false;
+        least_imbalance = std::numeric_limits<double>::max();
+        last_gain       = effort.steps;
+        approach();
+      }
   }
 
 

@@ -66,8 +66,7 @@ namespace Voussoir
     bool
     is_cracked(const ContactPoint &point)
     {
-      return point.joined &&
-             (point.history.opening > 0. || point.history.slip > 0.);
+      return point.joined && point.history.is_cracked();
     }
 
 
@@ -112,14 +111,11 @@ namespace Voussoir
   } // namespace
 
 
-  BondTips::BondTips(
-    const Discretization                            &discretization,
-    InterfacePoints                                 &points,
-    const std::function<double(const Grid::Cell &)> &young_modulus)
+  BondTips::BondTips(const Solid &solid, InterfacePoints &points)
     : component(points.points.size())
     , tip(points.points.size())
-    , sets(discretization.owned_dofs,
-           discretization.relevant_dofs,
+    , sets(solid.discretization.owned_dofs,
+           solid.discretization.relevant_dofs,
            points.communicator)
   {
     if (points.surfaces.size() > 3 * bits_of_component)
@@ -127,9 +123,9 @@ namespace Voussoir
         "Cracks can grow from tips in cases whose interfaces have "
         "156 face sets at most; set \"Crack growth = local\" in "
         "their sections.");
-    find_moduli(discretization, points, young_modulus);
+    find_moduli(solid, points);
     find_pairs(points);
-    find_neighbours(discretization, points);
+    find_neighbours(solid.discretization, points);
     farthest = distances(points, std::vector<bool>(points.points.size(), true));
   }
 
@@ -163,27 +159,34 @@ namespace Voussoir
 
 
   void
-  BondTips::find_moduli(
-    const Discretization                            &discretization,
-    InterfacePoints                                 &points,
-    const std::function<double(const Grid::Cell &)> &young_modulus)
+  BondTips::find_moduli(const Solid &solid, InterfacePoints &points)
   {
-    Vector compliance(sets);
+    const Discretization &discretization = solid.discretization;
+    Vector                compliance(sets); // in the earthquake and at rest
     for (const std::string &name : points.names)
       for (const std::string &side : {name, name + other_side})
         discretization.grid.for_each_face(
           side, [&](const auto &cell, const unsigned int) {
+            const Material &material = solid.material_of(cell),
+                           &at_rest  = material.at_rest();
+            const double stiffness[] = {
+              material.elastic_constants().young_modulus,
+              material.factor_at_rest() *
+                at_rest.elastic_constants().young_modulus};
             for (const types::global_dof_index node :
                  discretization.cell_nodes(discretization.dof_cell(cell)))
-              compliance(3 * node) =
-                std::max(compliance(3 * node), 1. / young_modulus(cell));
+              for (unsigned int i = 0; i < 2; ++i)
+                compliance(3 * node + i) =
+                  std::max(compliance(3 * node + i), 1. / stiffness[i]);
           });
     compliance.compress(VectorOperation::max);
     std::vector<Tensor<1, 3>> at_nodes(points.n_nodes());
     points.exchange().to_clusters(compliance, at_nodes);
     for (const ContactPoint &point : points.points)
-      modulus.push_back(
-        1. / std::max(at_nodes[point.first][0], at_nodes[point.second][0]));
+      for (const auto &[result, i] :
+           {std::pair{&modulus, 0}, std::pair{&modulus_at_rest, 1}})
+        result->push_back(
+          1. / std::max(at_nodes[point.first][i], at_nodes[point.second][i]));
   }
 
 
@@ -314,32 +317,74 @@ namespace Voussoir
 
 
   void
+  BondTips::begin_earthquake()
+  {
+    in_earthquake = true;
+  }
+
+
+  double
+  BondTips::strength_at_tip(const unsigned int     k,
+                            const InterfacePoints &points) const
+  {
+    return points.surfaces[points.points[k].surface].law->tip_strength(
+      tip[k], in_earthquake ? modulus[k] : modulus_at_rest[k]);
+  }
+
+
+  void
+  BondTips::find_tips(const std::vector<bool> &cracked, InterfacePoints &points)
+  {
+    if (Utilities::MPI::max(cracked != last_cracked ? 1 : 0,
+                            points.communicator) == 0)
+      return;
+    tip          = distances(points, cracked);
+    last_cracked = cracked;
+    for (const auto &[k, other] : continued)
+      if (cracked[other] || !has_bond(points, other))
+        tip[k] = std::max(tip[k], farthest[k]);
+    for (unsigned int k = 0; k < cracked.size(); ++k)
+      if (cracked[k])
+        tip[k] = 0.;
+  }
+
+
+  void
   BondTips::update(const unsigned long long step, InterfacePoints &points)
   {
     if (step % steps_between_looks != 0)
       return;
-    std::vector<bool> cracked(points.points.size());
+    std::vector<bool> cracked;
+    for (const ContactPoint &point : points.points)
+      cracked.push_back(is_cracked(point));
+    find_tips(cracked, points);
     for (unsigned int k = 0; k < cracked.size(); ++k)
-      cracked[k] = is_cracked(points.points[k]);
-    const unsigned int now = std::count(cracked.begin(), cracked.end(), true);
-    if (Utilities::MPI::max(now != n_cracked ? 1 : 0, points.communicator) > 0)
-      tip = distances(points, cracked);
-    n_cracked = now;
-    for (const auto &[k, other] : continued)
-      if (cracked[other] || !has_bond(points, other))
-        tip[k] = std::max(tip[k], farthest[k]);
-
-    for (unsigned int k = 0; k < cracked.size(); ++k)
-      if (ContactPoint &point = points.points[k];
-          tip[k] > 0. && !cracked[k] && point.joined)
+      if (ContactPoint &point = points.points[k]; tip[k] > 0. && point.joined)
         {
           point.history.tip = 1.;
           points.update_limits(point);
-          point.history.tip = strength_where_tip_arrives(
-            points.surfaces[point.surface].law->tip_strength(tip[k],
-                                                             modulus[k]),
-            point.used_bond());
+          point.history.tip =
+            strength_where_tip_arrives(strength_at_tip(k, points),
+                                       point.used_bond());
           points.update_limits(point);
         }
+  }
+
+
+  bool
+  BondTips::weaken(const std::vector<bool> &cracked, InterfacePoints &points)
+  {
+    find_tips(cracked, points);
+    bool weaker = false;
+    for (unsigned int k = 0; k < cracked.size(); ++k)
+      if (ContactPoint &point = points.points[k]; tip[k] > 0. && point.joined)
+        if (const double strength = strength_at_tip(k, points);
+            strength < point.history.tip)
+          {
+            point.history.tip = strength;
+            points.update_limits(point);
+            weaker = true;
+          }
+    return Utilities::MPI::max(weaker ? 1 : 0, points.communicator) > 0;
   }
 } // namespace Voussoir

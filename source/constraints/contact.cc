@@ -36,17 +36,21 @@ namespace Voussoir
   }
 
 
-  const BondTips *
-  Contact::find_tips(
-    const Discretization                            &discretization,
-    const std::function<double(const Grid::Cell &)> &young_modulus)
+  void
+  Contact::find_tips(const Solid &solid)
   {
     if (std::any_of(interfaces.surfaces.begin(),
                     interfaces.surfaces.end(),
                     [](const ContactSurface &surface) {
                       return surface.law->grows_from_tips();
                     }))
-      tips.emplace(discretization, interfaces, young_modulus);
+      tips.emplace(solid, interfaces);
+  }
+
+
+  BondTips *
+  Contact::bond_tips()
+  {
     return tips ? &*tips : nullptr;
   }
 
@@ -54,7 +58,8 @@ namespace Voussoir
   void
   Contact::begin_earthquake()
   {
-    in_earthquake = true;
+    if (tips)
+      tips->begin_earthquake();
   }
 
 
@@ -170,7 +175,7 @@ namespace Voussoir
             last_velocity[i][d] = v[d];
           }
       }
-    if (tips && in_earthquake)
+    if (tips)
       tips->update(state.step, interfaces);
     wall_time += std::chrono::steady_clock::now() - start;
     return result;
@@ -195,7 +200,9 @@ namespace Voussoir
         ContactPoint &point  = interfaces.points[k];
         const Slid   &before = before_approach[k];
         const bool    open   = point.status == ContactStatus::open;
+        const double  tip    = point.history.tip;
         point.history        = before.history;
+        point.history.tip    = tip;
         if (open)
           point.history.opening = std::max(point.history.opening, point.gap[0]);
         if (!open || point.limits.bond > 0.)

@@ -41,8 +41,8 @@ namespace Voussoir
           prm,
           "Crack growth",
           growth,
-          "Whether a point cracks by the strength of the bond alone, or, in the "
-          "earthquake, beside a cracked point by the lower strength ft / "
+          "Whether a point cracks by the strength of the bond alone, or "
+          "beside a cracked point by the lower strength ft / "
           "sqrt(1 + h ft^2 / (E Gf)) at a distance h of these points, with which "
           "cracks propagate at about the load of fracture mechanics in cells of "
           "any size. \"Local\" lets them propagate at too high a load where h is "

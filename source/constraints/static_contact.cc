@@ -92,8 +92,10 @@ namespace Voussoir
 
 
   StaticContact::StaticContact(InterfacePoints &interfaces,
-                               const Vector    &stiffness)
+                               const Vector    &stiffness,
+                               BondTips        *tips)
     : interfaces(interfaces)
+    , tips(tips)
     , multiplier(interfaces.points.size())
     , last_change(multiplier.size())
     , cohesion(multiplier.size())
@@ -281,7 +283,8 @@ namespace Voussoir
           {
             const InterfaceHistory now = history_at(k);
             point.history = {std::max(point.history.opening, now.opening),
-                             std::max(point.history.slip, now.slip)};
+                             std::max(point.history.slip, now.slip),
+                             point.history.tip};
           }
         interfaces.yield_bars(point);
         interfaces.update_limits(point);
@@ -313,6 +316,7 @@ namespace Voussoir
     const ContactPoint &point  = interfaces.points[k];
     const bool          open   = point.status == ContactStatus::open;
     InterfaceHistory    result = before[k].history;
+    result.tip                 = point.history.tip;
     if (!point.joined)
       return result;
     if (open)
@@ -322,6 +326,19 @@ namespace Voussoir
       result.slip += std::hypot(point.gap[1] - point.stick_point[0],
                                 point.gap[2] - point.stick_point[1]);
     return result;
+  }
+
+
+  bool
+  StaticContact::find_tips()
+  {
+    if (tips == nullptr)
+      return false;
+    std::vector<bool> cracked;
+    for (unsigned int k = 0; k < spring.size(); ++k)
+      cracked.push_back(interfaces.points[k].joined &&
+                        history_at(k).is_cracked());
+    return tips->weaken(cracked, interfaces);
   }
 
 

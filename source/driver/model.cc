@@ -259,10 +259,8 @@ namespace Voussoir
                "Hz acts with ",
                std::round(100. * at_5_hz),
                " %");
-      if (const BondTips *tips =
-            contact->find_tips(discretization, [&](const Grid::Cell &cell) {
-              return solid.material_of(cell).elastic_constants().young_modulus;
-            }))
+      contact->find_tips(solid);
+      if (const BondTips *tips = contact->bond_tips())
         log.line("At tips of cracks along interfaces the strength of the bond "
                  "is lowered to ",
                  std::round(100. * tips->smallest_factor(

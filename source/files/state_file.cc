@@ -18,7 +18,7 @@ namespace Voussoir
 
   namespace
   {
-    constexpr int format = 5; // since bonds may be weaker at tips of cracks
+    constexpr int format = 6; // since bonds are weaker at tips in static stages
 
 
     Bytes

@@ -11,24 +11,33 @@ namespace Voussoir
     constexpr double width = 99., height = 207., slit = 18.; // [m]
 
 
-    /** A plate, one cell of size h thick, with a slit from its left side at
-     *  half its height; the face sets "slit" and "ligament" cut it in two. */
+    /**
+     * A plate, one cell of size h thick, with a slit from its left side at half
+     * its height; the face sets "slit" and "ligament" cut it in two.
+     *
+     * @param head [m] above it, of another material and with face sets at its
+     *   ends; 0: none
+     */
     void
-    write_plate(const std::string &name, const double h)
+    write_plate(const std::string &name, const double h, const double head = 0.)
     {
       const unsigned int columns = std::lround(width / h),
-                         rows    = 2 * std::lround(0.5 * height / h);
-      SliceMesh mesh(columns, rows);
-      for (unsigned int j = 0; j < rows; ++j)
+                         rows    = 2 * std::lround(0.5 * height / h),
+                         all     = rows + std::lround(head / h);
+      SliceMesh mesh(columns, all);
+      for (unsigned int j = 0; j < all; ++j)
         for (unsigned int i = 0; i < columns; ++i)
           {
-            mesh.add_cell(1, i, j);
+            mesh.add_cell(j < rows ? 1 : 7, i, j);
             mesh.add_side(4, i, j, 0);
           }
+      for (unsigned int j = rows; j < all; ++j)
+        for (const unsigned int i : {0u, columns})
+          mesh.add_upright(8, i, j);
       for (unsigned int i = 0; i < columns; ++i)
         {
           mesh.add_level(2, i, 0);
-          mesh.add_level(3, i, rows);
+          mesh.add_level(3, i, all);
           mesh.add_level((i + 0.5) * h < slit ? 5 : 6, i, rows / 2);
         }
       mesh.write(name,
@@ -37,12 +46,19 @@ namespace Voussoir
                   {2, "top"},
                   {2, "side"},
                   {2, "slit"},
-                  {2, "ligament"}},
+                  {2, "ligament"},
+                  {3, "head"},
+                  {2, "ends"}},
                  h,
                  [&](const unsigned int i, const unsigned int j) {
                    return std::pair{i * h, j * height / rows};
                  });
     }
+
+
+    // by "tests/data/notched_plate_reference.py linear" with elements of 0.25
+    // and 0.125 m [MPa]
+    constexpr double fictitious_crack = 0.401;
 
 
     /** The stress at which a crack runs along an interface from a slit, in
@@ -61,9 +77,7 @@ namespace Voussoir
           Verdicts            &verdicts,
           const MPI_Comm       communicator) override
       {
-        // by "tests/data/notched_plate_reference.py linear" with elements of
-        // 0.25 and 0.125 m
-        constexpr double fictitious_crack = 0.401e6, fracture_energy = 350.;
+        constexpr double fracture_energy = 350.;
         for (const double h : sizes)
           {
             std::ostringstream size;
@@ -80,7 +94,7 @@ namespace Voussoir
             constexpr unsigned int ligament = 1; // surface
             verdicts.near("stress at which the crack runs" + size.str(),
                           1e-6 * pull.largest / (width * h),
-                          1e-6 * fictitious_crack,
+                          fictitious_crack,
                           0.08,
                           "MPa");
             verdicts.near("energy of the bond per area" + size.str(),
@@ -100,5 +114,56 @@ namespace Voussoir
     const Registry<Check>::Add<BondTips>
       registered("bond tips",
                  "Crack that runs along an interface from a slit.");
+
+
+    /** The same in the static state, under a force on a stiff head. */
+    class BondTipsAtRest : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Sizes", sizes, "Of the cells [m].");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        constexpr double head = 9.;                      // [m]
+        constexpr double step = 0.02 * fictitious_crack; // [MPa]
+        for (const double h : sizes)
+          {
+            std::ostringstream size;
+            size << ", cells of " << h << " m";
+            const std::string mesh = std::filesystem::current_path() /
+                                     ("bond at rest" + size.str() + ".msh");
+            if (Utilities::MPI::this_mpi_process(communicator) == 0)
+              write_plate(mesh, h, head);
+            MPI_Barrier(communicator);
+            double stress = 0.9 * fictitious_crack; // [MPa]
+            while (stands(
+              file.with({"Mesh/file/File=" + mesh,
+                         vector_entry("Loads/pull/Traction",
+                                      Tensor<1, 3>({0., 0., 1e6 * stress}))}),
+              communicator))
+              stress += step;
+            verdicts.near("largest stress in equilibrium" + size.str(),
+                          stress - 0.5 * step,
+                          fictitious_crack,
+                          0.08,
+                          "MPa");
+          }
+      }
+
+    private:
+      std::vector<double> sizes = {9., 4.5, 3.};
+    };
+
+    // Reference: other program
+    const Registry<Check>::Add<BondTipsAtRest> registered_at_rest(
+      "bond tips at rest",
+      "Crack that runs along an interface from a slit in the static state.");
   } // namespace
 } // namespace Voussoir

@@ -48,6 +48,17 @@ namespace Voussoir
           {node(i, j, 0), node(i + 1, j, 0), node(i + 1, j, 1), node(i, j, 1)});
     }
 
+    /** Adds the face of row j to the left of column i. */
+    void
+    add_upright(const unsigned int set,
+                const unsigned int i,
+                const unsigned int j)
+    {
+      add("3",
+          set,
+          {node(i, j, 0), node(i, j, 1), node(i, j + 1, 1), node(i, j + 1, 0)});
+    }
+
     /**
      * Writes the mesh in version 2.2 of Gmsh's format.
      *

@@ -66,6 +66,11 @@ namespace Voussoir
     find(Vector &displacement, MaterialMemory *memory);
 
   private:
+    /** Looks for an equilibrium until no crack along an interface has a new
+     *  tip in it. */
+    void
+    follow_cracks();
+
     /** Updates of the multipliers until the equilibrium is found. */
     void
     approach();

@@ -2,8 +2,7 @@
 #define voussoir_constraints_bond_tips_h
 
 #include <voussoir/constraints/interface_points.h>
-
-#include <functional>
+#include <voussoir/materials/solid.h>
 
 namespace Voussoir
 {
@@ -23,20 +22,28 @@ namespace Voussoir
   {
   public:
     /** Throws UserError, on all ranks, if these are more surfaces than it can
-     *  tell apart.
-     *  @param young_modulus of a cell [Pa] */
-    BondTips(const Discretization                            &discretization,
-             InterfacePoints                                 &points,
-             const std::function<double(const Grid::Cell &)> &young_modulus);
+     *  tell apart. */
+    BondTips(const Solid &solid, InterfacePoints &points);
 
     /** Smallest factor on the strength at a tip, on all ranks. */
     double
     smallest_factor(const InterfacePoints &points) const;
 
+    /** From now on the moduli are those of the earthquake. */
+    void
+    begin_earthquake();
+
     /** Finds new cracks after every fourth step, and weakens the intact points
      *  at their tips. Called on all ranks. */
     void
     update(const unsigned long long step, InterfacePoints &points);
+
+    /** Weakens the intact points at the tips of these cracks in an equilibrium;
+     *  those whose stress is higher break. Called on all ranks.
+     *  @param cracked of each point, whether a crack has reached it
+     *  @return whether there is a weaker point, on any rank */
+    bool
+    weaken(const std::vector<bool> &cracked, InterfacePoints &points);
 
   private:
     /** A node on the first side of a surface, and one beside it. */
@@ -50,9 +57,7 @@ namespace Voussoir
     };
 
     void
-    find_moduli(const Discretization                            &discretization,
-                InterfacePoints                                 &points,
-                const std::function<double(const Grid::Cell &)> &young_modulus);
+    find_moduli(const Solid &solid, InterfacePoints &points);
 
     void
     find_pairs(const InterfacePoints &points);
@@ -66,7 +71,17 @@ namespace Voussoir
     std::vector<double>
     distances(InterfacePoints &points, const std::vector<bool> &set);
 
-    std::vector<double>       modulus; // of the softer side of each point [Pa]
+    /** Finds the tips of these cracks. */
+    void
+    find_tips(const std::vector<bool> &cracked, InterfacePoints &points);
+
+    /** Factor on the strength of a point at its tip. */
+    double
+    strength_at_tip(const unsigned int k, const InterfacePoints &points) const;
+
+    // Young's modulus of the softer side of each point [Pa]
+    std::vector<double>       modulus, modulus_at_rest;
+    bool                      in_earthquake = false;
     std::vector<unsigned int> component; // of each point's surface at its node
     std::vector<double>       farthest;  // neighbour of each point [m]
     std::vector<double>       tip;       // distance of a cracked neighbour [m]
@@ -75,7 +90,7 @@ namespace Voussoir
     // one; of which the second continues the surface of the first
     std::vector<std::array<unsigned int, 2>> twins, continued;
     Vector                                   sets; // of surfaces, of each node
-    unsigned int n_cracked = 0;                    // points, at the last look
+    std::vector<bool> last_cracked;                // points, at the last look
   };
 } // namespace Voussoir
 

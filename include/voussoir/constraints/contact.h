@@ -39,14 +39,15 @@ namespace Voussoir
     set_delay(const Discretization                            &discretization,
               const std::function<double(const Grid::Cell &)> &wave_speed);
 
-    /** Finds where cracks along bonds can have tips; null if none grows from
-     *  its tips.
-     *  @param young_modulus of a cell [Pa] */
-    const BondTips *
-    find_tips(const Discretization                            &discretization,
-              const std::function<double(const Grid::Cell &)> &young_modulus);
+    /** Finds where cracks along bonds can have tips. */
+    void
+    find_tips(const Solid &solid);
 
-    /** From now on cracks grow from their tips where the law says so. */
+    /** Null if no crack along a bond grows from its tips. */
+    BondTips *
+    bond_tips();
+
+    /** From now on moduli are those of the earthquake. */
     void
     begin_earthquake();
 
@@ -169,7 +170,6 @@ namespace Voussoir
     InterfacePoints          interfaces;
     ContactSolver            solver;
     std::optional<BondTips>  tips;
-    bool                     in_earthquake = false;
     std::vector<PointMemory> point_memory;
 
     struct Slid

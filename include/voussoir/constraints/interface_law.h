@@ -13,6 +13,12 @@ namespace Voussoir
     double opening = 0.; // largest so far, with the initial gap [m]
     double slip    = 0.; // accumulated length of its path [m]
     double tip     = 1.; // factor on the strength of a bond ahead of a crack
+
+    bool
+    is_cracked() const
+    {
+      return opening > 0. || slip > 0.;
+    }
   };
 
   /** Resistance of a point of an interface. */

@@ -1,7 +1,7 @@
 #ifndef voussoir_constraints_static_contact_h
 #define voussoir_constraints_static_contact_h
 
-#include <voussoir/constraints/interface_points.h>
+#include <voussoir/constraints/bond_tips.h>
 
 namespace Voussoir
 {
@@ -18,8 +18,11 @@ namespace Voussoir
     /**
      * @param interfaces whose forces are found; must live as long as this
      * @param stiffness  of the body at the owned nodes [N/m], zero where fixed
+     * @param tips       of cracks along the interfaces, or null
      */
-    StaticContact(InterfacePoints &interfaces, const Vector &stiffness);
+    StaticContact(InterfacePoints &interfaces,
+                  const Vector    &stiffness,
+                  BondTips        *tips);
 
     /** A stage starts from the present forces and slips. */
     void
@@ -72,6 +75,11 @@ namespace Voussoir
     Change
     update();
 
+    /** Weakens the points at the tips of cracks in this equilibrium; returns
+     *  whether there are any that were not weak before, on all ranks. */
+    bool
+    find_tips();
+
     /** Updates the history of the points by opening and slip of this stage; the
      * slip of the next stage counts from here. */
     void
@@ -94,6 +102,7 @@ namespace Voussoir
     add_forces(Vector &force) const;
 
     InterfacePoints                  &interfaces;
+    BondTips                         *tips;
     std::vector<double>               spring; // of each point [N/m]
     std::vector<dealii::Tensor<1, 3>> multiplier, last_change;
     std::vector<double>               cohesion; // its multiplier [N]

@@ -1,3 +1,4 @@
+#include <voussoir/base/text.h>
 #include <voussoir/constraints/contact.h>
 #include <voussoir/driver/supervision.h>
 #include <voussoir/driver/verdict_tables.h>
@@ -152,9 +153,9 @@ namespace Voussoir
     if (effort.unsolved == 0)
       return;
     std::ostringstream text;
-    text << std::setprecision(3) << "the contact of " << effort.unsolved
-         << " clusters of nodes was not solved: gaps deviate from the laws of "
-            "their interfaces by up to "
+    text << std::setprecision(3) << "no solution was found for the contact of "
+         << counted(effort.unsolved, "cluster of nodes", "clusters of nodes")
+         << ": gaps deviate from the laws of the interfaces there by up to "
          << 100. * effort.residual
          << " % of the motion in a step; compare with a run with a smaller "
             "\"Safety factor\" in section \"Time\"";

@@ -205,7 +205,10 @@ namespace Voussoir
         point.history.tip    = tip;
         if (open)
           point.history.opening = std::max(point.history.opening, point.gap[0]);
-        if (!open || point.limits.bond > 0.)
+        // of a bond at the beginning, which may have broken since
+        if (!open || interfaces.surfaces[point.surface]
+                         .law->strength(before.history)
+                         .bond > 0.)
           point.history.slip += (point.stick_point - before.stick_point).norm();
         point.largest_slip =
           std::max(before.largest_slip, std::hypot(point.gap[1], point.gap[2]));

@@ -321,8 +321,9 @@ namespace Voussoir
       return result;
     if (open)
       result.opening = std::max(result.opening, point.gap[0]);
+    // of a bond at the beginning of the stage, which may have broken since
     if (point.status != ContactStatus::sticking && !point.limits.locked &&
-        (!open || point.limits.bond > 0.))
+        (!open || before[k].limits.bond > 0.))
       result.slip += std::hypot(point.gap[1] - point.stick_point[0],
                                 point.gap[2] - point.stick_point[1]);
     return result;

@@ -82,5 +82,41 @@ namespace Voussoir
     const Registry<Check>::Add<LostBond>
       registered("contact lost bond",
                  "A bond that breaks in a static stage stays broken.");
+
+
+    /** The same of a bond that breaks in shear while it is open: pushed aside,
+     *  the cooled bar has an opening too small to break the bond. */
+    class BondLostInShear : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Opening", opening, "L alpha T [m].");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        const auto parameters  = make_case(file);
+        const auto simulation  = make_simulation(*parameters, communicator);
+        const ContactSums sums = contact_sums(*simulation, 0);
+        verdicts.near("mean opening [mm]",
+                      1e3 * sums.opening,
+                      1e3 * opening,
+                      0.005);
+        verdicts.below("tension [Pa]", sums.pressure / sums.area, 1.);
+      }
+
+    private:
+      double opening = 0.;
+    };
+
+    // Reference: closed form
+    const Registry<Check>::Add<BondLostInShear> registered_in_shear(
+      "contact bond lost in shear",
+      "A bond that breaks in shear in a static stage stays broken.");
   } // namespace
 } // namespace Voussoir

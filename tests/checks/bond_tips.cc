@@ -19,7 +19,7 @@ namespace Voussoir
      *   ends; 0: none
      */
     void
-    write_plate(const std::string &name, const double h, const double head = 0.)
+    write_plate(const std::string &name, const double h, const double head)
     {
       const unsigned int columns = std::lround(width / h),
                          rows    = 2 * std::lround(0.5 * height / h),
@@ -56,6 +56,31 @@ namespace Voussoir
     }
 
 
+    std::string
+    size_text(const double h)
+    {
+      std::ostringstream text;
+      text << ", cells of " << h << " m";
+      return text.str();
+    }
+
+
+    /** Writes a plate in the current folder and returns the entry that reads
+     *  it. */
+    std::string
+    entry_of_plate(const double   h,
+                   const double   head,
+                   const MPI_Comm communicator)
+    {
+      const std::string name =
+        std::filesystem::current_path() / ("bond" + size_text(h) + ".msh");
+      if (Utilities::MPI::this_mpi_process(communicator) == 0)
+        write_plate(name, h, head);
+      MPI_Barrier(communicator);
+      return "Mesh/file/File=" + name;
+    }
+
+
     // by "tests/data/notched_plate_reference.py linear" with elements of 0.25
     // and 0.125 m [MPa]
     constexpr double fictitious_crack = 0.401;
@@ -80,24 +105,17 @@ namespace Voussoir
         constexpr double fracture_energy = 350.;
         for (const double h : sizes)
           {
-            std::ostringstream size;
-            size << ", cells of " << h << " m";
-            const std::string mesh =
-              std::filesystem::current_path() / ("bond" + size.str() + ".msh");
-            if (Utilities::MPI::this_mpi_process(communicator) == 0)
-              write_plate(mesh, h);
-            MPI_Barrier(communicator);
             const auto parameters =
-              make_case(file.with({"Mesh/file/File=" + mesh}));
+              make_case(file.with({entry_of_plate(h, 0., communicator)}));
             const auto simulation = make_simulation(*parameters, communicator);
             const Pull pull       = march_under_pull(*simulation, 0.05);
             constexpr unsigned int ligament = 1; // surface
-            verdicts.near("stress at which the crack runs" + size.str(),
+            verdicts.near("stress at which the crack runs" + size_text(h),
                           1e-6 * pull.largest / (width * h),
                           fictitious_crack,
                           0.08,
                           "MPa");
-            verdicts.near("energy of the bond per area" + size.str(),
+            verdicts.near("energy of the bond per area" + size_text(h),
                           contact_sums(*simulation, ligament).bond_work /
                             (h * (width - slit)),
                           fracture_energy,
@@ -135,21 +153,15 @@ namespace Voussoir
         constexpr double step = 0.02 * fictitious_crack; // [MPa]
         for (const double h : sizes)
           {
-            std::ostringstream size;
-            size << ", cells of " << h << " m";
-            const std::string mesh = std::filesystem::current_path() /
-                                     ("bond at rest" + size.str() + ".msh");
-            if (Utilities::MPI::this_mpi_process(communicator) == 0)
-              write_plate(mesh, h, head);
-            MPI_Barrier(communicator);
-            double stress = 0.9 * fictitious_crack; // [MPa]
+            const std::string plate  = entry_of_plate(h, head, communicator);
+            double            stress = 0.9 * fictitious_crack; // [MPa]
             while (stands(
-              file.with({"Mesh/file/File=" + mesh,
+              file.with({plate,
                          vector_entry("Loads/pull/Traction",
                                       Tensor<1, 3>({0., 0., 1e6 * stress}))}),
               communicator))
               stress += step;
-            verdicts.near("largest stress in equilibrium" + size.str(),
+            verdicts.near("largest stress in equilibrium" + size_text(h),
                           stress - 0.5 * step,
                           fictitious_crack,
                           0.08,

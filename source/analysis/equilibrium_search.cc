@@ -18,6 +18,7 @@ namespace Voussoir
 
   EquilibriumSearch::EquilibriumSearch(ElasticSolver       &solver,
                                        const InternalForce &internal_force,
+                                       StaticCracks        &cracks,
                                        const NodalTerms    *springs,
                                        const Vector        &force,
                                        const double         tolerance,
@@ -27,6 +28,7 @@ namespace Voussoir
     : solver(solver)
     , contact(solver.tangent_contact())
     , internal_force(internal_force)
+    , cracks(cracks)
     , springs(springs)
     , force(force)
     , tolerance(tolerance)
@@ -70,7 +72,7 @@ namespace Voussoir
         *displacement = start;
         secants.clear();
         if (memory != nullptr)
-          *memory = memory_before;
+          *memory = before_tips ? *before_tips : memory_before;
         if (contact != nullptr)
           contact->restore();
       }
@@ -82,13 +84,29 @@ namespace Voussoir
   EquilibriumSearch::follow_cracks()
   {
     approach();
-    while (effort.found && contact != nullptr && contact->find_tips())
+    while (effort.found && find_tips())
       {
         effort.found    = false;
         least_imbalance = std::numeric_limits<double>::max();
         last_gain       = effort.steps;
         approach();
       }
+  }
+
+
+  bool
+  EquilibriumSearch::find_tips()
+  {
+    const bool along_interfaces = contact != nullptr && contact->find_tips();
+    const bool in_cells =
+      memory != nullptr && cracks.propagate(*displacement, *memory);
+    if (in_cells)
+      {
+        if (!before_tips)
+          before_tips = memory_before;
+        memory_before.take_tips(*memory);
+      }
+    return along_interfaces || in_cells;
   }
 
 

@@ -57,6 +57,10 @@ namespace Voussoir
                      model.boundaries.supports_with_absorbing(
                        parameters.supports == StaticSupports::roller)))
     , damping(Damping::none())
+    , cracks(model.solid.discretization,
+             {materials.begin(), materials.end()},
+             internal_force,
+             damping)
   {
     state.displacement = state.force =
       model.solid.discretization.create_vector();
@@ -72,6 +76,7 @@ namespace Voussoir
     if (model.contact != nullptr || internal_force.has_memory())
       relaxation = std::make_unique<Relaxation>(model.solid.discretization,
                                                 internal_force,
+                                                cracks,
                                                 model.solid.mass,
                                                 model.terms,
                                                 constraints,
@@ -329,6 +334,7 @@ namespace Voussoir
     Vector displacement = before;
     displacement.sadd(0.5, 0.5, state.displacement);
     Vector in_two(displacement), at_once(displacement);
+    memory.take_tips(state.material_memory);
     internal_force.set_thermal_strain(middle.temperature, memory);
     internal_force.respond(in_two, displacement, memory);
     internal_force.set_thermal_strain(end.temperature, memory);
@@ -357,6 +363,7 @@ namespace Voussoir
     for (unsigned int n = 2; n <= max_steps; n *= 2)
       {
         MaterialMemory in_steps = memory;
+        in_steps.take_tips(state.material_memory);
         for (unsigned int i = 1; i <= n; ++i)
           {
             const double share = double(i) / n;
@@ -460,6 +467,7 @@ namespace Voussoir
     const EquilibriumSearch::Effort search =
       EquilibriumSearch(*solver,
                         internal_force,
+                        cracks,
                         on_springs ? &model.terms : nullptr,
                         force,
                         tolerance,

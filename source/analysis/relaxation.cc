@@ -37,6 +37,7 @@ namespace Voussoir
 
   Relaxation::Relaxation(const Discretization            &discretization,
                          const InternalForce             &internal_force,
+                         StaticCracks                    &cracks,
                          const LumpedMass                &mass_of_run,
                          const NodalTerms                &terms_of_run,
                          const AffineConstraints<double> &constraints,
@@ -44,6 +45,7 @@ namespace Voussoir
                          Contact                         *contact)
     : discretization(discretization)
     , internal_force(internal_force)
+    , cracks(cracks)
     , mass(mass_of_run)
     , terms(terms_of_run)
     , damping(Damping::none())
@@ -79,6 +81,8 @@ namespace Voussoir
       discretization, internal_force, mass, terms, damping, loaded};
     if (contact != nullptr)
       equation.projections.push_back(contact);
+    equation.crack_tips   = &cracks.tips;
+    equation.crack_planes = &cracks.planes;
     return std::make_unique<CentralDifference>(equation, LeapFrog{time_step});
   }
 

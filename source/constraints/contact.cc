@@ -37,7 +37,7 @@ namespace Voussoir
 
 
   void
-  Contact::find_tips(const Solid &solid)
+  Contact::prepare_tips(const Solid &solid)
   {
     if (std::any_of(interfaces.surfaces.begin(),
                     interfaces.surfaces.end(),

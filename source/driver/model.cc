@@ -259,7 +259,7 @@ namespace Voussoir
                "Hz acts with ",
                std::round(100. * at_5_hz),
                " %");
-      contact->find_tips(solid);
+      contact->prepare_tips(solid);
       if (const BondTips *tips = contact->bond_tips())
         log.line("At tips of cracks along interfaces the strength of the bond "
                  "is lowered to ",

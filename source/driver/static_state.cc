@@ -1,4 +1,5 @@
 #include <voussoir/driver/static_state.h>
+#include <voussoir/fem/crack_tips.h>
 
 namespace Voussoir
 {
@@ -41,7 +42,10 @@ namespace Voussoir
               const InternalForce &internal_force,
               Log                 &log)
   {
-    StaticState  static_state(std::move(found));
+    StaticState static_state(std::move(found));
+    CrackTips(model.solid.discretization,
+              {model.solid.materials.begin(), model.solid.materials.end()})
+      .take_over(static_state.initial.material_memory);
     const double dissipated = dealii::Utilities::MPI::sum(
       hand_over(static_state.initial, internal_force, model.terms),
       log.communicator());

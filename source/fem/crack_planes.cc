@@ -1,4 +1,5 @@
 #include <voussoir/fem/cell_neighbors.h>
+#include <voussoir/fem/crack_growth.h>
 #include <voussoir/fem/crack_planes.h>
 #include <voussoir/fem/trilinear_cells.h>
 
@@ -15,8 +16,6 @@ namespace Voussoir
 
   namespace
   {
-    constexpr unsigned int interval = 4; // [steps]
-
     constexpr double widest_band = 3.,    // over the size of the cell
       least_of_tip               = 0.005, // share of the stabilisation
       left_per_update            = 0.9,   // of it
@@ -107,11 +106,13 @@ namespace Voussoir
   CrackPlanes::CrackPlanes(const Discretization &discretization,
                            const std::vector<const CellKernel *> &kernels,
                            const InternalForce &internal_force,
-                           const Damping       &damping)
+                           const Damping       &damping,
+                           const bool           at_rest)
     : discretization(discretization)
     , kernels(kernels)
     , internal_force(internal_force)
     , damping(damping)
+    , at_rest(at_rest)
   {
     if (std::none_of(kernels.begin(), kernels.end(), [](const auto *kernel) {
           return kernel->cracks_along_planes();
@@ -142,10 +143,18 @@ namespace Voussoir
   void
   CrackPlanes::update(const double time_step, State &state)
   {
-    if (at_vertex.empty() || state.step % interval != 0)
-      return;
+    if (state.step % steps_between_looks == 0)
+      find(time_step, state);
+  }
+
+
+  bool
+  CrackPlanes::find(const double time_step, State &state)
+  {
     MaterialMemory &memory = state.material_memory;
-    Found           found  = find(memory);
+    if (at_vertex.empty() || memory.empty())
+      return false;
+    Found found = cells_to_update(memory);
 
     // whether any rank has something to do
     enum
@@ -168,7 +177,8 @@ namespace Voussoir
     Utilities::MPI::max(mine, discretization.grid.communicator(), any);
 
     if (any[cracks] == 0 && any[tips] == 0 && any[changing] == 0)
-      return;
+      return false;
+    const auto        n_tips = found.tips.size();
     const GhostValues ghosts(state.displacement);
     if (any[first] > 0)
       begin(found.first, state.displacement, memory);
@@ -180,6 +190,7 @@ namespace Voussoir
         for (const Crack &crack : now)
           strengthen(crack, memory);
       }
+    const bool has_new_tips = found.tips.size() > n_tips;
     turn(found,
          any[cracks] > 0 || any[shared_tips] > 0,
          state.displacement,
@@ -187,6 +198,7 @@ namespace Voussoir
     if (Utilities::MPI::logical_or(found.changes(),
                                    discretization.grid.communicator()))
       change_stabilisation(found, time_step, state);
+    return !found.first.empty() || has_new_tips || !found.releasing.empty();
   }
 
 
@@ -231,17 +243,22 @@ namespace Voussoir
     const bool is_first = planes.opening[0][lane] == 0. &&
                           planes.opening[1][lane] == 0. &&
                           planes.opening[2][lane] == 0.;
-    return is_crack && !is_first ? least :
-                                   std::max(least, left_per_update * now);
+    return at_rest || (is_crack && !is_first) ?
+             least :
+             std::max(least, left_per_update * now);
   }
 
 
   bool
   CrackPlanes::is_pressed(const Cell &cell, MaterialMemory &memory) const
   {
-    const auto [batch, lane] = discretization.place_of(cell);
+    // a crack without stress is not closed by round-off
+    constexpr double least_share = 1e-6;
+    const auto [batch, lane]     = discretization.place_of(cell);
     return pressure_on_crack(history_of(cell, memory).active_point(batch, 0),
-                             lane) > 0.;
+                             lane) >
+           least_share *
+             kernels[discretization.grid.material(cell)]->tensile_strength();
   }
 
 
@@ -254,7 +271,10 @@ namespace Voussoir
     const auto [batch, lane]    = discretization.place_of(cell);
     const PlanesOfBatch &planes = history_of(cell, memory).planes_of(batch);
     if (closes != (planes.closed[lane] > 0.))
-      found.switching.push_back(cell);
+      {
+        if (!at_rest)
+          found.switching.push_back(cell);
+      }
     else if (closes && planes.released[lane] > 0.)
       found.bearing.push_back(cell);
     else if (!closes &&
@@ -264,7 +284,7 @@ namespace Voussoir
 
 
   CrackPlanes::Found
-  CrackPlanes::find(MaterialMemory &memory) const
+  CrackPlanes::cells_to_update(MaterialMemory &memory) const
   {
     Found found;
     for (unsigned int m = 0; m < kernels.size(); ++m)
@@ -275,9 +295,13 @@ namespace Voussoir
         for (const auto &[cell, place] : history.cells())
           {
             const auto [batch, lane] = place;
-            const bool has_plane = history.planes_of(batch).width[lane] > 0.;
-            if (!has_plane && history.band(place, 0) == 0.)
+            const bool has_plane  = history.planes_of(batch).width[lane] > 0.;
+            const bool is_elastic = history.band(place, 0) == 0.;
+            if (!has_plane && is_elastic)
               continue;
+            // a crack that the search of an equilibrium has not kept
+            if (is_elastic)
+              history.tips_of(batch).run_on[lane] = 0.;
             if (history.tips_of(batch).run_on[lane] == 0.)
               {
                 if (is_cracked(cell, memory))
@@ -601,6 +625,9 @@ namespace Voussoir
         Tensor<1, 3>  parent;
         for (unsigned int d = 0; d < 3; ++d)
           parent[d] = history.planes_of(batch).parent[d][lane];
+        // of a first crack that was not kept
+        if (parent.norm() + direction.norm() == 0.)
+          continue;
         Tensor<1, 3> normal =
           parent + (direction * parent < 0. ? -1. : 1.) * direction;
         normal /= normal.norm();

@@ -58,12 +58,33 @@ namespace Voussoir
   void
   CrackTips::update(const unsigned long long step, MaterialMemory &memory) const
   {
-    if (step % steps_between_looks != 0 || !is_needed())
-      return;
+    if (step % steps_between_looks == 0)
+      find(memory);
+  }
+
+
+  bool
+  CrackTips::find(MaterialMemory &memory) const
+  {
+    if (!is_needed() || memory.empty())
+      return false;
     std::vector<Crack> cracks = new_cracks(memory);
     exchange(cracks);
+    bool is_weaker = false;
     for (const Crack &crack : cracks)
-      propagate(crack, memory);
+      is_weaker = propagate(crack, memory) || is_weaker;
+    return is_weaker;
+  }
+
+
+  void
+  CrackTips::take_over(MaterialMemory &memory) const
+  {
+    for (unsigned int m = 0; m < kernels.size(); ++m)
+      if (follows_tips[m])
+        for (const auto &[cell, place] : memory.of(m)->cells())
+          if (memory.of(m)->tip_strength(place.batch)[place.lane] < 1.)
+            weaken(cell, memory);
   }
 
 
@@ -127,27 +148,31 @@ namespace Voussoir
   }
 
 
-  void
+  bool
   CrackTips::propagate(const Crack &crack, MaterialMemory &memory) const
   {
-    const Point<3> centre = crack.cell->center();
+    const Point<3> centre    = crack.cell->center();
+    bool           is_weaker = false;
     for_each_neighbor(crack.cell, [&](const Cell &neighbor, const auto &face) {
       if (cuts(centre, crack.normal, face))
-        weaken(neighbor, memory);
+        is_weaker = weaken(neighbor, memory) || is_weaker;
     });
+    return is_weaker;
   }
 
 
-  void
+  bool
   CrackTips::weaken(const Cell &cell, MaterialMemory &memory) const
   {
     if (!cell->is_locally_owned())
-      return;
+      return false;
     const unsigned int material = discretization.grid.material(cell);
     if (!follows_tips[material])
-      return;
+      return false;
     const auto [batch, lane] = discretization.place_of(cell);
-    memory.of(material)->tips_of(batch).strength[lane] =
-      kernels[material]->tip_strength(std::cbrt(cell->measure()));
+    double      &strength = memory.of(material)->tips_of(batch).strength[lane];
+    const double before   = strength;
+    strength = kernels[material]->tip_strength(std::cbrt(cell->measure()));
+    return strength < before;
   }
 } // namespace Voussoir

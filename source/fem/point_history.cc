@@ -74,6 +74,19 @@ namespace Voussoir
   }
 
 
+  void
+  PointHistory::take_over_released(const unsigned int batch)
+  {
+    Lanes &released = planes_of(batch).released;
+    if (is_active(batch, 0))
+      for (unsigned int lane = 0; lane < Lanes::size(); ++lane)
+        if (tips_of(batch).run_on[lane] > 0.)
+          released[lane] =
+            std::max(released[lane], 1. - active_point(batch, 0).share[lane]);
+    stabilised_static(batch).released = released;
+  }
+
+
   const std::vector<std::pair<Discretization::Cell, PointHistory::Place>> &
   PointHistory::cells() const
   {
@@ -288,6 +301,14 @@ namespace Voussoir
     return material < histories.size() && !histories[material].empty() ?
              &histories[material] :
              nullptr;
+  }
+
+
+  void
+  MaterialMemory::take_tips(const MaterialMemory &other)
+  {
+    for (unsigned int m = 0; m < histories.size(); ++m)
+      histories[m].take_tips(other.histories[m]);
   }
 
 

@@ -3,8 +3,10 @@
 
 #include <voussoir/analysis/elastic_solver.h>
 #include <voussoir/analysis/secant_steps.h>
+#include <voussoir/analysis/static_cracks.h>
 
 #include <functional>
+#include <optional>
 
 namespace Voussoir
 {
@@ -39,6 +41,7 @@ namespace Voussoir
 
     /**
      * @param solver    with the interfaces, if there are any
+     * @param cracks    in cells
      * @param springs   of the absorbing boundary, or null if it is fixed
      * @param tolerance of the residual over the loads; that of the change of
      *   contact forces over all of these is ten times as large
@@ -49,6 +52,7 @@ namespace Voussoir
      */
     EquilibriumSearch(ElasticSolver       &solver,
                       const InternalForce &internal_force,
+                      StaticCracks        &cracks,
                       const NodalTerms    *springs,
                       const Vector        &force,
                       const double         tolerance,
@@ -66,10 +70,14 @@ namespace Voussoir
     find(Vector &displacement, MaterialMemory *memory);
 
   private:
-    /** Looks for an equilibrium until no crack along an interface has a new
-     *  tip in it. */
+    /** Looks for an equilibrium until no crack has a new tip in it. */
     void
     follow_cracks();
+
+    /** Finds new tips of cracks, in cells and along interfaces; returns whether
+     *  any rank has some. */
+    bool
+    find_tips();
 
     /** Updates of the multipliers until the equilibrium is found. */
     void
@@ -103,6 +111,7 @@ namespace Voussoir
     ElasticSolver       &solver;
     StaticContact       *contact; // null without interfaces
     const InternalForce &internal_force;
+    StaticCracks        &cracks;
     const NodalTerms    *springs;
     const Vector        &force;
     const double         tolerance;
@@ -111,14 +120,15 @@ namespace Voussoir
     const Report         report;
     double               size; // of the force on free entries
 
-    Vector         *displacement = nullptr;
-    MaterialMemory *memory       = nullptr;
-    MaterialMemory  memory_before;
-    Vector          residual, change, taken;
-    Effort          effort;
-    double          first_imbalance = 0.;
-    double          least_imbalance = std::numeric_limits<double>::max();
-    unsigned int    last_gain       = 0; // step of the least imbalance
+    Vector                       *displacement = nullptr;
+    MaterialMemory               *memory       = nullptr;
+    MaterialMemory                memory_before;
+    std::optional<MaterialMemory> before_tips; // none: no new tips
+    Vector                        residual, change, taken;
+    Effort                        effort;
+    double                        first_imbalance = 0.;
+    double       least_imbalance = std::numeric_limits<double>::max();
+    unsigned int last_gain       = 0; // step of the least imbalance
   };
 } // namespace Voussoir
 

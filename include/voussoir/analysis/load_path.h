@@ -4,6 +4,7 @@
 #include <voussoir/analysis/elastic_solver.h>
 #include <voussoir/analysis/relaxation.h>
 #include <voussoir/analysis/secant_steps.h>
+#include <voussoir/analysis/static_cracks.h>
 #include <voussoir/analysis/static_state.h>
 #include <voussoir/output/observer.h>
 
@@ -174,6 +175,7 @@ namespace Voussoir
     const bool                              on_springs;
     const dealii::AffineConstraints<double> constraints;
     const Damping                           damping; // none
+    StaticCracks                            cracks;
     std::unique_ptr<ElasticSolver>          solver;
     std::unique_ptr<Relaxation>
                           relaxation;    // with contact or internal variables

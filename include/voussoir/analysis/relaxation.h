@@ -1,6 +1,7 @@
 #ifndef voussoir_analysis_relaxation_h
 #define voussoir_analysis_relaxation_h
 
+#include <voussoir/analysis/static_cracks.h>
 #include <voussoir/base/log.h>
 #include <voussoir/constraints/contact.h>
 #include <voussoir/time/central_difference.h>
@@ -19,7 +20,7 @@ namespace Voussoir
   {
   public:
     /**
-     * @param internal_force of the static stage
+     * @param internal_force of the static stage, as are the cracks in cells
      * @param mass        of the run; nodes that the static stage fixes get none
      * @param terms       of the run
      * @param constraints of hanging nodes and nodes that the static stage fixes
@@ -27,6 +28,7 @@ namespace Voussoir
      */
     Relaxation(const Discretization                    &discretization,
                const InternalForce                     &internal_force,
+               StaticCracks                            &cracks,
                const LumpedMass                        &mass,
                const NodalTerms                        &terms,
                const dealii::AffineConstraints<double> &constraints,
@@ -79,6 +81,7 @@ namespace Voussoir
 
     const Discretization &discretization;
     const InternalForce  &internal_force;
+    StaticCracks         &cracks;
     LumpedMass            mass;
     NodalTerms            terms;
     Damping               damping;

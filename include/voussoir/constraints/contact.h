@@ -39,9 +39,9 @@ namespace Voussoir
     set_delay(const Discretization                            &discretization,
               const std::function<double(const Grid::Cell &)> &wave_speed);
 
-    /** Finds where cracks along bonds can have tips. */
+    /** Prepares the search for tips of cracks along bonds. */
     void
-    find_tips(const Solid &solid);
+    prepare_tips(const Solid &solid);
 
     /** Null if no crack along a bond grows from its tips. */
     BondTips *

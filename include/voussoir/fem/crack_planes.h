@@ -27,13 +27,14 @@ namespace Voussoir
    * - Other cells whose centre is within 1.6 h of a cracked cell have twice the
    *   strength of the material, so that the band stays one cell wide.
    * - The stabilisation is released: by a tenth at each update ahead of a
-   *   crack, down to 1/200, and in first cracks, down to their stiffness; in
-   *   other cracks with their stiffness. The energy that it has stored is lost
-   *   to the crack. Where a crack is pressed together, and ahead of a crack
-   *   where the pressure on the plane exceeds the tensile strength, the
-   *   released share acts again on what the cell bends from then on: in a crack
-   *   with stresses up to the pressure, beyond which its faces part at one
-   *   side. What is lost in this counts as lost by closing.
+   *   crack, down to 1/200, and in first cracks, down to their stiffness, both
+   *   at once in the static state; in other cracks with their stiffness. The
+   *   energy that it has stored is lost to the crack. In the earthquake, where
+   *   a crack is pressed together, and ahead of a crack where the pressure on
+   *   the plane exceeds the tensile strength, the released share acts again on
+   *   what the cell bends from then on: in a crack with stresses up to the
+   *   pressure, beyond which its faces part at one side. What is lost in this
+   *   counts as lost by closing.
    *
    * doc/damage.md has the trials behind these rules. Cracks do not propagate
    * across joints, whose two sides are no neighbours in the mesh. All that
@@ -43,16 +44,23 @@ namespace Voussoir
   {
   public:
     /** @param kernels of each material
+     *  @param at_rest whether they are those of the static state
      *  Arguments must live as long as this. */
     CrackPlanes(const Discretization                  &discretization,
                 const std::vector<const CellKernel *> &kernels,
                 const InternalForce                   &internal_force,
-                const Damping                         &damping);
+                const Damping                         &damping,
+                const bool                             at_rest = false);
 
     /** After every fourth step, of this length [s]: finds new cracks, extends
      *  them, and releases stabilisation. */
     void
     update(const double time_step, State &state);
+
+    /** The same at once; returns whether an own cell has a new plane or less
+     *  stabilisation. Called on all ranks. */
+    bool
+    find(const double time_step, State &state);
 
   private:
     using Cell = Discretization::Cell;
@@ -129,7 +137,7 @@ namespace Voussoir
                 Found          &found) const;
 
     Found
-    find(MaterialMemory &memory) const;
+    cells_to_update(MaterialMemory &memory) const;
 
     const Surroundings &
     around(const Cell &cell);
@@ -197,6 +205,7 @@ namespace Voussoir
     std::vector<const CellKernel *> kernels;
     const InternalForce            &internal_force;
     const Damping                  &damping;
+    const bool                      at_rest;
 
     // of each vertex of cells that can have planes: cells of this rank and its
     // ghost cells

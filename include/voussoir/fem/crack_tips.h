@@ -31,6 +31,17 @@ namespace Voussoir
     void
     update(const unsigned long long step, MaterialMemory &memory) const;
 
+    /** Finds new cracks and weakens the cells at their tips; returns whether
+     *  any own cell has become weaker. Called on all ranks.
+     *  @param memory empty: materials are elastic */
+    bool
+    find(MaterialMemory &memory) const;
+
+    /** Gives the cells that have been at a tip in the static state the strength
+     *  of these kernels. */
+    void
+    take_over(MaterialMemory &memory) const;
+
   private:
     using Cell = Discretization::Cell;
 
@@ -52,12 +63,14 @@ namespace Voussoir
     void
     exchange(std::vector<Crack> &cracks) const;
 
-    /** Weakens the neighbours that the plane of the crack enters. */
-    void
+    /** Weakens the neighbours that the plane of the crack enters; returns
+     *  whether any own cell has become weaker. */
+    bool
     propagate(const Crack &crack, MaterialMemory &memory) const;
 
-    /** Gives an own cell the strength of a tip. */
-    void
+    /** Gives an own cell the strength of a tip; returns whether it has become
+     *  weaker. */
+    bool
     weaken(const Cell &cell, MaterialMemory &memory) const;
 
     const Discretization           &discretization;

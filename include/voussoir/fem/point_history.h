@@ -213,6 +213,15 @@ namespace Voussoir
       return tips[points->slot_of_batch[batch]];
     }
 
+    /** Takes over tips and planes of cracks from another history of the same
+     *  points. */
+    void
+    take_tips(const PointHistory &other)
+    {
+      tips   = other.tips;
+      planes = other.planes;
+    }
+
     /** Lets cracks have planes; for cells with one point. */
     void
     make_planes();
@@ -236,10 +245,12 @@ namespace Voussoir
     }
 
     /** Stabilised strains of the static state: of its displacement, and the
-     *  elastic one times the static factor. */
+     *  elastic one times the static factor; and the share of the stabilisation
+     *  that cracks had released there. */
     struct StabilisedStatic
     {
-      StabilisedFields<Lanes> strain, elastic;
+      StabilisedFields<Lanes> strain = {}, elastic = {};
+      Lanes                   released = 0.;
     };
 
     /** Of cells whose cracks have planes, after a static state. */
@@ -254,6 +265,25 @@ namespace Voussoir
     {
       return static_strains->stabilised[points->slot_of_batch[batch]];
     }
+
+    /** Share of the released stabilisation of a batch that cracks have released
+     *  since the static state, in which it had the stress of that state. */
+    Lanes
+    released_since_static_state(const unsigned int batch) const
+    {
+      const Lanes now = planes_of(batch).released, zero = 0.,
+                  at_rest = stabilised_static(batch).released;
+      return dealii::compare_and_apply_mask<
+        dealii::SIMDComparison::less_than_or_equal>(now,
+                                                    at_rest,
+                                                    zero,
+                                                    (now - at_rest) / now);
+    }
+
+    /** Begins a run with the stabilisation that the cracks of the static state
+     *  have released, in the moduli of the run. */
+    void
+    take_over_released(const unsigned int batch);
 
     /** Strain offset e_0, which is added to the strain of the displacement in
      *  the law; see DampedResponse. */
@@ -411,6 +441,11 @@ namespace Voussoir
 
     const PointHistory *
     of(const unsigned int material) const;
+
+    /** Takes over tips and planes of cracks from another state of the same
+     *  case. */
+    void
+    take_tips(const MaterialMemory &other);
 
     /** Whether no material has internal variables. */
     bool

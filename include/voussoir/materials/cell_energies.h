@@ -120,7 +120,7 @@ namespace Voussoir
      * Energy of the share r of the stabilisation that is released, beside that
      * of the rest [J], for stabilised strains e of the displacement since the
      * static state and e_v of the velocity: less the static energy,
-     *   - r s_s : (e - dt/2 e_v + e_s/2) ,
+     *   - (r - r_s) s_s : (e - dt/2 e_v + e_s/2) ,
      * and where the crack is closed, with z = e - e_closing,
      *   r k/2 z : D : (z - dt e_v) .
      *
@@ -145,12 +145,13 @@ namespace Voussoir
       Lanes                   energy        = 0.;
       if (history.has_static_strains())
         {
-          const auto &[at_rest, elastic] = history.stabilised_static(batch);
-          StabilisedFields<Lanes> middle = strain;
+          const auto             &at_rest = history.stabilised_static(batch);
+          StabilisedFields<Lanes> middle  = strain;
           middle.add(-0.5 * dt, velocity);
-          middle.add(0.5, elastic);
-          energy -= work(elastic, middle);
-          since_closing.add(1., at_rest);
+          middle.add(0.5, at_rest.elastic);
+          energy -= history.released_since_static_state(batch) *
+                    work(at_rest.elastic, middle);
+          since_closing.add(1., at_rest.strain);
         }
       since_closing.add(-1., planes.at_closing);
       StabilisedFields<Lanes> before = since_closing;

@@ -140,9 +140,10 @@ namespace Voussoir
       if (history.has_static_strains())
         {
           // forces are those beyond the static state
-          const auto &[strain, elastic] = history.stabilised_static(batch);
-          kept.add(stress_factor, strain);
-          kept.add(-1., elastic);
+          const auto &at_rest = history.stabilised_static(batch);
+          kept.add(stress_factor, at_rest.strain);
+          kept.add(-history.released_since_static_state(batch),
+                   at_rest.elastic);
         }
       cell.scale_stabilisation(1. - planes.released);
       cell.add_stabilisation(planes.released,
@@ -346,11 +347,12 @@ namespace Voussoir
               if (history.has_planes())
                 {
                   warmth.expand(expansion);
-                  auto &[own, elastic] = history.stabilised_static(batch);
-                  own                  = cell.stabilised_strain();
-                  elastic              = {};
-                  elastic.add(static_factor, own);
-                  elastic.add(-static_factor, warmth.stabilised_strain());
+                  auto &at_rest   = history.stabilised_static(batch);
+                  at_rest.strain  = cell.stabilised_strain();
+                  at_rest.elastic = {};
+                  at_rest.elastic.add(static_factor, at_rest.strain);
+                  at_rest.elastic.add(-static_factor,
+                                      warmth.stabilised_strain());
                 }
             for (const unsigned int q : cell.quadrature_point_indices())
               response.set_static_state(cell.get_symmetric_gradient(q),
@@ -360,6 +362,8 @@ namespace Voussoir
                                         batch,
                                         q,
                                         history);
+            if (history.has_planes())
+              history.take_over_released(batch);
           }
       });
     }

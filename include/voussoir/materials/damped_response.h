@@ -527,9 +527,13 @@ namespace Voussoir
         if (last.band[lane] == 0. && planes.width[lane] > 0.)
           {
             now.band[lane] = planes.width[lane];
+            dealii::Tensor<1, 3> normal;
             for (unsigned int d = 0; d < 3; ++d)
-              now.normal[d][lane] = situation.crack_normal[d][lane] =
-                planes.opening[d][lane];
+              normal[d] = planes.opening[d][lane];
+            if (normal.norm() > 0.) // a first crack has that of the law
+              for (unsigned int d = 0; d < 3; ++d)
+                now.normal[d][lane] = situation.crack_normal[d][lane] =
+                  normal[d];
           }
       situation.element_length = now.band;
     }

@@ -36,7 +36,9 @@ namespace Voussoir
    *
    * A crack that begins at the tip of another one has a factor f on its
    * strength and 1/f on its openings: at the strain e in a band of width l it
-   * has f times the stress that the curve itself has at e/f in a band f^2 l.
+   * has f times the stress that the curve itself has at e/f in a band f^2 l. In
+   * the static state f is that of the tip at once, also where the stress is
+   * higher: a crack that began at this stress would be in unstable equilibrium.
    *
    * The history begins with the internal variables of the two curves, the
    * normal of the crack, and its f if cracks grow from tips.
@@ -47,6 +49,7 @@ namespace Voussoir
     CrackDirection crack_direction = CrackDirection::rotating;
     double         crack_friction  = 0.4;
     CrackGrowth    crack_growth    = CrackGrowth::local;
+    bool           is_at_rest      = false; // law of the static state
 
     /** @param sign 0: tension, 1: compression */
     const SofteningCurve &
@@ -78,14 +81,14 @@ namespace Voussoir
         prm,
         "Crack growth",
         crack_growth,
-        "Whether a cell cracks by the tensile strength alone, or, in the "
-        "earthquake, also by the lower strength ft / sqrt(1 + h ft^2 / (E "
-        "Gf)) of a cell of size h that the plane of a crack runs into, with "
-        "which cracks run at about the load of fracture mechanics in cells "
-        "of any size. \"Along planes\", for cells with one integration point, "
-        "continues each crack as a plane from cell to cell, in the direction "
-        "of the stress there, so that its path does not follow the rows of "
-        "cells; cells beside a crack have twice the strength.");
+        "Whether a cell cracks by the tensile strength alone, or also by the "
+        "lower strength ft / sqrt(1 + h ft^2 / (E Gf)) of a cell of size h "
+        "that the plane of a crack runs into, with which cracks run at about "
+        "the load of fracture mechanics in cells of any size. \"Along planes\", "
+        "for cells with one integration point, continues each crack as a plane "
+        "from cell to cell, in the direction of the stress there, so that its "
+        "path does not follow the rows of cells; cells beside a crack have "
+        "twice the strength.");
     }
 
     TensileFailure
@@ -126,13 +129,14 @@ namespace Voussoir
     set_static(const double factor, const double strength_increase = 1.)
     {
       IsotropicElasticity::set_static(factor);
-      tension = tension.of_static_state(young_modulus, strength_increase);
+      is_at_rest = true;
+      tension    = tension.of_static_state(young_modulus, strength_increase);
       compression =
         compression.of_static_state(young_modulus, strength_increase);
     }
 
     /** Stress and inelastic strain e - C^-1 : sigma are kept, and so are the
-     *  openings of cracks. */
+     *  openings of cracks and their factor f. */
     SymmetricTensor3<double>
     hand_over(const SymmetricTensor3<double> &strain,
               const PointResponse<double>    &response,
@@ -146,10 +150,11 @@ namespace Voussoir
           if (numbers[0] == 0.)
             continue;
           const DamageHandedOver now(damage_of(history, sign), static_factor);
-          CurveMemory            memory{};
+          const double factor = sign == 0 ? factor_of_crack(history) : 1.;
+          CurveMemory  memory{};
           curve(sign).hand_over(now.damage,
                                 numbers[2] * now.strain_factor,
-                                element_length,
+                                factor * factor * element_length,
                                 memory);
           numbers[0] = memory.largest;
           numbers[1] = memory.position;
@@ -182,6 +187,14 @@ namespace Voussoir
     damage_of(const double *history, const unsigned int sign)
     {
       return history[n_of_curve * sign + 3];
+    }
+
+    /** The factor f of a crack. */
+    static double
+    factor_of_crack(const double *history)
+    {
+      const double kept = history[strength_at];
+      return kept > 0. ? kept : 1.;
     }
 
     /**
@@ -286,7 +299,9 @@ namespace Voussoir
       const Number zero = 0., one = 1.;
       const Number now =
         strength_where_tip_arrives(situation.tip_strength,
-                                   tension.yield_ratio(equivalent, zero));
+                                   is_at_rest ?
+                                     zero :
+                                     tension.yield_ratio(equivalent, zero));
       Number      &kept = history[strength_at];
       const Number factor =
         compare_and_apply_mask<Comparison::equal>(kept, zero, now, kept);
@@ -312,7 +327,7 @@ namespace Voussoir
     double
     largest_opening(const double *history, const double element_length) const
     {
-      const double kept = history[strength_at], factor = kept > 0. ? kept : 1.;
+      const double factor = factor_of_crack(history);
       return factor * element_length *
              tension.at(history[0], factor * factor * element_length).inelastic;
     }

@@ -323,6 +323,8 @@ namespace Voussoir
   {
     for (const auto &[name, size] : header.at("sizes of files").items())
       {
+        if (size == 0) // no file yet, as of a list of pictures without any
+          continue;
         const std::string file = chosen + "/" + name;
         std::error_code   problem;
         const auto        now = fs::file_size(file, problem);

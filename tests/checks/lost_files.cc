@@ -162,6 +162,19 @@ namespace Voussoir
             "--restart.");
         go_on(
           "nothing changed", [] {}, "done");
+
+        // the list of pictures has no file before the first one
+        const ParameterFile without =
+          file.with({"Output/fields/Interval=0", "Output/fields/Times="});
+        remove_folders({"restart"}, communicator);
+        march(without, "nothing", "restart", communicator);
+        verdicts.same_text("restart, no picture yet",
+                           march(without.with({"Time/End time=0.2"}),
+                                 "nothing",
+                                 "restart",
+                                 communicator,
+                                 true),
+                           "done");
       }
 
     private:

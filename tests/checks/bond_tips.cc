@@ -72,12 +72,10 @@ namespace Voussoir
                    const double   head,
                    const MPI_Comm communicator)
     {
-      const std::string name =
-        std::filesystem::current_path() / ("bond" + size_text(h) + ".msh");
-      if (Utilities::MPI::this_mpi_process(communicator) == 0)
-        write_plate(name, h, head);
-      MPI_Barrier(communicator);
-      return "Mesh/file/File=" + name;
+      return entry_of_mesh(
+        "bond" + size_text(h) + ".msh",
+        [&](const std::string &name) { write_plate(name, h, head); },
+        communicator);
     }
 
 
@@ -152,21 +150,16 @@ namespace Voussoir
         constexpr double head = 9.;                      // [m]
         constexpr double step = 0.02 * fictitious_crack; // [MPa]
         for (const double h : sizes)
-          {
-            const std::string plate  = entry_of_plate(h, head, communicator);
-            double            stress = 0.9 * fictitious_crack; // [MPa]
-            while (stands(
-              file.with({plate,
-                         vector_entry("Loads/pull/Traction",
-                                      Tensor<1, 3>({0., 0., 1e6 * stress}))}),
-              communicator))
-              stress += step;
-            verdicts.near("largest stress in equilibrium" + size_text(h),
-                          stress - 0.5 * step,
-                          fictitious_crack,
-                          0.08,
-                          "MPa");
-          }
+          verdicts.near(
+            "largest stress in equilibrium" + size_text(h),
+            largest_standing_pull(file,
+                                  entry_of_plate(h, head, communicator),
+                                  0.9 * fictitious_crack,
+                                  step,
+                                  communicator),
+            fictitious_crack,
+            0.08,
+            "MPa");
       }
 
     private:

@@ -1,8 +1,10 @@
 #include "crack_line.h"
 
 #include <deque>
+#include <filesystem>
 
 #include "check.h"
+#include "contact_sums.h"
 
 namespace Voussoir
 {
@@ -79,5 +81,49 @@ namespace Voussoir
         keep_largest(pull.largest, pull.last);
       }
     return pull;
+  }
+
+
+  std::string
+  entry_of_mesh(const std::string                              &name,
+                const std::function<void(const std::string &)> &write,
+                const MPI_Comm                                  communicator)
+  {
+    const std::string file = std::filesystem::current_path() / name;
+    if (Utilities::MPI::this_mpi_process(communicator) == 0)
+      write(file);
+    MPI_Barrier(communicator);
+    return "Mesh/file/File=" + file;
+  }
+
+
+  double
+  largest_standing_pull(const ParameterFile &file,
+                        const std::string   &mesh_entry,
+                        const double         first,
+                        const double         step,
+                        const MPI_Comm       communicator)
+  {
+    double stress = first;
+    while (
+      stands(file.with({mesh_entry,
+                        vector_entry("Loads/pull/Traction",
+                                     Tensor<1, 3>({0., 0., 1e6 * stress}))}),
+             communicator))
+      stress += step;
+    return stress - 0.5 * step;
+  }
+
+
+  double
+  fastest_in_steps(Run &run)
+  {
+    double fastest = 0.;
+    for (unsigned int i = 0; i < 200; ++i)
+      {
+        run.scheme.step(run.state);
+        keep_largest(fastest, largest_entry(run.state.velocity));
+      }
+    return fastest;
   }
 } // namespace Voussoir

@@ -29,6 +29,32 @@ namespace Voussoir
 
   Pull
   march_under_pull(Simulation &simulation, const double window);
+
+
+  /** Writes a mesh in the current folder, on the first rank, and returns the
+   *  entry that reads it.
+   *
+   *  @param write gets the name of the file */
+  std::string
+  entry_of_mesh(const std::string                              &name,
+                const std::function<void(const std::string &)> &write,
+                const MPI_Comm                                  communicator);
+
+
+  /** The largest traction in z of the load "pull" under which a case has a
+   *  static state, in the middle between the last one with and the first one
+   *  without it [MPa]. */
+  double
+  largest_standing_pull(const ParameterFile &file,
+                        const std::string   &mesh_entry,
+                        const double         first,
+                        const double         step,
+                        const MPI_Comm       communicator);
+
+
+  /** The largest velocity in 200 steps of a run [m/s]. */
+  double
+  fastest_in_steps(Run &run);
 } // namespace Voussoir
 
 #endif

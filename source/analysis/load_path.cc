@@ -2,6 +2,7 @@
 #include <voussoir/analysis/load_path.h>
 #include <voussoir/analysis/lost_equilibrium.h>
 #include <voussoir/base/text.h>
+#include <voussoir/fem/notches.h>
 
 #include <iomanip>
 
@@ -65,6 +66,9 @@ namespace Voussoir
     state.displacement = state.force =
       model.solid.discretization.create_vector();
     state.material_memory = internal_force.new_memory();
+    weaken_at_notches(model.solid.discretization,
+                      {materials.begin(), materials.end()},
+                      state.material_memory);
   }
 
 

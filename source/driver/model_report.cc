@@ -1,6 +1,7 @@
 // Boundary and materials of a model in the log.
 
 #include <voussoir/driver/model.h>
+#include <voussoir/fem/notches.h>
 
 #include <algorithm>
 #include <iomanip>
@@ -81,6 +82,53 @@ namespace Voussoir
            << " m; it is below half in cells larger than " << halves << " m.";
       return text.str();
     }
+
+
+    struct CellsAtNotches
+    {
+      unsigned long long number   = 0;
+      double             strength = 1.; // the lowest, over that of the material
+    };
+
+
+    /** Of each material. */
+    std::vector<CellsAtNotches>
+    cells_at_notches(const Grid                          &grid,
+                     const std::vector<const Material *> &materials)
+    {
+      const std::vector<double> strength =
+        strength_at_notches(grid, {materials.begin(), materials.end()});
+      std::vector<CellsAtNotches> found(materials.size());
+      for (const auto &cell : grid.triangulation().active_cell_iterators())
+        if (cell->is_locally_owned())
+          if (const double factor = strength[grid.owned_cell(cell)];
+              factor < 1.)
+            {
+              CellsAtNotches &of_material = found[grid.material(cell)];
+              ++of_material.number;
+              of_material.strength = std::min(of_material.strength, factor);
+            }
+      for (CellsAtNotches &of_material : found)
+        {
+          of_material.number =
+            Utilities::MPI::sum(of_material.number, grid.communicator());
+          of_material.strength =
+            Utilities::MPI::min(of_material.strength, grid.communicator());
+        }
+      return found;
+    }
+
+
+    std::string
+    remark_on_notches(const CellsAtNotches &cells)
+    {
+      std::ostringstream text;
+      text << std::setprecision(3) << "at notches, where outer faces meet at "
+           << "more than 200 degrees, " << cells.number
+           << " cells have a tensile strength lowered to "
+           << 100. * cells.strength << " % at least.";
+      return text.str();
+    }
   } // namespace
 
 
@@ -105,10 +153,15 @@ namespace Voussoir
     };
     if (std::none_of(materials.begin(), materials.end(), grows))
       return notes;
-    const std::vector<Range> sizes = cell_sizes(grid, materials.size());
+    const std::vector<Range> sizes      = cell_sizes(grid, materials.size());
+    const auto               at_notches = cells_at_notches(grid, materials);
     for (unsigned int m = 0; m < materials.size(); ++m)
-      if (grows(materials[m]) && sizes[m].largest > 0.)
-        notes[m].push_back(remark_on_tips(*materials[m], sizes[m]));
+      {
+        if (grows(materials[m]) && sizes[m].largest > 0.)
+          notes[m].push_back(remark_on_tips(*materials[m], sizes[m]));
+        if (at_notches[m].number > 0)
+          notes[m].push_back(remark_on_notches(at_notches[m]));
+      }
     return notes;
   }
 

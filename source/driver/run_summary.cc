@@ -513,11 +513,11 @@ namespace Voussoir
       text << "Time of the cells: largest " << *summary.march->balance
            << " of the mean of the ranks\n";
     for (const auto &[name, material] : summary.march->materials.items())
-      if (const char *cells = "cells at tips of cracks";
+      if (const char *cells = "cells at tips of cracks and notches";
           material.contains(cells))
         text << "Material " << name << ": "
-             << material.at(cells).get<unsigned long long>()
-             << " cells at tips of cracks had a lower tensile strength\n";
+             << material.at(cells).get<unsigned long long>() << ' ' << cells
+             << " had a lower tensile strength\n";
     for (const auto &[name, table] : tables_of(summary))
       text << description(name, *table);
     text << "Verdict: " << summary.verdict() << '\n';

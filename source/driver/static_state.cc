@@ -1,11 +1,28 @@
 #include <voussoir/driver/static_state.h>
 #include <voussoir/fem/crack_tips.h>
+#include <voussoir/fem/notches.h>
 
 namespace Voussoir
 {
+  namespace
+  {
+    std::vector<const CellKernel *>
+    kernels_at_rest(const Model &model)
+    {
+      std::vector<const CellKernel *> kernels;
+      for (const Material *material : model.solid.materials)
+        kernels.push_back(&material->at_rest());
+      return kernels;
+    }
+  } // namespace
+
+
   StaticState::StaticState(const Model &model)
   {
     initial.material_memory = model.solid.internal_force.new_memory();
+    weaken_at_notches(model.solid.discretization,
+                      kernels_at_rest(model),
+                      initial.material_memory);
     if (model.contact)
       contact.emplace(*model.contact);
   }
@@ -45,7 +62,7 @@ namespace Voussoir
     StaticState static_state(std::move(found));
     CrackTips(model.solid.discretization,
               {model.solid.materials.begin(), model.solid.materials.end()})
-      .take_over(static_state.initial.material_memory);
+      .take_over(kernels_at_rest(model), static_state.initial.material_memory);
     const double dissipated = dealii::Utilities::MPI::sum(
       hand_over(static_state.initial, internal_force, model.terms),
       log.communicator());

@@ -1,6 +1,7 @@
 #include <voussoir/fem/cell_neighbors.h>
 #include <voussoir/fem/crack_growth.h>
 #include <voussoir/fem/crack_tips.h>
+#include <voussoir/fem/notches.h>
 
 #include <deal.II/grid/grid_tools.h>
 
@@ -78,13 +79,27 @@ namespace Voussoir
 
 
   void
-  CrackTips::take_over(MaterialMemory &memory) const
+  CrackTips::take_over(const std::vector<const CellKernel *> &of_static_state,
+                       MaterialMemory                        &memory) const
   {
+    if (memory.empty())
+      return;
+    const std::vector<double> before = strength_at_notches(discretization.grid,
+                                                           of_static_state),
+                              now    = strength_at_notches(discretization.grid,
+                                                        kernels);
     for (unsigned int m = 0; m < kernels.size(); ++m)
-      if (follows_tips[m])
+      if (kernels[m]->tip_strength(1.) < 1.)
         for (const auto &[cell, place] : memory.of(m)->cells())
-          if (memory.of(m)->tip_strength(place.batch)[place.lane] < 1.)
-            weaken(cell, memory);
+          {
+            double &strength =
+              memory.of(m)->tips_of(place.batch).strength[place.lane];
+            const unsigned int number = discretization.grid.owned_cell(cell);
+            if (strength < before[number])
+              strength = strength_at(cell);
+            else if (strength < 1.)
+              strength = now[number];
+          }
   }
 
 
@@ -172,7 +187,15 @@ namespace Voussoir
     const auto [batch, lane] = discretization.place_of(cell);
     double      &strength = memory.of(material)->tips_of(batch).strength[lane];
     const double before   = strength;
-    strength = kernels[material]->tip_strength(std::cbrt(cell->measure()));
+    strength              = std::min(strength, strength_at(cell));
     return strength < before;
+  }
+
+
+  double
+  CrackTips::strength_at(const Cell &cell) const
+  {
+    return kernels[discretization.grid.material(cell)]->tip_strength(
+      std::cbrt(cell->measure()));
   }
 } // namespace Voussoir

@@ -268,7 +268,7 @@ namespace Voussoir
           volumes[1] / volumes[0];
         item["energy lost [J]"] = volumes[2];
         if (run.solid.materials[m]->tip_strength(1.) < 1.)
-          item["cells at tips of cracks"] = volumes[3];
+          item["cells at tips of cracks and notches"] = volumes[3];
         for (unsigned int i = 0; i < names.size(); ++i)
           item[summary_name(names[i])] =
             Utilities::MPI::max(largest[i], communicator);

@@ -37,10 +37,12 @@ namespace Voussoir
     bool
     find(MaterialMemory &memory) const;
 
-    /** Gives the cells that have been at a tip in the static state the strength
-     *  of these kernels. */
+    /** Gives the cells that have been at a tip or a notch in the static state
+     *  the strength of these kernels.
+     *  @param of_static_state kernels of the static state */
     void
-    take_over(MaterialMemory &memory) const;
+    take_over(const std::vector<const CellKernel *> &of_static_state,
+              MaterialMemory                        &memory) const;
 
   private:
     using Cell = Discretization::Cell;
@@ -72,6 +74,10 @@ namespace Voussoir
      *  weaker. */
     bool
     weaken(const Cell &cell, MaterialMemory &memory) const;
+
+    /** Factor on the strength of a cell at a tip. */
+    double
+    strength_at(const Cell &cell) const;
 
     const Discretization           &discretization;
     std::vector<const CellKernel *> kernels;

@@ -305,7 +305,7 @@ def headline_section(runs):
         ("share of the concrete that left the elastic range [%]",
          of_materials("share of the volume that left the elastic range", 100.)),
         ("largest opening of cracks in a cell [mm]", of_materials("largest crack opening [mm]")),
-        ("cells that had the lower strength at tips of cracks", of_materials("cells at tips of cracks")),
+        ("cells that had the lower strength at tips of cracks and notches", of_materials("cells at tips of cracks and notches")),
         ("energy-balance error, share of the input [%]", energy_balance_error),
     ])
     return Section("Main results", [table]) if table else None

@@ -31,7 +31,7 @@ SUMMARY = Group(
           "opening from face to face at the end [mm]"), NUMBER)),
      "materials": Group(others=Group(optional=dict.fromkeys(
          ("largest crack opening [mm]", "share of the volume that left the elastic range",
-          "cells at tips of cracks"), NUMBER))),
+          "cells at tips of cracks and notches"), NUMBER))),
      "histories": Group(others=Group(
          dict.fromkeys(("largest displacement [m]", "filtered at [Hz]"), NUMBER),
          {"largest filtered acceleration [m/s2]": NUMBER})),

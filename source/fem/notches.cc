@@ -1,0 +1,187 @@
+#include <voussoir/fem/notches.h>
+#include <voussoir/mesh/interfaces.h>
+
+#include <deal.II/base/geometry_info.h>
+
+#include <boost/math/tools/roots.hpp>
+
+#include <set>
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    constexpr double curved_face = 20. * numbers::PI / 180.;
+
+    using Line = TriaIterator<TriaAccessor<1, 3, 3>>;
+
+
+    /** Angle between two faces of a cell at their common edge, at the middle of
+     *  it [rad]. */
+    template <typename Face>
+    double
+    angle_between(const Face &face_1, const Face &face_2, const Line &edge)
+    {
+      const Tensor<1, 3> along =
+        (edge->vertex(1) - edge->vertex(0)) / edge->diameter();
+      const auto into = [&](const Face &face) {
+        Point<3> middle;
+        for (const unsigned int v : face->vertex_indices())
+          middle += face->vertex(v) / 4.;
+        const Tensor<1, 3> from_edge =
+          middle - 0.5 * (edge->vertex(0) + edge->vertex(1));
+        return Tensor<1, 3>(from_edge - (from_edge * along) * along);
+      };
+      const Tensor<1, 3> a = into(face_1), b = into(face_2);
+      return std::acos(std::clamp(a * b / (a.norm() * b.norm()), -1., 1.));
+    }
+
+
+    bool
+    grows(const CellKernel *kernel)
+    {
+      return kernel->tip_strength(1.) < 1.;
+    }
+
+
+    using Faces = std::set<std::pair<unsigned int, unsigned int>>;
+
+
+    /** Active cell indices and numbers of the faces of interfaces. */
+    Faces
+    faces_of_interfaces(const Grid &grid)
+    {
+      Faces       faces;
+      const auto &names = grid.face_set_names();
+      for (const std::string &name : names)
+        if (const std::string other = name + other_side;
+            std::find(names.begin(), names.end(), other) != names.end())
+          for (const std::string &side : {name, other})
+            for (const Grid::Face &face : grid.faces(side))
+              faces.emplace(face.cell->active_cell_index(), face.face);
+      return faces;
+    }
+
+
+    /** What meets at the edges of the mesh, by their indices. */
+    struct Edges
+    {
+      std::vector<double> angles;  // of all cells around the edge [rad]
+      std::vector<bool>   is_free; // whether a face without traction ends there
+    };
+
+
+    /** Adds a cell to an edge, or to its two halves where its neighbours are
+     *  refined. */
+    void
+    add(Edges &edges, const Line &edge, const double angle, const bool is_free)
+    {
+      edges.angles[edge->index()] += angle;
+      if (is_free)
+        edges.is_free[edge->index()] = true;
+      if (edge->has_children())
+        for (unsigned int c = 0; c < edge->n_children(); ++c)
+          add(edges, edge->child(c), angle, is_free);
+    }
+
+
+    Edges
+    find_edges(const Grid &grid)
+    {
+      const Faces        on_interfaces = faces_of_interfaces(grid);
+      const unsigned int n             = grid.triangulation().n_raw_lines();
+      Edges              edges{std::vector<double>(n), std::vector<bool>(n)};
+      for (const auto &cell : grid.triangulation().active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const unsigned int l : cell->line_indices())
+            {
+              std::vector<unsigned int> faces; // the two at the edge
+              for (const unsigned int f : cell->face_indices())
+                for (unsigned int k = 0; k < cell->face(f)->n_lines(); ++k)
+                  if (cell->face(f)->line_index(k) == cell->line_index(l))
+                    faces.push_back(f);
+              add(edges,
+                  cell->line(l),
+                  angle_between(cell->face(faces[0]),
+                                cell->face(faces[1]),
+                                cell->line(l)),
+                  std::any_of(faces.begin(),
+                              faces.end(),
+                              [&](const unsigned int f) {
+                                return cell->at_boundary(f) &&
+                                       on_interfaces.count(
+                                         {cell->active_cell_index(), f}) == 0;
+                              }));
+            }
+      return edges;
+    }
+  } // namespace
+
+
+  double
+  order_of_singularity(const double angle)
+  {
+    if (angle <= numbers::PI)
+      return 0.;
+    if (angle >= 2. * numbers::PI)
+      return 0.5;
+    const auto bracket = boost::math::tools::bisect(
+      [&](const double k) { return std::sin(k * angle) + k * std::sin(angle); },
+      0.5,
+      1.,
+      boost::math::tools::eps_tolerance<double>());
+    return 1. - bracket.first;
+  }
+
+
+  std::vector<double>
+  strength_at_notches(const Grid                            &grid,
+                      const std::vector<const CellKernel *> &kernels)
+  {
+    std::vector<double> strength(grid.triangulation().n_active_cells(), 1.);
+    if (std::none_of(kernels.begin(), kernels.end(), grows))
+      return strength;
+    const Edges edges = find_edges(grid);
+    for (const auto &cell : grid.triangulation().active_cell_iterators())
+      if (cell->is_locally_owned() && grows(kernels[grid.material(cell)]))
+        {
+          double angle = 0.;
+          for (const unsigned int l : cell->line_indices())
+            if (const unsigned int edge = cell->line_index(l);
+                edges.is_free[edge])
+              angle = std::max(angle, edges.angles[edge]);
+          // equal on all ranks, which add in different orders
+          angle = std::round(angle * 1e9) * 1e-9;
+          if (angle < numbers::PI + curved_face)
+            continue;
+          const double counted =
+            2. * Utilities::fixed_power<4>(angle / (2. * numbers::PI));
+          strength[grid.owned_cell(cell)] =
+            std::pow(kernels[grid.material(cell)]->tip_strength(
+                       counted * std::cbrt(cell->measure())),
+                     2. * order_of_singularity(angle));
+        }
+    return strength;
+  }
+
+
+  void
+  weaken_at_notches(const Discretization                  &discretization,
+                    const std::vector<const CellKernel *> &kernels,
+                    MaterialMemory                        &memory)
+  {
+    if (memory.empty())
+      return;
+    const std::vector<double> strength =
+      strength_at_notches(discretization.grid, kernels);
+    for (unsigned int m = 0; m < kernels.size(); ++m)
+      if (grows(kernels[m]))
+        for (const auto &[cell, place] : memory.of(m)->cells())
+          if (const double factor =
+                strength[discretization.grid.owned_cell(cell)];
+              factor < 1.)
+            memory.of(m)->tips_of(place.batch).strength[place.lane] = factor;
+  }
+} // namespace Voussoir

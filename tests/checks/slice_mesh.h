@@ -18,6 +18,14 @@ namespace Voussoir
       , rows(rows)
     {}
 
+    /** Parts the first columns below row j; before any cell is added. */
+    void
+    cut(const unsigned int columns, const unsigned int j)
+    {
+      cut_columns = columns;
+      cut_row     = j;
+    }
+
     void
     add_cell(const unsigned int set, const unsigned int i, const unsigned int j)
     {
@@ -80,15 +88,20 @@ namespace Voussoir
         file << sets[s].first << ' ' << s + 1 << " \"" << sets[s].second
              << "\"\n";
       file << "$EndPhysicalNames\n$Nodes\n"
-           << 2 * (columns + 1) * (rows + 1) << '\n';
+           << 2 * ((columns + 1) * (rows + 1) + cut_columns) << '\n';
+      const auto write_nodes = [&](const unsigned int i,
+                                   const unsigned int j,
+                                   const unsigned int first) {
+        const auto [x, z] = position(i, j);
+        for (unsigned int k = 0; k < 2; ++k)
+          file << first + k << ' ' << x << ' ' << -(thickness * k) << ' ' << z
+               << '\n';
+      };
       for (unsigned int j = 0; j <= rows; ++j)
         for (unsigned int i = 0; i <= columns; ++i)
-          for (unsigned int k = 0; k < 2; ++k)
-            {
-              const auto [x, z] = position(i, j);
-              file << node(i, j, k) << ' ' << x << ' ' << -(thickness * k)
-                   << ' ' << z << '\n';
-            }
+          write_nodes(i, j, node(i, j, 0));
+      for (unsigned int i = 0; i < cut_columns; ++i)
+        write_nodes(i, cut_row, above_cut(i, 0));
       file << "$EndNodes\n$Elements\n" << elements.size() << '\n';
       for (const std::string &element : elements)
         file << element << '\n';
@@ -102,13 +115,20 @@ namespace Voussoir
       return 1 + (j * (columns + 1) + i) * 2 + k;
     }
 
+    unsigned int
+    above_cut(const unsigned int i, const unsigned int k) const
+    {
+      return 1 + ((columns + 1) * (rows + 1) + i) * 2 + k;
+    }
+
     std::vector<unsigned int>
     side(const unsigned int i, const unsigned int j, const unsigned int k) const
     {
-      return {node(i, j, k),
-              node(i + 1, j, k),
-              node(i + 1, j + 1, k),
-              node(i, j + 1, k)};
+      const auto lower = [&](const unsigned int i) {
+        return j == cut_row && i < cut_columns ? above_cut(i, k) :
+                                                 node(i, j, k);
+      };
+      return {lower(i), lower(i + 1), node(i + 1, j + 1, k), node(i, j + 1, k)};
     }
 
     void
@@ -124,6 +144,7 @@ namespace Voussoir
     }
 
     const unsigned int       columns, rows;
+    unsigned int             cut_columns = 0, cut_row = 0;
     std::vector<std::string> elements;
   };
 } // namespace Voussoir

@@ -1,0 +1,163 @@
+#include <voussoir/fem/notches.h>
+
+#include "check.h"
+#include "crack_line.h"
+#include "slice_mesh.h"
+
+namespace Voussoir
+{
+  using namespace dealii;
+
+  namespace
+  {
+    constexpr double width = 99., height = 207., depth = 18., head = 9.; // [m]
+
+    enum class Notch
+    {
+      slit,
+      corner
+    };
+
+
+    /** Elevation of the lower side of a slit or of the lower edge of a notch
+     *  27 m high, whose upper edge is the second number [m]. */
+    std::pair<double, double>
+    edges_of(const Notch notch)
+    {
+      return notch == Notch::slit ? std::pair{108., 108.} :
+                                    std::pair{90., 117.};
+    }
+
+
+    /** Writes a plate, one cell of size h thick, with a notch from its left
+     *  side and a head of another material, whose ends are face sets. */
+    void
+    write_plate(const std::string &name, const Notch notch, const double h)
+    {
+      const unsigned int columns = std::lround(width / h),
+                         rows    = std::lround(height / h),
+                         all     = std::lround((height + head) / h),
+                         inside  = std::lround(depth / h);
+      const auto [lower, upper]  = edges_of(notch);
+      SliceMesh mesh(columns, all);
+      if (notch == Notch::slit)
+        mesh.cut(inside, std::lround(lower / h));
+      for (unsigned int j = 0; j < all; ++j)
+        for (unsigned int i = 0; i < columns; ++i)
+          if (i >= inside || (j + 0.5) * h < lower || (j + 0.5) * h > upper)
+            {
+              mesh.add_cell(j < rows ? 1 : 2, i, j);
+              mesh.add_side(3, i, j, 0);
+            }
+      for (unsigned int j = rows; j < all; ++j)
+        for (const unsigned int i : {0u, columns})
+          mesh.add_upright(4, i, j);
+      for (unsigned int i = 0; i < columns; ++i)
+        {
+          mesh.add_level(5, i, 0);
+          mesh.add_level(6, i, all);
+        }
+      mesh.write(name,
+                 {{3, "plate"},
+                  {3, "head"},
+                  {2, "side"},
+                  {2, "ends"},
+                  {2, "bottom"},
+                  {2, "top"}},
+                 h,
+                 [&](const unsigned int i, const unsigned int j) {
+                   return std::pair{i * h, j * h};
+                 });
+    }
+
+
+    /** The stress at which a first crack begins at a slit and at a corner of
+     *  270 degrees, in the static state or under a slow pull. */
+    class Notches : public Check
+    {
+    public:
+      void
+      declare_parameters(ParameterHandler &prm) override
+      {
+        prm.add_parameter("Sizes", sizes, "Of the cells [m].");
+        prm.add_parameter("Slit",
+                          slit,
+                          "Allowed error at the slit; 0: it is left out.");
+        prm.add_parameter("At rest", at_rest, "Under a force, without motion.");
+      }
+
+      void
+      run(const ParameterFile &file,
+          Verdicts            &verdicts,
+          const MPI_Comm       communicator) override
+      {
+        // roots of sin(k w) + k sin(w) = 0: Williams 1952
+        constexpr double degree = numbers::PI / 180.;
+        verdicts.near("order of the singularity at 270 degrees",
+                      order_of_singularity(270. * degree),
+                      0.4555163,
+                      1e-6);
+        verdicts.near("order of the singularity at 225 degrees",
+                      order_of_singularity(225. * degree),
+                      0.3264168,
+                      1e-6);
+        verdicts.near("order of the singularity at a slit",
+                      order_of_singularity(360. * degree),
+                      0.5,
+                      1e-12);
+        verdicts.below("order of the singularity on a flat face",
+                       order_of_singularity(180. * degree),
+                       1e-12);
+
+        // by tests/data/notched_plate_reference.py and
+        // plate_corner_reference.py
+        for (const double h : sizes)
+          {
+            if (slit > 0.)
+              find(file, Notch::slit, h, 0.378, slit, verdicts, communicator);
+            find(file, Notch::corner, h, 0.559, 0.12, verdicts, communicator);
+          }
+      }
+
+    private:
+      void
+      find(const ParameterFile &file,
+           const Notch          notch,
+           const double         h,
+           const double         reference,
+           const double         allowed,
+           Verdicts            &verdicts,
+           const MPI_Comm       communicator) const
+      {
+        std::ostringstream name;
+        name << "first crack at a "
+             << (notch == Notch::slit ? "slit" : "corner") << ", cells of " << h
+             << " m";
+        const std::string entry = entry_of_mesh(
+          "plate, " + name.str() + ".msh",
+          [&](const std::string &mesh) { write_plate(mesh, notch, h); },
+          communicator);
+        double stress = 0.;
+        if (at_rest)
+          stress = largest_standing_pull(
+            file, entry, 0.8 * reference, 0.04 * reference, communicator);
+        else
+          {
+            const auto parameters = make_case(file.with({entry}));
+            const auto simulation = make_simulation(*parameters, communicator);
+            stress =
+              1e-6 * march_under_pull(*simulation, 0.05).largest / (width * h);
+          }
+        verdicts.near(name.str(), stress, reference, allowed, "MPa");
+      }
+
+      std::vector<double> sizes   = {9., 3.};
+      double              slit    = 0.12;
+      bool                at_rest = false;
+    };
+
+    // Reference: other program
+    const Registry<Check>::Add<Notches>
+      registered("notches", "First crack at a slit and at a corner.");
+  } // namespace
+} // namespace Voussoir

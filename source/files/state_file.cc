@@ -18,7 +18,7 @@ namespace Voussoir
 
   namespace
   {
-    constexpr int format = 7; // since cells are weaker at tips in static stages
+    constexpr int format = 8; // since cells are weaker at notches
 
 
     Bytes

@@ -36,38 +36,56 @@ namespace Voussoir
 
   namespace
   {
-    struct Range
+    /** Cells of a material, with cube roots of their volumes [m]. */
+    struct Cells
     {
       double smallest = std::numeric_limits<double>::max(), largest = 0.;
+
+      unsigned long long n_at_notches   = 0;
+      double             least_strength = 1.; // at notches
     };
 
 
-    /** Cube roots of the volumes of the cells of each material [m]. */
-    std::vector<Range>
-    cell_sizes(const Grid &grid, const unsigned int n_materials)
+    std::vector<Cells>
+    cells_of(const Grid &grid, const std::vector<const Material *> &materials)
     {
-      std::vector<Range> sizes(n_materials);
+      const std::vector<double> angles = angles_at_notches(grid);
+      std::vector<Cells>        found(materials.size());
       for (const auto &cell : grid.triangulation().active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            Range       &of_material = sizes[grid.material(cell)];
-            const double size        = std::cbrt(cell->measure());
-            of_material.smallest     = std::min(of_material.smallest, size);
-            of_material.largest      = std::max(of_material.largest, size);
+            const unsigned int material    = grid.material(cell);
+            Cells             &of_material = found[material];
+            const double       size        = std::cbrt(cell->measure());
+            of_material.smallest = std::min(of_material.smallest, size);
+            of_material.largest  = std::max(of_material.largest, size);
+            const double strength =
+              strength_at_notch(*materials[material],
+                                angles[grid.owned_cell(cell)],
+                                size);
+            if (strength < 1.)
+              ++of_material.n_at_notches;
+            of_material.least_strength =
+              std::min(of_material.least_strength, strength);
           }
-      for (Range &of_material : sizes)
+      const MPI_Comm communicator = grid.communicator();
+      for (Cells &of_material : found)
         {
           of_material.smallest =
-            Utilities::MPI::min(of_material.smallest, grid.communicator());
+            Utilities::MPI::min(of_material.smallest, communicator);
           of_material.largest =
-            Utilities::MPI::max(of_material.largest, grid.communicator());
+            Utilities::MPI::max(of_material.largest, communicator);
+          of_material.n_at_notches =
+            Utilities::MPI::sum(of_material.n_at_notches, communicator);
+          of_material.least_strength =
+            Utilities::MPI::min(of_material.least_strength, communicator);
         }
-      return sizes;
+      return found;
     }
 
 
     std::string
-    remark_on_tips(const Material &material, const Range &sizes)
+    remark_on_tips(const Material &material, const Cells &cells)
     {
       // f^-2 = 1 + h / constant
       const double of_1_m = material.tip_strength(1.),
@@ -75,58 +93,23 @@ namespace Voussoir
       std::ostringstream text;
       text << std::setprecision(3)
            << "at tips of cracks the tensile strength is lowered to "
-           << 100. * material.tip_strength(sizes.largest)
-           << " % in the largest cells, of " << sizes.largest << " m, and to "
-           << 100. * material.tip_strength(sizes.smallest)
-           << " % in the smallest, of " << sizes.smallest
+           << 100. * material.tip_strength(cells.largest)
+           << " % in the largest cells, of " << cells.largest << " m, and to "
+           << 100. * material.tip_strength(cells.smallest)
+           << " % in the smallest, of " << cells.smallest
            << " m; it is below half in cells larger than " << halves << " m.";
       return text.str();
     }
 
 
-    struct CellsAtNotches
-    {
-      unsigned long long number   = 0;
-      double             strength = 1.; // the lowest, over that of the material
-    };
-
-
-    /** Of each material. */
-    std::vector<CellsAtNotches>
-    cells_at_notches(const Grid                          &grid,
-                     const std::vector<const Material *> &materials)
-    {
-      const std::vector<double> strength =
-        strength_at_notches(grid, {materials.begin(), materials.end()});
-      std::vector<CellsAtNotches> found(materials.size());
-      for (const auto &cell : grid.triangulation().active_cell_iterators())
-        if (cell->is_locally_owned())
-          if (const double factor = strength[grid.owned_cell(cell)];
-              factor < 1.)
-            {
-              CellsAtNotches &of_material = found[grid.material(cell)];
-              ++of_material.number;
-              of_material.strength = std::min(of_material.strength, factor);
-            }
-      for (CellsAtNotches &of_material : found)
-        {
-          of_material.number =
-            Utilities::MPI::sum(of_material.number, grid.communicator());
-          of_material.strength =
-            Utilities::MPI::min(of_material.strength, grid.communicator());
-        }
-      return found;
-    }
-
-
     std::string
-    remark_on_notches(const CellsAtNotches &cells)
+    remark_on_notches(const Cells &cells)
     {
       std::ostringstream text;
       text << std::setprecision(3) << "at notches, where outer faces meet at "
-           << "more than 200 degrees, " << cells.number
+           << "more than 200 degrees, " << cells.n_at_notches
            << " cells have a tensile strength lowered to "
-           << 100. * cells.strength << " % at least.";
+           << 100. * cells.least_strength << " % at least.";
       return text.str();
     }
   } // namespace
@@ -148,19 +131,19 @@ namespace Voussoir
           "each other keeps most of its load; with \"Quadrature = one point "
           "where elastic\" they have eight, and with \"Crack growth = along "
           "planes\", where the class has it, a crack takes this stiffness.");
-    const auto grows = [](const auto &material) {
-      return material->tip_strength(1.) < 1.;
-    };
-    if (std::none_of(materials.begin(), materials.end(), grows))
+    if (std::none_of(materials.begin(),
+                     materials.end(),
+                     [](const Material *material) {
+                       return material->cracks_grow();
+                     }))
       return notes;
-    const std::vector<Range> sizes      = cell_sizes(grid, materials.size());
-    const auto               at_notches = cells_at_notches(grid, materials);
+    const std::vector<Cells> cells = cells_of(grid, materials);
     for (unsigned int m = 0; m < materials.size(); ++m)
       {
-        if (grows(materials[m]) && sizes[m].largest > 0.)
-          notes[m].push_back(remark_on_tips(*materials[m], sizes[m]));
-        if (at_notches[m].number > 0)
-          notes[m].push_back(remark_on_notches(at_notches[m]));
+        if (materials[m]->cracks_grow() && cells[m].largest > 0.)
+          notes[m].push_back(remark_on_tips(*materials[m], cells[m]));
+        if (cells[m].n_at_notches > 0)
+          notes[m].push_back(remark_on_notches(cells[m]));
       }
     return notes;
   }

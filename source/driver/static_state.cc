@@ -9,10 +9,11 @@ namespace Voussoir
     std::vector<const CellKernel *>
     kernels_at_rest(const Model &model)
     {
-      std::vector<const CellKernel *> kernels;
-      for (const Material *material : model.solid.materials)
-        kernels.push_back(&material->at_rest());
-      return kernels;
+      return for_each_material(
+        model.solid.materials,
+        [](const Material &material) -> const CellKernel * {
+          return &material.at_rest();
+        });
     }
   } // namespace
 

@@ -36,7 +36,7 @@ namespace Voussoir
     , kernels(kernels)
   {
     for (const CellKernel *kernel : kernels)
-      follows_tips.push_back(kernel->tip_strength(1.) < 1. &&
+      follows_tips.push_back(kernel->cracks_grow() &&
                              !kernel->cracks_along_planes());
     if (!is_needed())
       return;
@@ -82,23 +82,24 @@ namespace Voussoir
   CrackTips::take_over(const std::vector<const CellKernel *> &of_static_state,
                        MaterialMemory                        &memory) const
   {
-    if (memory.empty())
+    if (memory.empty() ||
+        std::none_of(kernels.begin(), kernels.end(), [](const auto *kernel) {
+          return kernel->cracks_grow();
+        }))
       return;
-    const std::vector<double> before = strength_at_notches(discretization.grid,
-                                                           of_static_state),
-                              now    = strength_at_notches(discretization.grid,
-                                                        kernels);
+    const std::vector<double> angles = angles_at_notches(discretization.grid);
     for (unsigned int m = 0; m < kernels.size(); ++m)
-      if (kernels[m]->tip_strength(1.) < 1.)
+      if (kernels[m]->cracks_grow())
         for (const auto &[cell, place] : memory.of(m)->cells())
           {
             double &strength =
               memory.of(m)->tips_of(place.batch).strength[place.lane];
-            const unsigned int number = discretization.grid.owned_cell(cell);
-            if (strength < before[number])
+            const double angle = angles[discretization.grid.owned_cell(cell)],
+                         size  = std::cbrt(cell->measure());
+            if (strength < strength_at_notch(*of_static_state[m], angle, size))
               strength = strength_at(cell);
             else if (strength < 1.)
-              strength = now[number];
+              strength = strength_at_notch(*kernels[m], angle, size);
           }
   }
 

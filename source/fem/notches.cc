@@ -39,13 +39,6 @@ namespace Voussoir
     }
 
 
-    bool
-    grows(const CellKernel *kernel)
-    {
-      return kernel->tip_strength(1.) < 1.;
-    }
-
-
     using Faces = std::set<std::pair<unsigned int, unsigned int>>;
 
 
@@ -87,9 +80,26 @@ namespace Voussoir
     }
 
 
+    /** The two faces of a hexahedron at each of its edges. */
+    std::array<std::array<unsigned int, 2>, 12>
+    faces_at_edges()
+    {
+      using Cell = GeometryInfo<3>;
+      std::array<std::vector<unsigned int>, 12> found;
+      for (const unsigned int f : Cell::face_indices())
+        for (unsigned int k = 0; k < Cell::lines_per_face; ++k)
+          found[Cell::face_to_cell_lines(f, k)].push_back(f);
+      std::array<std::array<unsigned int, 2>, 12> faces;
+      for (unsigned int l = 0; l < 12; ++l)
+        faces[l] = {{found[l][0], found[l][1]}};
+      return faces;
+    }
+
+
     Edges
     find_edges(const Grid &grid)
     {
+      const auto         of_edges      = faces_at_edges();
       const Faces        on_interfaces = faces_of_interfaces(grid);
       const unsigned int n             = grid.triangulation().n_raw_lines();
       Edges              edges{std::vector<double>(n), std::vector<bool>(n)};
@@ -97,11 +107,7 @@ namespace Voussoir
         if (!cell->is_artificial())
           for (const unsigned int l : cell->line_indices())
             {
-              std::vector<unsigned int> faces; // the two at the edge
-              for (const unsigned int f : cell->face_indices())
-                for (unsigned int k = 0; k < cell->face(f)->n_lines(); ++k)
-                  if (cell->face(f)->line_index(k) == cell->line_index(l))
-                    faces.push_back(f);
+              const std::array<unsigned int, 2> &faces = of_edges[l];
               add(edges,
                   cell->line(l),
                   angle_between(cell->face(faces[0]),
@@ -137,33 +143,37 @@ namespace Voussoir
 
 
   std::vector<double>
-  strength_at_notches(const Grid                            &grid,
-                      const std::vector<const CellKernel *> &kernels)
+  angles_at_notches(const Grid &grid)
   {
-    std::vector<double> strength(grid.triangulation().n_active_cells(), 1.);
-    if (std::none_of(kernels.begin(), kernels.end(), grows))
-      return strength;
-    const Edges edges = find_edges(grid);
+    const Edges         edges = find_edges(grid);
+    std::vector<double> angles;
     for (const auto &cell : grid.triangulation().active_cell_iterators())
-      if (cell->is_locally_owned() && grows(kernels[grid.material(cell)]))
+      if (cell->is_locally_owned())
         {
-          double angle = 0.;
+          double largest = 0.;
           for (const unsigned int l : cell->line_indices())
             if (const unsigned int edge = cell->line_index(l);
                 edges.is_free[edge])
-              angle = std::max(angle, edges.angles[edge]);
+              largest = std::max(largest, edges.angles[edge]);
           // equal on all ranks, which add in different orders
-          angle = std::round(angle * 1e9) * 1e-9;
-          if (angle < numbers::PI + curved_face)
-            continue;
-          const double counted =
-            2. * Utilities::fixed_power<4>(angle / (2. * numbers::PI));
-          strength[grid.owned_cell(cell)] =
-            std::pow(kernels[grid.material(cell)]->tip_strength(
-                       counted * std::cbrt(cell->measure())),
-                     2. * order_of_singularity(angle));
+          largest = std::round(largest * 1e9) * 1e-9;
+          angles.push_back(largest < numbers::PI + curved_face ? 0. : largest);
         }
-    return strength;
+    return angles;
+  }
+
+
+  double
+  strength_at_notch(const CellKernel &kernel,
+                    const double      angle,
+                    const double      cell_size)
+  {
+    if (angle == 0.)
+      return 1.;
+    const double counted =
+      2. * Utilities::fixed_power<4>(angle / (2. * numbers::PI));
+    return std::pow(kernel.tip_strength(counted * cell_size),
+                    2. * order_of_singularity(angle));
   }
 
 
@@ -172,16 +182,18 @@ namespace Voussoir
                     const std::vector<const CellKernel *> &kernels,
                     MaterialMemory                        &memory)
   {
-    if (memory.empty())
+    if (memory.empty() ||
+        std::none_of(kernels.begin(), kernels.end(), [](const auto *kernel) {
+          return kernel->cracks_grow();
+        }))
       return;
-    const std::vector<double> strength =
-      strength_at_notches(discretization.grid, kernels);
+    const std::vector<double> angles = angles_at_notches(discretization.grid);
     for (unsigned int m = 0; m < kernels.size(); ++m)
-      if (grows(kernels[m]))
+      if (kernels[m]->cracks_grow())
         for (const auto &[cell, place] : memory.of(m)->cells())
-          if (const double factor =
-                strength[discretization.grid.owned_cell(cell)];
-              factor < 1.)
-            memory.of(m)->tips_of(place.batch).strength[place.lane] = factor;
+          if (const double angle = angles[discretization.grid.owned_cell(cell)];
+              angle > 0.)
+            memory.of(m)->tips_of(place.batch).strength[place.lane] =
+              strength_at_notch(*kernels[m], angle, std::cbrt(cell->measure()));
   }
 } // namespace Voussoir

@@ -267,7 +267,7 @@ namespace Voussoir
         item["share of the volume that left the elastic range"] =
           volumes[1] / volumes[0];
         item["energy lost [J]"] = volumes[2];
-        if (run.solid.materials[m]->tip_strength(1.) < 1.)
+        if (run.solid.materials[m]->cracks_grow())
           item["cells at tips of cracks and notches"] = volumes[3];
         for (unsigned int i = 0; i < names.size(); ++i)
           item[summary_name(names[i])] =

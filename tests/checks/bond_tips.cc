@@ -31,15 +31,10 @@ namespace Voussoir
             mesh.add_cell(j < rows ? 1 : 7, i, j);
             mesh.add_side(4, i, j, 0);
           }
-      for (unsigned int j = rows; j < all; ++j)
-        for (const unsigned int i : {0u, columns})
-          mesh.add_upright(8, i, j);
+      mesh.add_ends(8, rows);
+      mesh.add_bottom_and_top(2, 3);
       for (unsigned int i = 0; i < columns; ++i)
-        {
-          mesh.add_level(2, i, 0);
-          mesh.add_level(3, i, all);
-          mesh.add_level((i + 0.5) * h < slit ? 5 : 6, i, rows / 2);
-        }
+        mesh.add_level((i + 0.5) * h < slit ? 5 : 6, i, rows / 2);
       mesh.write(name,
                  {{3, "plate"},
                   {2, "bottom"},

@@ -39,14 +39,8 @@ namespace Voussoir
             mesh.add_cell(j >= rows ? 6 : (is_notch ? 2 : 1), i, j);
             mesh.add_side(5, i, j, 0);
           }
-      for (unsigned int j = rows; j < all; ++j)
-        for (const unsigned int i : {0u, columns})
-          mesh.add_upright(7, i, j);
-      for (unsigned int i = 0; i < columns; ++i)
-        {
-          mesh.add_level(3, i, 0);
-          mesh.add_level(4, i, all);
-        }
+      mesh.add_ends(7, rows);
+      mesh.add_bottom_and_top(3, 4);
       mesh.write(name,
                  {{3, "plate"},
                   {3, "notch"},

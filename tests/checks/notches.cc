@@ -49,14 +49,8 @@ namespace Voussoir
               mesh.add_cell(j < rows ? 1 : 2, i, j);
               mesh.add_side(3, i, j, 0);
             }
-      for (unsigned int j = rows; j < all; ++j)
-        for (const unsigned int i : {0u, columns})
-          mesh.add_upright(4, i, j);
-      for (unsigned int i = 0; i < columns; ++i)
-        {
-          mesh.add_level(5, i, 0);
-          mesh.add_level(6, i, all);
-        }
+      mesh.add_ends(4, rows);
+      mesh.add_bottom_and_top(5, 6);
       mesh.write(name,
                  {{3, "plate"},
                   {3, "head"},

@@ -67,6 +67,26 @@ namespace Voussoir
           {node(i, j, 0), node(i, j, 1), node(i, j + 1, 1), node(i, j + 1, 0)});
     }
 
+    /** Adds the faces below the first row and above the last one. */
+    void
+    add_bottom_and_top(const unsigned int bottom, const unsigned int top)
+    {
+      for (unsigned int i = 0; i < columns; ++i)
+        {
+          add_level(bottom, i, 0);
+          add_level(top, i, rows);
+        }
+    }
+
+    /** Adds the faces at both ends of the rows from this one on. */
+    void
+    add_ends(const unsigned int set, const unsigned int first_row)
+    {
+      for (unsigned int j = first_row; j < rows; ++j)
+        for (const unsigned int i : {0u, columns})
+          add_upright(set, i, j);
+    }
+
     /**
      * Writes the mesh in version 2.2 of Gmsh's format.
      *

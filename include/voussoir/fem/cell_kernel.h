@@ -306,6 +306,13 @@ namespace Voussoir
     virtual double
     tip_strength(const double cell_size) const = 0;
 
+    /** Whether cracks grow from tips or along planes. */
+    bool
+    cracks_grow() const
+    {
+      return tip_strength(1.) < 1.;
+    }
+
     /** Tensile strength [Pa]; 0: none. */
     virtual double
     tensile_strength() const = 0;

@@ -19,24 +19,32 @@ namespace Voussoir
 
 
   /**
-   * Factor on the tensile strength of each owned cell at which a first crack
-   * begins at a notch, in the order of Grid::owned_cell; one elsewhere, and
-   * where the cracks of the material do not grow from tips or along planes.
-   *
-   * Notches are edges of the mesh at which its outer faces meet at more than
-   * 200 degrees; below that they are taken for pieces of a curved face. The end
-   * of an interface is none, as its sides transmit traction. A cell averages
-   * the stress r^-s of a notch as it does the r^-1/2 of the tip of a crack, so
-   * that the factor f(h) at a tip in a cell of size h becomes f(c h)^(2s). The
-   * tip of a crack enters a cell in the middle of a face, a slit ends at an
-   * edge of it: c rises from 1 at 270 degrees to 2 at a slit. doc/damage.md has
-   * the trials.
-   *
-   * @param kernels of each material
+   * Angle w that the solid fills at the sharpest notch of each owned cell, in
+   * the order of Grid::owned_cell; zero at none [rad]. Notches are edges of the
+   * mesh at which its outer faces meet at more than 200 degrees; below that
+   * they are taken for pieces of a curved face. The end of an interface is
+   * none, as its sides transmit traction.
    */
   std::vector<double>
-  strength_at_notches(const Grid                            &grid,
-                      const std::vector<const CellKernel *> &kernels);
+  angles_at_notches(const Grid &grid);
+
+
+  /**
+   * Factor on the tensile strength at which a first crack begins in a cell at a
+   * notch. A cell averages the stress r^-s of a notch as it does the r^-1/2 of
+   * the tip of a crack, so that the factor f(h) at a tip in a cell of size h
+   * becomes f(c h)^(2s). Unlike the tip of a crack, in the middle of a face, a
+   * notch is at an edge of the cell: c = 2 (w / 2 pi)^4, fitted to plates with
+   * a slit and with a corner of 270 degrees (doc/damage.md).
+   *
+   * @param angle as in angles_at_notches [rad]
+   * @return one without a notch, and where cracks do not grow from tips or
+   *   along planes
+   */
+  double
+  strength_at_notch(const CellKernel &kernel,
+                    const double      angle,
+                    const double      cell_size);
 
 
   /** Gives the cells at notches this strength.

@@ -80,6 +80,20 @@ namespace Voussoir
     }
 
 
+    /** Angle of all cells around an edge, or around the halves of one whose
+     *  other cells are refined; zero if no free face ends there [rad]. */
+    double
+    angle_around(const Edges &edges, const Line &edge)
+    {
+      if (!edge->has_children())
+        return edges.is_free[edge->index()] ? edges.angles[edge->index()] : 0.;
+      double largest = 0.;
+      for (unsigned int c = 0; c < edge->n_children(); ++c)
+        largest = std::max(largest, angle_around(edges, edge->child(c)));
+      return largest;
+    }
+
+
     /** The two faces of a hexahedron at each of its edges. */
     std::array<std::array<unsigned int, 2>, 12>
     faces_at_edges()
@@ -152,9 +166,7 @@ namespace Voussoir
         {
           double largest = 0.;
           for (const unsigned int l : cell->line_indices())
-            if (const unsigned int edge = cell->line_index(l);
-                edges.is_free[edge])
-              largest = std::max(largest, edges.angles[edge]);
+            largest = std::max(largest, angle_around(edges, cell->line(l)));
           // equal on all ranks, which add in different orders
           largest = std::round(largest * 1e9) * 1e-9;
           angles.push_back(largest < numbers::PI + curved_face ? 0. : largest);

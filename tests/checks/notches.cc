@@ -103,6 +103,8 @@ namespace Voussoir
                        order_of_singularity(180. * degree),
                        1e-12);
 
+        refine_one_side(file, verdicts, communicator);
+
         // by tests/data/notched_plate_reference.py and
         // plate_corner_reference.py
         for (const double h : sizes)
@@ -114,6 +116,38 @@ namespace Voussoir
       }
 
     private:
+      /** Angles are the same where edges hang, in coarse cells and fine ones.
+       */
+      static void
+      refine_one_side(const ParameterFile &file,
+                      Verdicts            &verdicts,
+                      const MPI_Comm       communicator)
+      {
+        const std::string entry = entry_of_mesh(
+          "plate, refined at one side of a corner.msh",
+          [](const std::string &mesh) { write_plate(mesh, Notch::corner, 9.); },
+          communicator);
+        const auto   parameters = make_case(file.with(
+          {entry, "Mesh/Local refinement=box 18 -9 117 27 18 126: 1"}));
+        const auto   simulation = make_simulation(*parameters, communicator);
+        unsigned int found      = 0;
+        double       error      = 0.;
+        for (const double angle : angles_at_notches(simulation->model.grid))
+          if (angle > 0.)
+            {
+              ++found;
+              keep_largest(error, std::abs(angle / (1.5 * numbers::PI) - 1.));
+            }
+        // three at the lower corner, four at the upper one
+        verdicts.near("cells at two corners, one with hanging edges",
+                      Utilities::MPI::sum(found, communicator),
+                      7.,
+                      1e-12);
+        verdicts.below("angle at them: error",
+                       Utilities::MPI::max(error, communicator),
+                       1e-8);
+      }
+
       void
       find(const ParameterFile &file,
            const Notch          notch,

@@ -49,8 +49,8 @@ namespace Voussoir
     std::vector<Cells>
     cells_of(const Grid &grid, const std::vector<const Material *> &materials)
     {
-      const std::vector<double> angles = angles_at_notches(grid);
-      std::vector<Cells>        found(materials.size());
+      const std::vector<Notch> notches = notches_of_cells(grid);
+      std::vector<Cells>       found(materials.size());
       for (const auto &cell : grid.triangulation().active_cell_iterators())
         if (cell->is_locally_owned())
           {
@@ -61,7 +61,7 @@ namespace Voussoir
             of_material.largest  = std::max(of_material.largest, size);
             const double strength =
               strength_at_notch(*materials[material],
-                                angles[grid.owned_cell(cell)],
+                                notches[grid.owned_cell(cell)],
                                 size);
             if (strength < 1.)
               ++of_material.n_at_notches;

@@ -87,19 +87,19 @@ namespace Voussoir
           return kernel->cracks_grow();
         }))
       return;
-    const std::vector<double> angles = angles_at_notches(discretization.grid);
+    const std::vector<Notch> notches = notches_of_cells(discretization.grid);
     for (unsigned int m = 0; m < kernels.size(); ++m)
       if (kernels[m]->cracks_grow())
         for (const auto &[cell, place] : memory.of(m)->cells())
           {
             double &strength =
               memory.of(m)->tips_of(place.batch).strength[place.lane];
-            const double angle = angles[discretization.grid.owned_cell(cell)],
-                         size  = std::cbrt(cell->measure());
-            if (strength < strength_at_notch(*of_static_state[m], angle, size))
+            const Notch &notch = notches[discretization.grid.owned_cell(cell)];
+            const double size  = std::cbrt(cell->measure());
+            if (strength < strength_at_notch(*of_static_state[m], notch, size))
               strength = strength_at(cell);
             else if (strength < 1.)
-              strength = strength_at_notch(*kernels[m], angle, size);
+              strength = strength_at_notch(*kernels[m], notch, size);
           }
   }
 

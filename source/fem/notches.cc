@@ -58,39 +58,57 @@ namespace Voussoir
     }
 
 
-    /** What meets at the edges of the mesh, by their indices. */
-    struct Edges
+    /** What meets at an edge of the mesh. */
+    struct Edge
     {
-      std::vector<double> angles;  // of all cells around the edge [rad]
-      std::vector<bool>   is_free; // whether a face without traction ends there
+      double       angle   = 0.; // of all cells around it [rad]
+      unsigned int n_cells = 0;
+      bool         is_free = false; // a face without traction ends there
     };
+
+    using Edges = std::vector<Edge>; // by the indices of lines
 
 
     /** Adds a cell to an edge, or to its two halves where its neighbours are
      *  refined. */
     void
-    add(Edges &edges, const Line &edge, const double angle, const bool is_free)
+    add(Edges &edges, const Line &line, const double angle, const bool is_free)
     {
-      edges.angles[edge->index()] += angle;
-      if (is_free)
-        edges.is_free[edge->index()] = true;
-      if (edge->has_children())
-        for (unsigned int c = 0; c < edge->n_children(); ++c)
-          add(edges, edge->child(c), angle, is_free);
+      Edge &found = edges[line->index()];
+      found.angle += angle;
+      ++found.n_cells;
+      found.is_free = found.is_free || is_free;
+      if (line->has_children())
+        for (unsigned int c = 0; c < line->n_children(); ++c)
+          add(edges, line->child(c), angle, is_free);
     }
 
 
-    /** Angle of all cells around an edge, or around the halves of one whose
-     *  other cells are refined; zero if no free face ends there [rad]. */
-    double
-    angle_around(const Edges &edges, const Line &edge)
+    Notch
+    sharper(const Notch &a, const Notch &b)
     {
-      if (!edge->has_children())
-        return edges.is_free[edge->index()] ? edges.angles[edge->index()] : 0.;
-      double largest = 0.;
-      for (unsigned int c = 0; c < edge->n_children(); ++c)
-        largest = std::max(largest, angle_around(edges, edge->child(c)));
-      return largest;
+      return a.angle < b.angle ? b : a;
+    }
+
+
+    /** The notch at an edge, or the sharpest one at the halves of an edge whose
+     *  other cells are refined. */
+    Notch
+    notch_at(const Edges &edges, const Line &line)
+    {
+      Notch sharpest;
+      if (line->has_children())
+        {
+          for (unsigned int c = 0; c < line->n_children(); ++c)
+            sharpest = sharper(sharpest, notch_at(edges, line->child(c)));
+          return sharpest;
+        }
+      const Edge &edge = edges[line->index()];
+      // equal on all ranks, which add in different orders
+      const double angle = 1e-9 * std::round(1e9 * edge.angle);
+      if (edge.is_free && angle >= numbers::PI + curved_face)
+        sharpest = {angle, edge.n_cells % 2 == 0};
+      return sharpest;
     }
 
 
@@ -113,10 +131,9 @@ namespace Voussoir
     Edges
     find_edges(const Grid &grid)
     {
-      const auto         of_edges      = faces_at_edges();
-      const Faces        on_interfaces = faces_of_interfaces(grid);
-      const unsigned int n             = grid.triangulation().n_raw_lines();
-      Edges              edges{std::vector<double>(n), std::vector<bool>(n)};
+      const auto  of_edges      = faces_at_edges();
+      const Faces on_interfaces = faces_of_interfaces(grid);
+      Edges       edges(grid.triangulation().n_raw_lines());
       for (const auto &cell : grid.triangulation().active_cell_iterators())
         if (!cell->is_artificial())
           for (const unsigned int l : cell->line_indices())
@@ -156,36 +173,36 @@ namespace Voussoir
   }
 
 
-  std::vector<double>
-  angles_at_notches(const Grid &grid)
+  std::vector<Notch>
+  notches_of_cells(const Grid &grid)
   {
-    const Edges         edges = find_edges(grid);
-    std::vector<double> angles;
+    const Edges        edges = find_edges(grid);
+    std::vector<Notch> notches;
     for (const auto &cell : grid.triangulation().active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          double largest = 0.;
+          Notch notch;
           for (const unsigned int l : cell->line_indices())
-            largest = std::max(largest, angle_around(edges, cell->line(l)));
-          // equal on all ranks, which add in different orders
-          largest = std::round(largest * 1e9) * 1e-9;
-          angles.push_back(largest < numbers::PI + curved_face ? 0. : largest);
+            notch = sharper(notch, notch_at(edges, cell->line(l)));
+          notches.push_back(notch);
         }
-    return angles;
+    return notches;
   }
 
 
   double
   strength_at_notch(const CellKernel &kernel,
-                    const double      angle,
+                    const Notch      &notch,
                     const double      cell_size)
   {
-    if (angle == 0.)
+    if (notch.angle == 0.)
       return 1.;
     const double counted =
-      2. * Utilities::fixed_power<4>(angle / (2. * numbers::PI));
+      notch.is_between_cells ?
+        2. :
+        2. * Utilities::fixed_power<4>(notch.angle / (2. * numbers::PI));
     return std::pow(kernel.tip_strength(counted * cell_size),
-                    2. * order_of_singularity(angle));
+                    2. * order_of_singularity(notch.angle));
   }
 
 
@@ -199,13 +216,14 @@ namespace Voussoir
           return kernel->cracks_grow();
         }))
       return;
-    const std::vector<double> angles = angles_at_notches(discretization.grid);
+    const std::vector<Notch> notches = notches_of_cells(discretization.grid);
     for (unsigned int m = 0; m < kernels.size(); ++m)
       if (kernels[m]->cracks_grow())
         for (const auto &[cell, place] : memory.of(m)->cells())
-          if (const double angle = angles[discretization.grid.owned_cell(cell)];
-              angle > 0.)
+          if (const Notch &notch =
+                notches[discretization.grid.owned_cell(cell)];
+              notch.angle > 0.)
             memory.of(m)->tips_of(place.batch).strength[place.lane] =
-              strength_at_notch(*kernels[m], angle, std::cbrt(cell->measure()));
+              strength_at_notch(*kernels[m], notch, std::cbrt(cell->measure()));
   }
 } // namespace Voussoir

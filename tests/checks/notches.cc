@@ -12,19 +12,40 @@ namespace Voussoir
   {
     constexpr double width = 99., height = 207., depth = 18., head = 9.; // [m]
 
-    enum class Notch
+    enum class Shape
     {
       slit,
-      corner
+      corner,
+      vee
     };
+
+
+    std::string
+    name_of(const Shape shape)
+    {
+      return shape == Shape::slit   ? "slit" :
+             shape == Shape::corner ? "corner" :
+                                      "V-shaped notch";
+    }
+
+
+    /** The left side at an elevation, that of a V whose solid fills 225 degrees
+     *  [m]. */
+    double
+    left_side(const double z)
+    {
+      return std::max(0.,
+                      depth - std::abs(z - 108.) *
+                                std::tan(22.5 * numbers::PI / 180.));
+    }
 
 
     /** Elevation of the lower side of a slit or of the lower edge of a notch
      *  27 m high, whose upper edge is the second number [m]. */
     std::pair<double, double>
-    edges_of(const Notch notch)
+    edges_of(const Shape shape)
     {
-      return notch == Notch::slit ? std::pair{108., 108.} :
+      return shape == Shape::slit ? std::pair{108., 108.} :
                                     std::pair{90., 117.};
     }
 
@@ -32,19 +53,20 @@ namespace Voussoir
     /** Writes a plate, one cell of size h thick, with a notch from its left
      *  side and a head of another material, whose ends are face sets. */
     void
-    write_plate(const std::string &name, const Notch notch, const double h)
+    write_plate(const std::string &name, const Shape shape, const double h)
     {
       const unsigned int columns = std::lround(width / h),
                          rows    = std::lround(height / h),
                          all     = std::lround((height + head) / h),
                          inside  = std::lround(depth / h);
-      const auto [lower, upper]  = edges_of(notch);
+      const auto [lower, upper]  = edges_of(shape);
       SliceMesh mesh(columns, all);
-      if (notch == Notch::slit)
+      if (shape == Shape::slit)
         mesh.cut(inside, std::lround(lower / h));
       for (unsigned int j = 0; j < all; ++j)
         for (unsigned int i = 0; i < columns; ++i)
-          if (i >= inside || (j + 0.5) * h < lower || (j + 0.5) * h > upper)
+          if (shape == Shape::vee || i >= inside || (j + 0.5) * h < lower ||
+              (j + 0.5) * h > upper)
             {
               mesh.add_cell(j < rows ? 1 : 2, i, j);
               mesh.add_side(3, i, j, 0);
@@ -60,13 +82,16 @@ namespace Voussoir
                   {2, "top"}},
                  h,
                  [&](const unsigned int i, const unsigned int j) {
-                   return std::pair{i * h, j * h};
+                   const double left =
+                     shape == Shape::vee ? left_side(j * h) : 0.;
+                   return std::pair{left + i * (width - left) / columns, j * h};
                  });
     }
 
 
-    /** The stress at which a first crack begins at a slit and at a corner of
-     *  270 degrees, in the static state or under a slow pull. */
+    /** The stress at which a first crack begins at a slit, at a corner of 270
+     *  degrees and at a V whose solid fills 225 degrees, in the static state or
+     * under a slow pull. */
     class Notches : public Check
     {
     public:
@@ -105,13 +130,13 @@ namespace Voussoir
 
         refine_one_side(file, verdicts, communicator);
 
-        // by tests/data/notched_plate_reference.py and
-        // plate_corner_reference.py
+        // by tests/data/plate_corner_reference.py
         for (const double h : sizes)
           {
             if (slit > 0.)
-              find(file, Notch::slit, h, 0.378, slit, verdicts, communicator);
-            find(file, Notch::corner, h, 0.559, 0.12, verdicts, communicator);
+              find(file, Shape::slit, h, 0.378, slit, verdicts, communicator);
+            find(file, Shape::corner, h, 0.559, 0.12, verdicts, communicator);
+            find(file, Shape::vee, h, 0.474, 0.12, verdicts, communicator);
           }
       }
 
@@ -125,19 +150,25 @@ namespace Voussoir
       {
         const std::string entry = entry_of_mesh(
           "plate, refined at one side of a corner.msh",
-          [](const std::string &mesh) { write_plate(mesh, Notch::corner, 9.); },
+          [](const std::string &mesh) { write_plate(mesh, Shape::corner, 9.); },
           communicator);
-        const auto   parameters = make_case(file.with(
+        const auto   parameters  = make_case(file.with(
           {entry, "Mesh/Local refinement=box 18 -9 117 27 18 126: 1"}));
-        const auto   simulation = make_simulation(*parameters, communicator);
-        unsigned int found      = 0;
-        double       error      = 0.;
-        for (const double angle : angles_at_notches(simulation->model.grid))
-          if (angle > 0.)
+        const auto   simulation  = make_simulation(*parameters, communicator);
+        unsigned int found       = 0;
+        double       error       = 0.;
+        bool         into_a_cell = true;
+        for (const Notch &at : notches_of_cells(simulation->model.grid))
+          if (at.angle > 0.)
             {
               ++found;
-              keep_largest(error, std::abs(angle / (1.5 * numbers::PI) - 1.));
+              into_a_cell = into_a_cell && !at.is_between_cells;
+              keep_largest(error,
+                           std::abs(at.angle / (1.5 * numbers::PI) - 1.));
             }
+        verdicts.is_true("they point into a cell",
+                         Utilities::MPI::min(int(into_a_cell), communicator) ==
+                           1);
         // three at the lower corner, four at the upper one
         verdicts.near("cells at two corners, one with hanging edges",
                       Utilities::MPI::sum(found, communicator),
@@ -150,7 +181,7 @@ namespace Voussoir
 
       void
       find(const ParameterFile &file,
-           const Notch          notch,
+           const Shape          shape,
            const double         h,
            const double         reference,
            const double         allowed,
@@ -158,12 +189,11 @@ namespace Voussoir
            const MPI_Comm       communicator) const
       {
         std::ostringstream name;
-        name << "first crack at a "
-             << (notch == Notch::slit ? "slit" : "corner") << ", cells of " << h
+        name << "first crack at a " << name_of(shape) << ", cells of " << h
              << " m";
         const std::string entry = entry_of_mesh(
           "plate, " + name.str() + ".msh",
-          [&](const std::string &mesh) { write_plate(mesh, notch, h); },
+          [&](const std::string &mesh) { write_plate(mesh, shape, h); },
           communicator);
         double stress = 0.;
         if (at_rest)
@@ -186,6 +216,6 @@ namespace Voussoir
 
     // Reference: other program
     const Registry<Check>::Add<Notches>
-      registered("notches", "First crack at a slit and at a corner.");
+      registered("notches", "First crack at a slit, a corner and a V.");
   } // namespace
 } // namespace Voussoir

@@ -1,35 +1,61 @@
 #!/usr/bin/env python3
 """Largest mean stress of a plate of 99 m by 207 m with a notch 18 m deep and 27 m high, of
-tests/checks/notches.cc, whose upper edge a fictitious crack leaves level; or of one with a
-slit. Law and constants are those of notched_plate_reference.py.
+tests/checks/notches.cc, whose upper edge a fictitious crack leaves level; of one with a slit;
+and of plates of 216 m with a V-shaped notch 18 m deep, by the angle that the solid fills. Law
+and constants are those of notched_plate_reference.py.
 
 Each side of the level of the crack is an elastic body (plane stress, bilinear elements that
 grow away from the edge), whose stiffness is condensed to the nodes on this level. With the
 tip at each node in turn the pull of the clamped upper end is the one at which the stress at
 the tip is ft; the openings behind it are found by Newton's method. The traction has the
-direction of the opening. Prints the stress [MPa] by the size of the smallest elements:
-corner 0.562 and 0.559 MPa by 0.25 and 0.125 m, slit 0.380 and 0.379 MPa.
+direction of the opening. Prints the stress by the size of the smallest elements, 0.125 m at
+last: corner 0.559, slit 0.379, V of 205, 215, 225, 247.5 and 270 degrees 0.686, 0.549, 0.474,
+0.401 and 0.381 MPa.
 """
 import numpy as np
 import scipy.sparse
 import scipy.sparse.linalg
-from notched_plate_reference import (ENERGY, HALF_HEIGHT, NOTCH, STRENGTH, WIDTH, element_stiffness,
+from notched_plate_reference import (ENERGY, HALF_HEIGHT, NOTCH, POISSON, STRENGTH, WIDTH, YOUNG,
                                      graded, traction_of)
 
-NOTCH_HEIGHT = 27.0
+NOTCH_HEIGHT, V_HALF_HEIGHT = 27.0, 108.0
 FINE, FOLLOWED = 14.0, 12.0  # lengths ahead of the notch: with the smallest elements, of the crack
 
 
-def condensed(x, z, removed):
+def element_stiffness(corners):
+    """Of elements with corners (0,0), (1,0), (1,1), (0,1), one a row."""
+    moduli = YOUNG / (1 - POISSON ** 2) * np.array([[1, POISSON, 0], [POISSON, 1, 0],
+                                                    [0, 0, (1 - POISSON) / 2]])
+    stiffness = np.zeros((len(corners), 8, 8))
+    gauss = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)
+    for a in gauss:
+        for b in gauss:
+            derivatives = np.array([[-(1 - b), 1 - b, b, -b], [-(1 - a), -a, a, 1 - a]])
+            jacobian = derivatives @ corners
+            gradients = np.linalg.solve(jacobian, np.tile(derivatives, (len(corners), 1, 1)))
+            dx, dz = np.moveaxis(gradients, 1, 0)
+            strain = np.zeros((len(corners), 3, 8))
+            strain[:, 0, ::2] = strain[:, 2, 1::2] = dx
+            strain[:, 1, 1::2] = strain[:, 2, ::2] = dz
+            stiffness += 0.25 * np.linalg.det(jacobian)[:, None, None] * np.einsum(
+                "eki,kl,elj->eij", strain, moduli, strain)
+    return stiffness
+
+
+def condensed(x, z, removed, slope=0.):
     """Stiffness of the nodes ahead of the notch at z = 0 of a body from there to z[-1], and
-    the forces on them by a unit displacement of its clamped end."""
+    the forces on them by a unit displacement of its clamped end. With a slope the left side
+    recedes from the notch on, and columns follow it."""
     node = np.arange(len(x) * len(z)).reshape(len(x), len(z))
     corners = np.stack([node[:-1, :-1], node[1:, :-1], node[1:, 1:], node[:-1, 1:]], 2).reshape(-1, 4)
-    wide, high = [values.ravel() for values in np.meshgrid(np.diff(x), np.diff(z), indexing="ij")]
+    left = np.maximum(NOTCH - slope * z, 0)
+    turned = left + (x[:, None] - NOTCH) / (WIDTH - NOTCH) * (WIDTH - left)
+    position = np.stack([np.where(x[:, None] < NOTCH, x[:, None], turned),
+                         z + 0 * turned], 2).reshape(-1, 2)
     kept = ~removed(*np.meshgrid((x[1:] + x[:-1]) / 2, (z[1:] + z[:-1]) / 2, indexing="ij")).ravel()
     dofs = np.stack([2 * corners, 2 * corners + 1], 2).reshape(-1, 8)[kept]
     matrix = scipy.sparse.coo_matrix(
-        (element_stiffness(wide[kept], high[kept]).ravel(),
+        (element_stiffness(position[corners[kept]]).ravel(),
          (np.repeat(dofs, 8, 1).ravel(), np.tile(dofs, (1, 8)).ravel())),
         shape=(2 * node.size, 2 * node.size)).tocsc()
     line = node[x > NOTCH - 1e-6, 0]
@@ -54,16 +80,26 @@ def tractions(opening):
                      np.where(apart > 0, per_opening * apart, 1e13 * apart)], 1).ravel()
 
 
-def largest_stress(size, slit):
+def largest_stress(size, notch):
+    """@p notch: "slit", "corner" or the angle of the solid at a V [degrees]."""
     x = np.concatenate([NOTCH - graded(NOTCH, size)[::-1][:-1],
                         np.arange(NOTCH, NOTCH + FINE, size),
                         NOTCH + FINE + graded(WIDTH - NOTCH - FINE, size)])
-    level = HALF_HEIGHT + (0 if slit else NOTCH_HEIGHT / 2)
-    above, below = graded(2 * HALF_HEIGHT - level, size), graded(level, size)
-    if not slit:
+    if notch == "corner":
+        level = HALF_HEIGHT + NOTCH_HEIGHT / 2
+        above, below = graded(2 * HALF_HEIGHT - level, size), graded(level, size)
         below[np.argmin(np.abs(below - NOTCH_HEIGHT))] = NOTCH_HEIGHT
-    upper, by_pull = condensed(x, above, lambda x, z: np.zeros_like(x, bool))
-    lower, _ = condensed(x, below, lambda x, z: (x < NOTCH) & (z < NOTCH_HEIGHT) & (not slit))
+        upper, by_pull = condensed(x, above, lambda x, z: np.zeros_like(x, bool))
+        lower, _ = condensed(x, below, lambda x, z: (x < NOTCH) & (z < NOTCH_HEIGHT))
+    elif notch == "slit":
+        upper, by_pull = condensed(x, graded(HALF_HEIGHT, size),
+                                   lambda x, z: np.zeros_like(x, bool))
+        lower = upper
+    else:
+        above, slope = graded(V_HALF_HEIGHT, size), np.tan(np.radians(notch / 2 - 90))
+        above[np.argmin(np.abs(above - NOTCH / slope))] = NOTCH / slope
+        upper, by_pull = condensed(x, above, lambda x, z: x < NOTCH, slope)
+        lower = upper
     mirror = np.tile([1, -1], len(by_pull) // 2)  # z points downwards in the lower body
     flexibility = np.linalg.inv(upper) + np.linalg.inv(lower * np.outer(mirror, mirror))
     # forces between the bodies by pull p and openings w: stiffness (p free_opening - w)
@@ -106,7 +142,7 @@ def largest_stress(size, slit):
 
 
 if __name__ == "__main__":
-    for slit in (False, True):
+    for notch in ("corner", "slit", 205, 215, 225, 247.5, 270):
         for size in (0.5, 0.25, 0.125):
-            print("slit" if slit else "corner",
-                  f"elements of {size} m: {1e-6 * largest_stress(size, slit):.4f} MPa")
+            print(notch, f"elements of {size} m: {1e-6 * largest_stress(size, notch):.4f} MPa",
+                  flush=True)

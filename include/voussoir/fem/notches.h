@@ -18,15 +18,25 @@ namespace Voussoir
   order_of_singularity(const double angle);
 
 
+  /** The sharpest notch of a cell. */
+  struct Notch
+  {
+    double angle = 0.; // w, filled by the solid; zero: no notch [rad]
+
+    /** Whether the middle of this angle is a face between two cells, as an even
+     *  number of cells meets at the edge. */
+    bool is_between_cells = false;
+  };
+
+
   /**
-   * Angle w that the solid fills at the sharpest notch of each owned cell, in
-   * the order of Grid::owned_cell; zero at none [rad]. Notches are edges of the
-   * mesh at which its outer faces meet at more than 200 degrees; below that
-   * they are taken for pieces of a curved face. The end of an interface is
-   * none, as its sides transmit traction.
+   * Notches of the owned cells, in the order of Grid::owned_cell. They are
+   * edges of the mesh at which its outer faces meet at more than 200 degrees;
+   * below that they are taken for pieces of a curved face. The end of an
+   * interface is none, as its sides transmit traction.
    */
-  std::vector<double>
-  angles_at_notches(const Grid &grid);
+  std::vector<Notch>
+  notches_of_cells(const Grid &grid);
 
 
   /**
@@ -34,16 +44,16 @@ namespace Voussoir
    * notch. A cell averages the stress r^-s of a notch as it does the r^-1/2 of
    * the tip of a crack, so that the factor f(h) at a tip in a cell of size h
    * becomes f(c h)^(2s). Unlike the tip of a crack, in the middle of a face, a
-   * notch is at an edge of the cell: c = 2 (w / 2 pi)^4, fitted to plates with
-   * a slit and with a corner of 270 degrees (doc/damage.md).
+   * notch is at an edge of the cell. Fitted to plates (doc/damage.md): c = 2
+   * where the notch points at a face between two cells, 2 (w / 2 pi)^4 where it
+   * points into a cell.
    *
-   * @param angle as in angles_at_notches [rad]
    * @return one without a notch, and where cracks do not grow from tips or
    *   along planes
    */
   double
   strength_at_notch(const CellKernel &kernel,
-                    const double      angle,
+                    const Notch      &notch,
                     const double      cell_size);
 
 

@@ -18,7 +18,7 @@ namespace Voussoir
 
   namespace
   {
-    constexpr int format = 8; // since cells are weaker at notches
+    constexpr int format = 9; // since notches between two cells are weaker
 
 
     Bytes

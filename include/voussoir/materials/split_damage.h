@@ -84,8 +84,9 @@ namespace Voussoir
         "Whether a cell cracks by the tensile strength alone, or also by the "
         "lower strength ft / sqrt(1 + h ft^2 / (E Gf)) of a cell of size h "
         "that the plane of a crack runs into, with which cracks run at about "
-        "the load of fracture mechanics in cells of any size. \"Along planes\", "
-        "for cells with one integration point, continues each crack as a plane "
+        "the load of fracture mechanics in cells of any size; cells at slits, "
+        "re-entrant corners and other notches are weaker, too. \"Along "
+        "planes\", for cells with one integration point, continues each crack as a plane "
         "from cell to cell, in the direction of the stress there, so that its "
         "path does not follow the rows of cells; cells beside a crack have "
         "twice the strength.");

@@ -91,7 +91,7 @@ namespace Voussoir
 
     /** The stress at which a first crack begins at a slit, at a corner of 270
      *  degrees and at a V whose solid fills 225 degrees, in the static state or
-     * under a slow pull. */
+     *  under a slow pull. */
     class Notches : public Check
     {
     public:

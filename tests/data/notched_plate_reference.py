@@ -30,21 +30,22 @@ def graded(length, size):
     return np.array(at) * length / at[-1]
 
 
-def element_stiffness(a, b):
-    """Of elements a by b, one a row."""
+def element_stiffness(corners):
+    """Of elements with corners (0,0), (1,0), (1,1), (0,1), one a row."""
     moduli = YOUNG / (1 - POISSON ** 2) * np.array([[1, POISSON, 0], [POISSON, 1, 0],
                                                     [0, 0, (1 - POISSON) / 2]])
-    stiffness = np.zeros((len(a), 8, 8))
+    stiffness = np.zeros((len(corners), 8, 8))
     gauss = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)
-    for x in gauss:
-        for z in gauss:
-            # corners (0,0), (1,0), (1,1), (0,1)
-            dx = np.array([-(1 - z), 1 - z, z, -z]) / a[:, None]
-            dz = np.array([-(1 - x), -x, x, 1 - x]) / b[:, None]
-            strain = np.zeros((len(a), 3, 8))
+    for a in gauss:
+        for b in gauss:
+            derivatives = np.array([[-(1 - b), 1 - b, b, -b], [-(1 - a), -a, a, 1 - a]])
+            jacobian = derivatives @ corners
+            gradients = np.linalg.solve(jacobian, np.tile(derivatives, (len(corners), 1, 1)))
+            dx, dz = np.moveaxis(gradients, 1, 0)
+            strain = np.zeros((len(corners), 3, 8))
             strain[:, 0, ::2] = strain[:, 2, 1::2] = dx
             strain[:, 1, 1::2] = strain[:, 2, ::2] = dz
-            stiffness += 0.25 * (a * b)[:, None, None] * np.einsum(
+            stiffness += 0.25 * np.linalg.det(jacobian)[:, None, None] * np.einsum(
                 "eki,kl,elj->eij", strain, moduli, strain)
     return stiffness
 
@@ -63,8 +64,8 @@ def largest_stress(size, clamped, linear):
     node = np.arange(len(x) * len(z)).reshape(len(x), len(z))
     corners = np.stack([node[:-1, :-1], node[1:, :-1], node[1:, 1:], node[:-1, 1:]], 2).reshape(-1, 4)
     dofs = np.stack([2 * corners, 2 * corners + 1], 2).reshape(-1, 8)
-    wide, high = [values.ravel() for values in np.meshgrid(np.diff(x), np.diff(z), indexing="ij")]
-    matrix = scipy.sparse.coo_matrix((element_stiffness(wide, high).ravel(),
+    position = np.stack(np.meshgrid(x, z, indexing="ij"), 2).reshape(-1, 2)
+    matrix = scipy.sparse.coo_matrix((element_stiffness(position[corners]).ravel(),
                                       (np.repeat(dofs, 8, 1).ravel(), np.tile(dofs, (1, 8)).ravel()))).tocsc()
 
     def shares(at):

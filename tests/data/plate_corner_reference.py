@@ -15,31 +15,11 @@ last: corner 0.559, slit 0.379, V of 205, 215, 225, 247.5 and 270 degrees 0.686,
 import numpy as np
 import scipy.sparse
 import scipy.sparse.linalg
-from notched_plate_reference import (ENERGY, HALF_HEIGHT, NOTCH, POISSON, STRENGTH, WIDTH, YOUNG,
+from notched_plate_reference import (ENERGY, HALF_HEIGHT, NOTCH, STRENGTH, WIDTH, element_stiffness,
                                      graded, traction_of)
 
 NOTCH_HEIGHT, V_HALF_HEIGHT = 27.0, 108.0
 FINE, FOLLOWED = 14.0, 12.0  # lengths ahead of the notch: with the smallest elements, of the crack
-
-
-def element_stiffness(corners):
-    """Of elements with corners (0,0), (1,0), (1,1), (0,1), one a row."""
-    moduli = YOUNG / (1 - POISSON ** 2) * np.array([[1, POISSON, 0], [POISSON, 1, 0],
-                                                    [0, 0, (1 - POISSON) / 2]])
-    stiffness = np.zeros((len(corners), 8, 8))
-    gauss = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3)
-    for a in gauss:
-        for b in gauss:
-            derivatives = np.array([[-(1 - b), 1 - b, b, -b], [-(1 - a), -a, a, 1 - a]])
-            jacobian = derivatives @ corners
-            gradients = np.linalg.solve(jacobian, np.tile(derivatives, (len(corners), 1, 1)))
-            dx, dz = np.moveaxis(gradients, 1, 0)
-            strain = np.zeros((len(corners), 3, 8))
-            strain[:, 0, ::2] = strain[:, 2, 1::2] = dx
-            strain[:, 1, 1::2] = strain[:, 2, ::2] = dz
-            stiffness += 0.25 * np.linalg.det(jacobian)[:, None, None] * np.einsum(
-                "eki,kl,elj->eij", strain, moduli, strain)
-    return stiffness
 
 
 def condensed(x, z, removed, slope=0.):

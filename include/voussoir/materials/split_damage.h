@@ -86,10 +86,10 @@ namespace Voussoir
         "that the plane of a crack runs into, with which cracks run at about "
         "the load of fracture mechanics in cells of any size; cells at slits, "
         "re-entrant corners and other notches are weaker, too. \"Along "
-        "planes\", for cells with one integration point, continues each crack as a plane "
-        "from cell to cell, in the direction of the stress there, so that its "
-        "path does not follow the rows of cells; cells beside a crack have "
-        "twice the strength.");
+        "planes\", for cells with one integration point, continues each crack "
+        "as a plane from cell to cell, in the direction of the stress there, so "
+        "that its path does not follow the rows of cells; cells beside a crack "
+        "have twice the strength.");
     }
 
     TensileFailure

@@ -55,15 +55,14 @@ namespace Voussoir
   }
 
 
-  BatchNodes::MatrixFree::Corners
-  BatchNodes::corners() const
+  void
+  BatchNodes::read_corners(MatrixFree::Corners &corners) const
   {
     const unsigned int place = matrix_free.place_of_own_corners[batch];
     if (place != numbers::invalid_unsigned_int)
-      return matrix_free.own_corners[place];
-    MatrixFree::Corners corners;
-    read_nodes(matrix_free.positions.data(), corners.data());
-    return corners;
+      corners = matrix_free.own_corners[place];
+    else
+      read_nodes(matrix_free.positions.data(), corners.data());
   }
 
 

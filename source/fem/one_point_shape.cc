@@ -103,12 +103,12 @@ namespace Voussoir
 
 
   template <typename Number>
-  DEAL_II_ALWAYS_INLINE inline typename OnePointShape<Number>::Fields
-  OnePointShape<Number>::stress_of(const Fields &of_strain,
-                                   const double  young_modulus,
-                                   const double  poisson_ratio) const
+  DEAL_II_ALWAYS_INLINE inline void
+  OnePointShape<Number>::find_stress(Fields       &result,
+                                     const Fields &of_strain,
+                                     const double  young_modulus,
+                                     const double  poisson_ratio) const
   {
-    Fields result;
     // squares of one unit coordinate and of two have the means 1/3 and 1/9
     const Number plate =
       young_modulus / (3. * (1. - poisson_ratio * poisson_ratio)) * volume;
@@ -130,7 +130,6 @@ namespace Voussoir
         result.bars[k]     = bar * inverse_length_square[k] *
                          inverse_length_square[k] * of_strain.bars[k];
       }
-    return result;
   }
 
 
@@ -139,7 +138,7 @@ namespace Voussoir
   OnePointShape<Number>::submit_stabilisation(const double young_modulus,
                                               const double poisson_ratio)
   {
-    stress = stress_of(strain, young_modulus, poisson_ratio);
+    find_stress(stress, strain, young_modulus, poisson_ratio);
   }
 
 
@@ -149,7 +148,9 @@ namespace Voussoir
                                             const double  young_modulus,
                                             const double  poisson_ratio) const
   {
-    return stress_of(of_strain, young_modulus, poisson_ratio);
+    Fields result;
+    find_stress(result, of_strain, young_modulus, poisson_ratio);
+    return result;
   }
 
 
@@ -168,7 +169,8 @@ namespace Voussoir
                                            const double  young_modulus,
                                            const double  poisson_ratio)
   {
-    stress.add(factor, stress_of(of_strain, young_modulus, poisson_ratio));
+    stress.add(factor,
+               stabilising_stress(of_strain, young_modulus, poisson_ratio));
   }
 
 

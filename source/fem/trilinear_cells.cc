@@ -9,7 +9,8 @@ namespace Voussoir
   TrilinearCells<Shape>::reinit(const unsigned int batch)
   {
     nodes.reinit(batch);
-    auto corners = nodes.corners();
+    typename Shape<Lanes>::Values corners;
+    nodes.read_corners(corners);
     Shape<Lanes>::reinit(corners);
   }
 

@@ -61,8 +61,8 @@ namespace Voussoir
 
     /** Corners of trilinear cells [m]: read like a displacement, which takes
      *  half the time of those of each cell in a row, as nodes are shared. */
-    MatrixFree::Corners
-    corners() const;
+    void
+    read_corners(MatrixFree::Corners &corners) const;
 
     void
     read_dof_values(const Vector &vector);

@@ -134,7 +134,7 @@ namespace Voussoir
       bool trilinear = false;
 
       /** Positions of the nodes, in the layout of vectors with ghost entries
-       *  [m]; see BatchNodes::corners. */
+       *  [m]; see BatchNodes::read_corners. */
       dealii::AlignedVector<double> positions;
 
       /** Corners of the batches that cannot read them from there, and for each

@@ -149,10 +149,11 @@ namespace Voussoir
   private:
     using Vector3 = dealii::Tensor<1, 3, Number>;
 
-    Fields
-    stress_of(const Fields &of_strain,
-              const double  young_modulus,
-              const double  poisson_ratio) const;
+    void
+    find_stress(Fields       &result,
+                const Fields &of_strain,
+                const double  young_modulus,
+                const double  poisson_ratio) const;
 
     // the cells' shape
     std::array<Vector3, 3>                edges; // half the mean edges

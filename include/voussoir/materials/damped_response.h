@@ -121,9 +121,10 @@ namespace Voussoir
             const PointStep               &step,
             PointHistory                  &history) const
     {
-      const bool        was_active = history.is_active(batch, q);
-      const ActivePoint last =
-        was_active ? history.active_point(batch, q) : ActivePoint();
+      static const ActivePoint elastic_point;
+      const bool               was_active = history.is_active(batch, q);
+      const ActivePoint       &last =
+        was_active ? history.active_point(batch, q) : elastic_point;
       ActivePoint now = last;
 
       SymmetricTensor3<Lanes> offset, elastic_static, of_law_alone;

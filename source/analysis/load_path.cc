@@ -256,6 +256,7 @@ namespace Voussoir
           }
         state.displacement    = displacement_before;
         state.material_memory = memory_before;
+        secants.clear(); // of a structure that has cracked further
         if (model.contact != nullptr)
           model.contact->set_points(points_before);
       }

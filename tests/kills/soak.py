@@ -11,6 +11,7 @@ Exit code 1 if something grows, a run does not continue, or the histories differ
 """
 
 import argparse
+import math
 import pathlib
 import random
 import shutil
@@ -60,7 +61,8 @@ def memory_of_largest(pid):
 
 def run(options, folder, ranks, end, restart, seconds=float("inf")):
     """Exit code of a run, largest memory of one of its processes, and what it grew by since
-    the first line of its histories [MB]; stops the run after a number of seconds."""
+    the first line of its histories [MB]; stops the run after a number of seconds. A run
+    that was stopped before this line was still setting up: NaN."""
     histories = folder / "run" / "histories.csv"
 
     def written():
@@ -80,7 +82,9 @@ def run(options, folder, ranks, end, restart, seconds=float("inf")):
             process.send_signal(signal.SIGTERM)
             stopped = True
         time.sleep(0.05)
-    return process.returncode, memory, memory - first if first else 0.
+    if first is None:
+        memory = first = float("nan")
+    return process.returncode, memory, memory - first
 
 
 def sizes(folder):
@@ -144,9 +148,10 @@ def main():
               f"{memory:.1f} MB, {growth:.1f} MB of growth, checkpoint {checkpoint} bytes, "
               f"{sum(size for name, size in found.items() if is_history(name))} of tables",
               flush=True)
-        if not growth <= GROWTH:
+        if growth > GROWTH:
             failures.append(f"memory on {ranks} ranks grew by {growth:.1f} MB in piece {n_pieces}")
-        if continued and not memory <= first_memory.setdefault(ranks, memory) + SCATTER:
+        if (continued and not math.isnan(memory)
+                and memory > first_memory.setdefault(ranks, memory) + SCATTER):
             failures.append(f"memory on {ranks} ranks grew from {first_memory[ranks]:.1f} "
                             f"to {memory:.1f} MB in piece {n_pieces}")
         first_checkpoint = first_checkpoint or checkpoint

@@ -72,18 +72,18 @@ def run(options, folder, ranks, end, restart, seconds=float("inf")):
     with open(folder / "terminal.txt", "ab") as terminal:
         process = subprocess.Popen(command(options, ranks, end, restart), cwd=folder,
                                    stdout=terminal, stderr=subprocess.STDOUT)
-    stop, stopped, memory, first = time.monotonic() + seconds, False, 0.0, None
+    stop, stopped, memory, first = time.monotonic() + seconds, False, 0.0, 0.0
     while process.poll() is None:
         now = memory_of_largest(process.pid)
-        if first is None and written() != before:
+        if not first and written() != before:
             memory = first = now
         memory = max(memory, now)
         if not stopped and time.monotonic() > stop:
             process.send_signal(signal.SIGTERM)
             stopped = True
         time.sleep(0.05)
-    if first is None:
-        memory = first = float("nan")
+    if not first:
+        memory = first = math.nan
     return process.returncode, memory, memory - first
 
 

@@ -27,7 +27,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray  # noqa: E402
 from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_QUAD, vtkUnstructuredGrid  # noqa: E402
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: E402
-from voussoir_report import case, charts, faces, grid, interfaces, page, records, scenes, stages, structure  # noqa: E402
+from voussoir_report import case, charts, damage, faces, grid, interfaces, page, records, scenes, stages, structure  # noqa: E402
 from voussoir_report import study, study_evaluations, verdict  # noqa: E402
 from voussoir_report.run import Run  # noqa: E402
 
@@ -159,6 +159,26 @@ def check_refined(run, folder):
     compare("refined: length of the crest [m]", dam.crest_length, LENGTH, 1e-9)
     compare("refined: length of the crest's upstream edge [m]", np.ptp(dam.crest_line[1]), LENGTH, 1e-9)
     compare("refined: slenderness", dam.slenderness, LENGTH**2 * HEIGHT / dam.volume, 1e-9)
+
+
+def check_damage(scratch):
+    """Without envelopes the damage at the end is that of the last picture of the fields,
+    not of the first one, in the static state, nor of the modes."""
+    run = make_wall(scratch / "damage")
+    shape = grid.dam_of(run).grid.points.reshape(-1, 8, 3)
+    (run.folder / "envelopes.vtu").rename(run.folder / "modes.vtu")
+    openings = {"fields-0.vtu": 0.1, "fields-1.vtu": 5.}
+    for file, opening in openings.items():
+        write_grid(run.folder / file, shape, VTK_HEXAHEDRON,
+                   {"material": np.zeros(shape.shape[:2]),
+                    "largest_crack_opening_mm": np.full(shape.shape[:2], opening)},
+                   {"material_names": ["concrete"]})
+    (run.folder / "fields.txt").write_text("0 fields-0.vtu\n6 fields-1.vtu\n")
+    grid.dam_in.cache_clear()
+    grid.grid_of.cache_clear()
+    is_true("cracks are shown", damage.damaged(run) == ["largest_crack_opening_mm"])
+    compare("opening of cracks at the end [mm]",
+            damage.of_cells(grid.dam_of(run), "largest_crack_opening_mm").max(), 5., 0.)
 
 
 def check_abscissa(run):
@@ -528,6 +548,7 @@ def main():
         run = make_wall(scratch / "wall")
         check_profiles(run)
         check_refined(run, scratch)
+        check_damage(scratch)
         check_abscissa(run)
         check_colours()
         check_input(run)

@@ -325,9 +325,9 @@ def dam_in(run, name):
 
 
 def dam_of(run):
-    """The dam of a run that has written a picture of the whole model, or None."""
-    files = [name for name in ("envelopes.vtu", "modes.vtu") if run.has(name)]
-    files += [file for _, file in run.pictures("fields")]
+    """The dam in the last picture of the whole model that a run has written, or None."""
+    of_fields = [file for _, file in run.pictures("fields")[-1:]]
+    files = [name for name in ("envelopes.vtu", *of_fields, "modes.vtu") if run.has(name)]
     return dam_in(run, files[0]) if files else None
 
 

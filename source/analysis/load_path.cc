@@ -190,8 +190,9 @@ namespace Voussoir
         const Vector displacement_before = state.displacement;
         const auto   memory_before       = state.material_memory;
         const auto   points_before       = contact_points();
+        step = next - share; // half of which is tried after a rejection
         if (rate.size() > 0)
-          state.displacement.add(next - share, rate);
+          state.displacement.add(step, rate);
         increment     = {{share, next}};
         may_be_halved = !is_trial && step > least_step;
         is_found      = true;
@@ -204,7 +205,7 @@ namespace Voussoir
         };
         bool has_dissipated = is_trial && find(on_trial);
         if (!has_dissipated)
-          has_dissipated = find(next < 1. ? on_the_path : 0.);
+          has_dissipated = find(next < 1. || may_be_halved ? on_the_path : 0.);
         double error = 0.;
         if (!is_found || (has_dissipated && is_trial))
           error = 1.;
@@ -213,6 +214,13 @@ namespace Voussoir
                                           memory_before,
                                           begin.grown_to(goal, 0.5),
                                           goal);
+        // only an increment that is not to be halved is worth the full accuracy
+        if (next == 1. && may_be_halved && error <= tolerance)
+          {
+            has_dissipated = find(0.) || has_dissipated;
+            if (!is_found)
+              error = 1.;
+          }
         if (error <= tolerance || (!is_trial && step <= least_step))
           {
             if (has_dissipated)
@@ -221,7 +229,7 @@ namespace Voussoir
               {
                 rate = state.displacement;
                 rate -= displacement_before;
-                rate /= next - share;
+                rate /= step;
                 if (next < 1.)
                   log.line("    ",
                            100. * next,

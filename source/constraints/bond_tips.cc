@@ -1,4 +1,5 @@
 #include <voussoir/base/error.h>
+#include <voussoir/base/mpi.h>
 #include <voussoir/constraints/bond_tips.h>
 #include <voussoir/fem/crack_growth.h>
 #include <voussoir/mesh/interfaces.h>
@@ -205,14 +206,21 @@ namespace Voussoir
       if (has_tips(points, points.points[k].surface))
         component[k] = place_in(surfaces[points.points[k].first].begin_raw(),
                                 points.points[k].surface);
-    const bool too_many =
-      std::any_of(component.begin(), component.end(), [](const unsigned int c) {
-        return c >= 3;
-      });
-    if (Utilities::MPI::max(too_many ? 1 : 0, points.communicator) > 0)
-      throw UserError("Cracks cannot grow from tips where more than three face "
-                      "sets of interfaces meet at one side of a node; set "
-                      "\"Crack growth = local\" in the sections of some.");
+    std::vector<Point<3>> crowded;
+    for (unsigned int k = 0; k < component.size(); ++k)
+      if (component[k] >= 3)
+        crowded.push_back(points.positions[k]);
+    crowded = join_over_ranks(crowded, points.communicator);
+    if (!crowded.empty())
+      {
+        std::ostringstream place;
+        place << crowded.front();
+        throw UserError(
+          "Cracks cannot grow from tips where more than three face sets of "
+          "interfaces meet at one side of a node, as at (" +
+          place.str() +
+          ") m; set \"Crack growth = local\" in the sections of some.");
+      }
     exchange.to_owners(surfaces, at_owned);
 
     const auto  &scalar = discretization.fe.base_element(0);

@@ -13,6 +13,9 @@ namespace Voussoir
     // share of the tangent with all points sticking, without which parts that
     // have no other support move away
     constexpr double tied_share = 1e-3;
+
+    // residual over the loads at which cracks are continued
+    constexpr double while_cracks_grow = 1e-3;
   } // namespace
 
 
@@ -83,13 +86,19 @@ namespace Voussoir
   void
   EquilibriumSearch::follow_cracks()
   {
-    approach();
-    while (effort.found && find_tips())
+    double aim =
+      memory == nullptr ? tolerance : std::max(tolerance, while_cracks_grow);
+    for (approach(aim); effort.found; approach(aim))
       {
+        if (!find_tips())
+          {
+            if (aim == tolerance)
+              return;
+            aim = tolerance;
+          }
         effort.found    = false;
         least_imbalance = std::numeric_limits<double>::max();
         last_gain       = effort.steps;
-        approach();
       }
   }
 
@@ -111,7 +120,7 @@ namespace Voussoir
 
 
   void
-  EquilibriumSearch::approach()
+  EquilibriumSearch::approach(const double aim)
   {
     double accuracy = 0.01;
     for (unsigned int update = 0;
@@ -121,29 +130,28 @@ namespace Voussoir
         find_residual();
         if (update == 0)
           first_imbalance = effort.residual;
-        balance(contact == nullptr ? tolerance : accuracy);
-        effort.found = effort.residual <= tolerance;
+        balance(contact == nullptr ? aim : accuracy, aim);
+        effort.found = effort.residual <= aim;
         if (contact == nullptr)
           continue;
         effort.contact = contact->update();
-        effort.found   = effort.found &&
-                       effort.contact.force <= 10. * tolerance &&
+        effort.found   = effort.found && effort.contact.force <= 10. * aim &&
                        effort.contact.broken == 0;
         // must be below the tolerance of the multipliers: otherwise both
         // iterations alternate without converging
-        accuracy = std::clamp(0.2 * effort.contact.force, tolerance, accuracy);
+        accuracy = std::clamp(0.2 * effort.contact.force, aim, accuracy);
       }
   }
 
 
   void
-  EquilibriumSearch::balance(const double accuracy)
+  EquilibriumSearch::balance(const double accuracy, const double aim)
   {
     // With friction that follows the pressure the iterations may repeat in a
     // cycle, which an update of the multipliers ends.
     constexpr unsigned int max_steps_of_update = 10;
     for (unsigned int steps = 0;
-         effort.residual > (steps == 0 ? tolerance : accuracy) &&
+         effort.residual > (steps == 0 ? 0.1 * aim : accuracy) &&
          (contact == nullptr || steps < max_steps_of_update) && is_worth_it();
          ++steps)
       {

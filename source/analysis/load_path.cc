@@ -193,9 +193,10 @@ namespace Voussoir
         step = next - share; // half of which is tried after a rejection
         if (rate.size() > 0)
           state.displacement.add(step, rate);
-        increment     = {{share, next}};
-        may_be_halved = !is_trial && step > least_step;
-        is_found      = true;
+        increment = {{share, next}};
+        may_be_halved =
+          internal_force.has_memory() && !is_trial && step > least_step;
+        is_found = true;
 
         const auto find = [&](const double asked) {
           accuracy = asked;

@@ -58,6 +58,14 @@ namespace Voussoir
     }
 
 
+    /** Whether a limit has changed from one multiplier to the next. */
+    bool
+    differ(const double one, const double other)
+    {
+      return std::abs(one - other) > 1e-6 * std::max(one, other);
+    }
+
+
     /** Minus the derivative of the force by the gap @p b for this spring, given
      *  the force of the law at this gap. */
     Tensor<2, 3>
@@ -281,17 +289,22 @@ namespace Voussoir
         const ContactLimits limits = point.limits;
         if (limits.tension > 0. || limits.bond > 0.) // the law has a bond
           {
-            const InterfaceHistory now = history_at(k);
-            point.history = {std::max(point.history.opening, now.opening),
-                             std::max(point.history.slip, now.slip),
-                             point.history.tip};
+            // of this iterate alone; a crack that closes would follow its
+            // stiff unloading line in small steps
+            InterfaceHistory now    = history_at(k);
+            const double     closed = point.history.opening - now.opening;
+            if (closed > 0.)
+              now.opening =
+                std::max(before[k].history.opening,
+                         now.opening - (over_relaxation - 1.) * closed);
+            point.history = now;
           }
         interfaces.yield_bars(point);
         interfaces.update_limits(point);
 
-        number[0] += limits.bond != point.limits.bond ||
-                     limits.tension != point.limits.tension ||
-                     limits.cohesion != point.limits.cohesion ||
+        number[0] += differ(limits.bond, point.limits.bond) ||
+                     differ(limits.tension, point.limits.tension) ||
+                     differ(limits.cohesion, point.limits.cohesion) ||
                      limits.locked != point.limits.locked;
         number[1] += point.status == ContactStatus::open;
         number[2] += point.status == ContactStatus::sliding;

@@ -70,7 +70,8 @@ namespace Voussoir
     find(Vector &displacement, MaterialMemory *memory);
 
   private:
-    /** Looks for an equilibrium until no crack has a new tip in it. */
+    /** Looks for an equilibrium until no crack has a new tip in it; its full
+     *  accuracy is asked for once a coarse one has no new tip. */
     void
     follow_cracks();
 
@@ -79,14 +80,15 @@ namespace Voussoir
     bool
     find_tips();
 
-    /** Updates of the multipliers until the equilibrium is found. */
+    /** Updates of the multipliers until the equilibrium is found.
+     *  @param aim for the residual over the loads */
     void
-    approach();
+    approach(const double aim);
 
     /** Steps until the equilibrium under these multipliers is found to an
-     *  accuracy; at least one, unless the tolerance is met already. */
+     *  accuracy; at least one, unless the aim is met already. */
     void
-    balance(const double accuracy);
+    balance(const double accuracy, const double aim);
 
     /** One step, to where the residual does no more work along the step. */
     void

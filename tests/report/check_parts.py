@@ -226,6 +226,12 @@ def check_colours():
     is_true("values beyond the colour bar are reported where there are some", more.above and not more.below and not scale.above)
     cracked = charts.Scale([np.concatenate([np.zeros(999), [3.]])], "opening [mm]", colours="inferno_r", low=0.)
     is_true("one cracked cell of a thousand is seen", cracked.levels[-1] >= 3. and "everywhere" not in cracked.label)
+    for largest in (20e3, 12.5, 0.03):
+        figure = charts.Figure(figsize=(charts.WIDTH, 0.65))
+        charts.Scale([np.append(np.linspace(0., largest, 2000), 2. * largest)], "", colours="inferno_r").bar(figure)
+        boxes = [label.get_window_extent() for label in figure.axes[0].get_xticklabels()]
+        is_true(f"numbers of a bar to {largest:g} are apart", all(a.x1 < b.x0 for a, b in zip(boxes, boxes[1:])))
+        is_true("  the last one is marked", figure.axes[0].get_xticklabels()[-1].get_text().startswith("≥"))
     noise = charts.Scale([np.array([0., 3e-14])], "opening [mm]", 0., "inferno_r", low=0.)
     compare("end of the bar of noise", noise.levels[-1], 1., 0.)
     is_true("noise is reported as zero", noise.label == "opening [mm]: 0 everywhere")
@@ -291,6 +297,23 @@ def check_verdicts(scratch):
         if name == "a criterion":
             is_true("with its limit, unit and source", lines["crest, MCE: 4.2"].limit == "at most 0.150 m (user's)"
                     and lines["crest, MCE: 4.2"].found == "0.200 m")
+
+
+def check_compression(scratch):
+    """Compression is compared with the strength of the longest cells, and crushed concrete has reached it."""
+    note = "  note: cells are long; their compressive strength is lowered by up to 58 %; in the static state cells are " \
+           "long; their compressive strength is lowered by up to 65.6 %.\nMaterial rock: mass 1 kg\n" \
+           "  note: their compressive strength is lowered by up to 90 %.\nDamping"
+    stress = {"face stresses": {"smallest principal stress [MPa]": -14.1}}
+    for name, changed, log, found, judged in (
+            ("strong", {}, LOG, "0.564", "met"), ("lowered", {}, LOG.replace("Damping", note), "1.64", "not met"),
+            ("crushed", {"materials": {"concrete": {"largest compression damage": 0.99996}}}, LOG, "0.564", "not met")):
+        run = make_wall(scratch / name, {**SUMMARY, **stress, **changed}, log)
+        run.parameters["Materials/concrete/Compressive strength"] = "25e6"
+        lines = {one.what: one for one in verdict.engineering_results(run).lines}
+        one = lines["compression on the faces over compressive strength"]
+        is_true(f"compression, {name}: {found} {judged}", (one.found, one.judged) == (found, judged))
+        is_true("  crushed cells have a line", any("crushed" in what for what in lines) == (name == "crushed"))
 
 
 def check_openings(scratch):
@@ -404,7 +427,46 @@ def check_stages(scratch):
     is_true("a picture of each stage", ['stage "weight"' in pictures[0].caption, "up to 20.0 mm" in pictures[0].caption,
                                         'stage "water"' in pictures[1].caption, "up to 40.0 mm" in pictures[1].caption]
             == 4 * [True] and len(pictures) == 2)
+    run.parameters |= {"Static state/Stages": "weight; usual: water, silt", "Interfaces/joint/Grouted after": "water"}
+    is_true("  with what grout has filled, from then on", ["after water, are filled and no openings" in picture.caption
+                                                          for picture in stages.stage_pictures(run)] == [False, True])
     is_true("no stage, no section", stages.stages_section([make_wall(scratch / "no_stages")]) is None)
+
+
+def divided(cells):
+    """Cells (8 n, 8, 3) in place of n cells."""
+    low, size = cells.min(axis=1)[:, None], np.ptp(cells, axis=1)[:, None]
+    return np.concatenate([low + 0.5 * size * (UNIT_CELL + corner) for corner in UNIT_CELL])
+
+
+def check_fragment(scratch):
+    """Cells that were thrown by 20 m hide neither cracks of millimetres nor a motion of 2 cm."""
+    summary = surface(**{"largest opening [mm]": 20.3, "time of the largest opening [s]": 0.99})
+    crest = {"largest displacement [m]": 0.02, "filtered at [Hz]": 6., "largest filtered acceleration [m/s2]": 1.}
+    run = make_wall(scratch / "fragment", {**SUMMARY, **summary, "histories": {"crest": crest}})
+    wall = grid.Grid(run.folder / "envelopes.vtu")
+    cells = divided(divided(wall.points[wall.cells]))
+    thrown = np.zeros(cells.shape[:2])
+    thrown[np.argsort(cells.mean(axis=1) @ (0., 0.1, 1.))[-4:]] = 1.  # at the crest, upstream
+    moved = (1e-3 * cells[..., 2:] + 20. * thrown[..., None]) * (0., -1., 0.)
+    cracks = np.where(thrown > 0., 20e3, np.linspace(0., 8., len(cells))[:, None])
+    material = {"material": np.zeros(thrown.shape)}, {"material_names": ["concrete"]}
+    write_grid(run.folder / "envelopes.vtu", cells, VTK_HEXAHEDRON, {
+        **material[0], "largest_displacement_m": np.linalg.norm(moved, axis=2), "crack_opening_now_mm": cracks}, material[1])
+    write_grid(run.folder / "fields.vtu", cells, VTK_HEXAHEDRON, *material, vectors={"displacement": moved})
+    (run.folder / "fields.txt").write_text("1 fields.vtu\n")
+    scale = damage.scale_of([run], "crack_opening_now_mm")
+    is_true("cracks are seen beside it", 8. <= scale.levels[-1] <= 20. and scale.above)
+    is_true("  and the largest is in the caption", damage.on_faces(run, "crack_opening_now_mm", scale).caption
+            == f"On the faces; the largest value is {page.number(20e3)} mm")
+    caption = structure.deformed(run).caption
+    is_true("the motion of the dam is magnified", float(re.search(r"drawn (\S+) times", caption)[1]) > 50.)
+    is_true("  and what is left out is in the caption", re.search(
+        f"the largest value is {page.number(2002.)} cm, and what moved by more than \\S+ cm is left out", caption))
+    is_true("the widest opening is that of the summary", "by 20.3 mm when widest, at 0.990 s" in caption)
+    rows = {what.split(",")[0]: value for what, value in case.headline_section([run]).parts[0].rows}
+    is_true("displacements of points and of the dam", rows["largest displacement of any point of the dam"] == page.number(2002.)
+            and rows["largest displacement of a recorded point relative to the base"] == "2.00 (crest)")
 
 
 def check_motion(scratch):
@@ -553,11 +615,13 @@ def main():
         check_colours()
         check_input(run)
         check_stages(scratch)
+        check_fragment(scratch)
         check_motion(scratch)
         check_blocks(scratch)
         check_records(scratch)
         check_study_evaluations()
         check_verdicts(scratch)
+        check_compression(scratch)
         check_openings(scratch)
         check_study(scratch)
         check_page(scratch)

@@ -138,6 +138,12 @@ def cycle_colours(axes, n):
 NOISE = 1e-6  # below it a stress [MPa], an opening [mm] or a time [s] is zero
 
 
+def usual_largest(values, share, least=0.):
+    """Twice the value that a @p share of all does not exceed, but not below @p least, or the largest if that is
+    less: a fragment that was thrown far must not hide the rest."""
+    return min(values.max(), max(2. * np.quantile(values, share), least))
+
+
 class Scale:
     """Colours of a quantity, the same in all pictures that are compared.
 
@@ -149,9 +155,9 @@ class Scale:
 
     def __init__(self, values, label, cut=0.005, colours=None, low=None, high=None):
         has_both = False
+        values = np.concatenate([np.zeros(0), *(np.ravel(v) for v in values)])
+        values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
         if low is None or high is None:
-            values = np.concatenate([np.ravel(v) for v in values])
-            values = values[np.isfinite(values)] if np.isfinite(values).any() else np.zeros(1)
             has_both = values.min() < -NOISE and values.max() > NOISE
             ends = np.quantile(values, (cut, 1. - cut))
             if np.ptp(ends) <= NOISE:  # few values differ from the rest, so none is left out
@@ -168,12 +174,20 @@ class Scale:
         self.label = label
         self.levels = ticker.MaxNLocator(8, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
         # whether there are values beyond the range
-        self.below = cut > 0. and values.min() < self.levels[0]
-        self.above = cut > 0. and values.max() > self.levels[-1]
+        self.below = values.min() < self.levels[0] - NOISE
+        self.above = self.is_above(values)
         largest = np.abs(self.levels).max()
         self.norm = Normalize(-largest if colours is None else self.levels[0],
                               largest if colours is None else self.levels[-1])
         self.colours = matplotlib.colormaps[colours or "RdBu_r"]
+
+    def is_above(self, values):
+        return np.max(values) > self.levels[-1] + NOISE
+
+    def largest_above(self, values):
+        """Words on values of a picture beyond the end of the bar."""
+        unit = self.label.rpartition("[")[2].rstrip("]")
+        return f"; the largest value is {number(float(np.max(values)))} {unit}" if self.is_above(values) else ""
 
     def bar(self, figure):
         """A colour bar at the bottom, 0.65 inches high with its label."""
@@ -183,9 +197,13 @@ class Scale:
                     extent=(first, last, 0., 1.))
         axes.set_yticks([])
         axes.grid(False)
-        ticks = self.levels[::2 if len(self.levels) > 9 else 1]
-        texts = [f"{tick:g}".replace("-", "−") for tick in ticks]
-        if self.above and last == ticks[-1]:
+        texts = [f"{level:g}".replace("-", "−") for level in self.levels]
+        # as many numbers as have space, with both ends
+        intervals, longest = len(texts) - 1, max(map(len, texts)) + 1.5
+        step = next(n for n in range(1, intervals + 1)
+                    if intervals % n == 0 and intervals // n * longest <= 44. or n == intervals)
+        ticks, texts = self.levels[::step], texts[::step]
+        if self.above:
             texts[-1] = f"≥ {texts[-1]}"
         if self.below:
             texts[0] = f"≤ {texts[0]}"

@@ -7,6 +7,7 @@ from .faces import SIDES, panel_of
 from .grid import centre_keys, dam_in, dam_of
 from .interfaces import joint_corners, joints_of
 from .page import Pictures, Section
+from .verdict import VISIBLE
 
 SCALES = {"tension_damage": "damage in tension [-]", "compression_damage": "damage in compression [-]",
           "damage": "damage [-]", "largest_crack_opening_mm": "largest opening of cracks in a cell [mm]",
@@ -27,8 +28,10 @@ def of_cells(dam, field):
 def scale_of(runs, field):
     if field.endswith("damage"):
         return charts.Scale([], SCALES[field], cut=0., colours="inferno_r", low=0., high=1.)
-    values = [of_cells(dam_of(run), field)[dam_of(run).cells] for run in runs]
-    return charts.Scale(values, SCALES[field], colours="inferno_r", low=0.)
+    values = np.concatenate([of_cells(dam_of(run), field)[dam_of(run).cells] for run in runs])
+    visible = values[values > VISIBLE]
+    high = charts.usual_largest(visible, 0.9) if len(visible) else None
+    return charts.Scale([values], SCALES[field], colours="inferno_r", low=0., high=high)
 
 
 def on_faces(run, field, scale):
@@ -37,7 +40,8 @@ def on_faces(run, field, scale):
     for side in SIDES:
         faces = dam.side(side)
         panels.append(panel_of(dam, side, dam.grid.points[faces], dam.grid.values[field][faces].mean(axis=1)))
-    return charts.face_map(panels, scale, f"{run.prefix}On the faces", f"{field}_faces_{run.label}")
+    above = scale.largest_above(np.concatenate([panel.values for panel in panels]))
+    return charts.face_map(panels, scale, f"{run.prefix}On the faces{above}", f"{field}_faces_{run.label}")
 
 
 def in_sections(run, field, scale):
@@ -57,7 +61,8 @@ def in_sections(run, field, scale):
         largest = [values[keys == key].max() for key in centre_keys(corners)]
         panels.append((name.removeprefix("joint "), list(corners[..., 1:]), np.array(largest)))
     where = "the middle of the dam and its joints" if joints_of(run) else "the middle of the dam"
-    return charts.sections_map(panels, scale, f"{run.prefix}Sections in {where}, upstream on the left",
+    above = scale.largest_above(np.concatenate([own for _, _, own in panels]))
+    return charts.sections_map(panels, scale, f"{run.prefix}Sections in {where}, upstream on the left{above}",
                                f"{field}_sections_{run.label}")
 
 

@@ -88,6 +88,17 @@ def different(runs):
     return seen
 
 
+def grouted(run, n):
+    """Words on gaps in joints that are grouted by the end of the @p n-th stage: displacements count from the unloaded
+    model, openings from grouting."""
+    loads = [load.strip() for stage in run.list("Static state/Stages", ";")[:n]
+             for load in stage.rpartition(":")[2].split(",")]
+    after = dict.fromkeys(entries["Grouted after"] for _, entries in run.objects("Interfaces")
+                          if entries.get("Grouted after") in loads)
+    return (f"; gaps that joints had when they were grouted, after {', '.join(after)}, are filled and no openings"
+            if after else "")
+
+
 def stage_pictures(run):
     """Pictures of the dam after each stage, all with the same magnification and colours."""
     dam = dam_in(run, FILE)
@@ -106,7 +117,8 @@ def stage_pictures(run):
         actor = scenes.quadrilaterals(moved, scale.colours(scale.norm(1e3 * amounts[name]))[..., :3])
         image = scenes.draw([actor], dam.points, scenes.FROM_DOWNSTREAM, zoom=0.85)
         pictures.append(charts.framed(*image, f"{run.prefix}After the stage \"{name}\", from downstream and above, drawn "
-                                              f"{factor:g} times: up to {number(1e3 * amounts[name].max())} mm",
+                                              f"{factor:g} times: up to {number(1e3 * amounts[name].max())} mm"
+                                              f"{grouted(run, n)}",
                                       f"stage_{n}_{run.label}", scale))
     return pictures
 

@@ -242,6 +242,14 @@ def opened_section(runs):
                                         *([Pictures(pictures, min(len(pictures), 2))] if pictures else [])])
 
 
+def widest_opening(run):
+    """Size [mm] and time [s] of the widest opening of any joint or plane in any step, or None."""
+    key, when = "largest opening [mm]", "time of the largest opening [s]"
+    surfaces = run.summary.get("interfaces", {}).get("surfaces", {}).values()
+    return max(((values[key], values[when]) for values in surfaces if values.get(key) and values.get(when) is not None),
+               default=None)
+
+
 def openings_over_time(run):
     """Times and the largest opening of any joint or plane [mm], or None."""
     table = run.table("interfaces.csv")
@@ -262,7 +270,9 @@ def shown_time(run):
     openings = openings_over_time(run)
     if openings and openings[1].max() > charts.NOISE:
         time, file = max(files, key=lambda item: np.interp(item[0], *openings))
-        return time, file, np.interp(time, *openings), openings[0][openings[1].argmax()], openings[1].max()
+        # the table has some of the steps only
+        widest, when = widest_opening(run) or (openings[1].max(), openings[0][openings[1].argmax()])
+        return time, file, np.interp(time, *openings), when, widest
 
     def largest(item):
         return np.linalg.norm(motion_of(run, item[1])[dam_in(run, item[1]).grid.cells[dam_of(run).cells]], axis=-1).max()
@@ -292,6 +302,12 @@ def magnified(dam, largest):
     return float(f"{0.12 * dam.height / largest:.0e}")
 
 
+def drawn_largest(dam, amount):
+    """The largest of the motions [m] that are drawn: without fragments, which move farther than the rest and than a
+    thousandth of the height."""
+    return charts.usual_largest(amount, 0.99, 1e-3 * dam.height)
+
+
 def deformed(run):
     """A picture of the deformed dam, or a sentence with the reason why there is none."""
     shown = shown_time(run)
@@ -308,10 +324,16 @@ def deformed(run):
     amount = np.linalg.norm(motion[faces], axis=2)
     if amount.max() < 1e-9:
         return None
-    factor = magnified(dam, amount.max())
-    moved = dam.grid.points[faces] + factor * motion[faces]
-    scale = charts.Scale([100. * amount], "displacement [cm]", 0., "viridis", low=0.)
-    actors = [scenes.quadrilaterals(moved, scale.colours(scale.norm(100. * amount))[..., :3])]
+    largest = drawn_largest(dam, amount)
+    factor = magnified(dam, largest)
+    scale = charts.Scale([100. * amount], "displacement [cm]", 0., "viridis", low=0., high=100. * largest)
+    # a fragment would be drawn far outside
+    farthest = 2. * largest
+    near = amount.max(axis=1) <= farthest
+    moved = dam.grid.points[faces[near]] + factor * motion[faces[near]]
+    thrown = scale.largest_above(100. * amount) + (
+        "" if near.all() else f", and what moved by more than {number(100. * farthest)} cm is left out")
+    actors = [scenes.quadrilaterals(moved, scale.colours(scale.norm(100. * amount[near]))[..., :3])]
     image = scenes.draw(actors, moved.reshape(-1, 3), FROM_DOWNSTREAM)
     since = "the start of the earthquake" if start_of(run) else "the unloaded model"
     if len(dam.foundation):
@@ -319,7 +341,8 @@ def deformed(run):
     when = (f"; joints and planes are open by up to {number(opening)} mm at that time, by {number(widest)} mm when "
             f"widest, at {number(widest_time)} s" if opening is not None else "")
     return charts.framed(*image, f"{run.prefix}The dam from downstream and above at {number(time)} s, its motion from "
-                                 f"{since} drawn {factor:g} times{when}", f"opened_{run.label}", scale, dpi=charts.FULL_DPI)
+                                 f"{since} drawn {factor:g} times{thrown}{when}", f"opened_{run.label}", scale,
+                         dpi=charts.FULL_DPI)
 
 
 MOST_FACES = 40000  # of a scene that turns, so that the page stays small
@@ -348,7 +371,7 @@ def scene_section(runs):
     rock = rock_faces(dam) if len(dam.others) else np.zeros((0, 4, 3))
     rock = rock if len(rock) + len(faces) <= MOST_FACES else rock[:0]
     motion = motion_of(run, shown[1])[faces] if shown else np.zeros((*faces.shape, 3))
-    largest = np.linalg.norm(motion, axis=-1).max()
+    largest = drawn_largest(dam, np.linalg.norm(motion, axis=-1))
     factor = magnified(dam, largest) if largest > 1e-9 else 0.
     data = scenes.as_json(dam.grid.points[faces], colours, rock, motion, factor)
     actors = [scenes.quadrilaterals(dam.grid.points[faces], colours)]

@@ -14,6 +14,7 @@ RANK = {MET: 0, NOT_ASSESSED: 1, TO_JUDGE: 2, NOT_MET: 3}
 COLOURS = {MET: "good", NOT_ASSESSED: "open", TO_JUDGE: "doubt", NOT_MET: "bad"}
 
 VISIBLE = 0.1  # smaller openings are those of an elastic mesh [mm]
+CRUSHED = 0.01  # damage in compression of concrete that has reached its strength
 
 CHECKS, RESULTS, ACCEPTANCE = "numerical checks", "engineering results", "acceptance table"
 
@@ -107,8 +108,8 @@ def numerical_checks(run):
 
 def engineering_results(run):
     """Results for the dam, from the summary."""
-    lines = [line for line in (*lines_of(run, RESULTS), tension_line(run), pressure_line(run), *opening_lines(run))
-             if line]
+    lines = [line for line in (*lines_of(run, RESULTS), tension_line(run), pressure_line(run), crushing_line(run),
+                               *opening_lines(run)) if line]
     judged = worst(lines)
     title = {MET: "All assessed criteria are met", NOT_MET: "Not all criteria are met",
              TO_JUDGE: "To be judged: results without a limit",
@@ -144,20 +145,43 @@ def tension_line(run):
                 "no strength given (observer over-stress)", NOT_ASSESSED)
 
 
+def crushing(run):
+    """The largest damage in compression of any material."""
+    return max((values.get("largest compression damage") or 0. for values in run.summary.get("materials", {}).values()),
+               default=0.)
+
+
+def crushing_line(run):
+    """The damage of crushed concrete, whose stress has fallen and tells nothing of its strength."""
+    if crushing(run) <= CRUSHED:
+        return None
+    return Line("crushed concrete: largest damage in compression", number(crushing(run)), "0, not crushed", NOT_MET)
+
+
+def kept_strength(run, material):
+    """The share of the compressive strength of a material that its longest cells keep, by the log."""
+    notes = re.search(rf"^Material {re.escape(material)}: .*\n((?: .*\n)*)", run.log, re.MULTILINE)
+    lowered = re.findall(r"compressive strength is lowered by up to (\d+\.?\d*) %", notes[1]) if notes else []
+    return 1. - 0.01 * max(map(float, lowered), default=0.)
+
+
 def pressure_line(run):
-    """Largest compression on the faces over the least compressive strength of the dam."""
+    """Largest compression on the faces over the least compressive strength of the dam, as long cells lower it."""
     smallest = run.summary.get("face stresses", {}).get("smallest principal stress [MPa]")
     dam = grids.dam_of(run)
     if smallest is None or dam is None:
         return None
-    strengths = [run.number(f"Materials/{name}/Compressive strength")
-                 for name in grids.dam_materials(run, dam.grid.names("material"))]
-    strength = 1e-6 * min((value for value in strengths if value > 0.), default=0.)
+    given = {name: 1e-6 * run.number(f"Materials/{name}/Compressive strength")
+             for name in grids.dam_materials(run, dam.grid.names("material"))}
+    strength, name = min(((value * kept_strength(run, name), name) for name, value in given.items() if value > 0.),
+                         default=(0., None))
     if not strength:
         return None
     ratio = max(-smallest, 0.) / strength
+    lowered = f", lowered from {number(given[name])} MPa in the longest cells" if strength < given[name] else ""
     return Line("compression on the faces over compressive strength", number(ratio), "1",
-                MET if ratio <= 1. else NOT_MET, f"{number(-smallest)} of {number(strength)} MPa")
+                MET if ratio <= 1. and crushing(run) <= CRUSHED else NOT_MET,
+                f"{number(-smallest)} of {number(strength)} MPa{lowered}")
 
 
 def clean(value):

@@ -1,3 +1,4 @@
+#include <voussoir/materials/isotropic_elasticity.h>
 #include <voussoir/output/law_stress.h>
 
 namespace Voussoir
@@ -42,7 +43,30 @@ namespace Voussoir
                             const SymmetricTensor<2, 3> &initial_strain,
                             const double                 temperature) const
   {
-    return material->elastic_strain(filtered, initial_strain, temperature, k);
+    const auto strain =
+      material->elastic_strain(filtered, initial_strain, temperature, k);
+    if (history == nullptr || is_active())
+      return strain;
+    // The law of the static state limits this stress, and stress is handed
+    // over.
+    const auto elastic =
+      material->elastic_strain(initial_strain, initial_strain, temperature, k);
+    const Material &at_rest = material->at_rest();
+    if (&at_rest == material ||
+        at_rest.yield_ratio(material->stress(elastic), widest_band()) <= 1.)
+      return strain;
+    IsotropicElasticity elasticity;
+    elasticity.young_modulus   = material->elastic_constants().young_modulus;
+    elasticity.poisson_ratio   = material->elastic_constants().poisson_ratio;
+    std::vector<double> memory = history->read(place, q);
+    const auto          stress =
+      at_rest
+        .respond(elasticity.young_modulus /
+                   at_rest.elastic_constants().young_modulus * elastic,
+                 memory.data(),
+                 {widest_band(), 0.})
+        .stress;
+    return strain - elastic + elasticity.strain(stress);
   }
 
 

@@ -71,7 +71,7 @@ namespace Voussoir
 
     /** The material of the static state: with its modulus times the static
      *  factor and its strengths without the increase for an earthquake, if the
-     *  law has internal variables; else this material. */
+     *  law has internal variables; else, and of itself, this material. */
     virtual const Material &
     at_rest() const = 0;
 

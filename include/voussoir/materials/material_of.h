@@ -37,7 +37,8 @@ namespace Voussoir
     at_rest() const override
     {
       if constexpr (has_memory)
-        return *static_material;
+        if (static_material)
+          return *static_material;
       return *this;
     }
 

@@ -141,6 +141,16 @@ namespace Voussoir
   {
     read(filename, {});
     change(changes);
+    std::map<std::string, std::string> set; // and its place
+    for (const std::string &item : changes)
+      {
+        const std::string path =
+          join_path(split_list(item.substr(0, item.find('=')), '/'));
+        if (const auto first = set.emplace(path, item); !first.second)
+          throw UserError("--set \"" + item + "\": \"" + entry_of(path) +
+                          "\" is set a second time (first by --set \"" +
+                          first.first->second + "\"); keep one of the two.");
+      }
   }
 
 

@@ -208,7 +208,7 @@ namespace Voussoir
                                 points.points[k].surface);
     std::vector<Point<3>> crowded;
     for (unsigned int k = 0; k < component.size(); ++k)
-      if (component[k] >= 3)
+      if (component[k] >= 3 && crowded.empty())
         crowded.push_back(points.positions[k]);
     crowded = join_over_ranks(crowded, points.communicator);
     if (!crowded.empty())

@@ -102,6 +102,12 @@ namespace Voussoir
       double step = end;
 
       bool
+      has_ended() const
+      {
+        return !std::isnan(end);
+      }
+
+      bool
       reaches(const double time) const
       {
         return end > time - 0.5 * step;
@@ -269,8 +275,11 @@ namespace Voussoir
         chosen = numbered(name, i);
         run =
           Utilities::MPI::broadcast(log.communicator(), finished_run(chosen));
-        // a study may not have recorded a finished run, and restarts it
-        if (!options.overwrite && run.reaches(parameters.time.end_time))
+        // A study may not have recorded a finished run, and restarts it. An
+        // older run than the newest one is continued only if it was
+        // interrupted.
+        if (!options.overwrite && (run.reaches(parameters.time.end_time) ||
+                                   (!finished.empty() && run.has_ended())))
           {
             finished.push_back(chosen);
             continue;

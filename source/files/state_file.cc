@@ -18,7 +18,8 @@ namespace Voussoir
 
   namespace
   {
-    constexpr int format = 9; // since notches between two cells are weaker
+    constexpr int format =
+      10; // since bonds at rest follow the equilibrium alone
 
 
     Bytes

@@ -74,6 +74,7 @@ namespace Voussoir
         read("missing.prm", {});
         read("case.prm", {"Mesh/Type= = box"});
         read("case.prm", {"Title=M\xFChle"});
+        read("case.prm", {"Title=one", "Title = two"});
       }
 
     private:

@@ -362,7 +362,7 @@ namespace Voussoir
     checks["energy-balance error"] =
       at_most(std::max(energy.largest_error, energy.error_of_input),
               most_energy);
-    if (energy.error_of_losses > 0.) // not assessed if losses are small
+    if (energy.error_of_losses != 0.) // not assessed if losses are small
       checks["energy-balance error over the losses"] =
         at_most(energy.error_of_losses, most_of_losses);
     if (run.contact)

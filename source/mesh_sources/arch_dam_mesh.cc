@@ -278,6 +278,12 @@ namespace Voussoir
                        quad.inside ? second : first);
         else if (quad.inside)
           {
+            // also between columns, where the water ends beside a bank
+            if (is_below_surface(quad) != is_below_surface(other))
+              name_faces("water surface",
+                         is_below_surface(quad) ? first : second,
+                         dam_end,
+                         water_end);
             const int column = column_of(edge),
                       in_dam = column - section.first_dam_column;
             if (column >= 0 && in_dam % columns_per_block == 0)
@@ -286,25 +292,22 @@ namespace Voussoir
                          dam_begin,
                          dam_end);
             else if (quad.half_row < other.half_row)
-              name_faces_between_rows(first, second);
+              name_lift_joint(second);
             else if (quad.half_row > other.half_row)
-              name_faces_between_rows(second, first);
+              name_lift_joint(first);
           }
       }
 
 
-      // Names the lift joint of the dam and the surface of the reservoir.
+      // Names the lift joint below a quadrilateral of the dam, if there is one.
       void
-      name_faces_between_rows(const Side &lower, const Side &upper)
+      name_lift_joint(const Side &upper)
       {
-        const Quad &below = section.quads[lower.quad],
-                   &above = section.quads[upper.quad];
+        const int half_row = section.quads[upper.quad].half_row;
         if (const std::string joint =
-              lift_joints.below(above.half_row - section.first_half_row());
+              lift_joints.below(half_row - section.first_half_row());
             !joint.empty())
           name_faces(joint, upper, dam_begin, dam_end);
-        if (is_below_surface(below) && !is_below_surface(above))
-          name_faces("water surface", lower, dam_end, water_end);
       }
 
 

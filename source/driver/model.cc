@@ -352,7 +352,7 @@ namespace Voussoir
       log.warn(warning);
     for (const std::string &note : parameters.notes)
       log.line("note: ", note);
-    check_levels(parameters, log);
+    check_levels(parameters, reservoir.get(), log);
     report(log);
   }
 

@@ -4,6 +4,7 @@
 #include <voussoir/mesh/interfaces.h>
 #include <voussoir/mesh/mesh_parts.h>
 
+#include <limits>
 #include <set>
 
 namespace Voussoir
@@ -81,8 +82,19 @@ namespace Voussoir
 
 
   void
-  check_levels(const Case &parameters, Log &log)
+  check_levels(const Case &parameters, const Reservoir *reservoir, Log &log)
   {
+    double bottom = std::numeric_limits<double>::max(), top = -bottom;
+    if (reservoir != nullptr)
+      {
+        for (const Point<3> &position : reservoir->space.node_positions)
+          {
+            bottom = std::min(bottom, position[2]);
+            top    = std::max(top, position[2]);
+          }
+        bottom = Utilities::MPI::min(bottom, log.communicator());
+        top    = Utilities::MPI::max(top, log.communicator());
+      }
     const AddedMassParameters &mass          = parameters.reservoir.added_mass;
     const std::string          default_faces = AddedMassParameters().face_sets;
     std::map<std::string, double> waters, silts; // by section
@@ -95,12 +107,22 @@ namespace Voussoir
         const double level = Utilities::string_to_double(
           parameters.file.given(section + "/Level"));
         (type == "water" ? waters : silts)[section] = level;
+        const auto faces                            = split_list(
+          parameters.file.given(section + "/Face sets", default_faces));
+        // a generated mesh moves the surface by up to a row of cells
+        if (type == "water" && reservoir != nullptr &&
+            faces == split_list(default_faces) &&
+            std::abs(level - top) > 0.1 * (top - bottom))
+          log.warn("\"Level\" in section \"",
+                   section,
+                   "\" is ",
+                   level,
+                   " m, but the water of \"Reservoir\" reaches up to ",
+                   top,
+                   " m");
         if (type == "water" &&
             parameters.reservoir.model == ReservoirModel::added_mass &&
-            split_list(
-              parameters.file.given(section + "/Face sets", default_faces)) ==
-              split_list(mass.face_sets) &&
-            level != mass.level)
+            faces == split_list(mass.face_sets) && level != mass.level)
           log.warn("the water on the same faces stands at ",
                    level,
                    " m by \"Level\" in section \"",

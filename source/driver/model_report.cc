@@ -2,7 +2,6 @@
 
 #include <voussoir/driver/model.h>
 #include <voussoir/fem/notches.h>
-#include <voussoir/output/material_memory.h>
 
 #include <algorithm>
 #include <iomanip>
@@ -173,13 +172,6 @@ namespace Voussoir
           log.line("  note: ", remark);
         for (const std::string &note : on_cracks[m])
           log.line("  note: ", note);
-        if (reports_cracks(*solid.materials[m]) &&
-            solid.discretization.degree > 1)
-          log.line(
-            "  note: in cells of degree 2 and more, openings of cracks are "
-            "those of single points: up to 1.7 times the opening at degree 2, "
-            "down to a third of it at degree 3; take differences of "
-            "displacements.");
         if (solid.materials[m]->n_history() > 0 &&
             solid.discretization.degree > 2)
           log.line(

@@ -66,7 +66,16 @@ namespace Voussoir
                  memory.data(),
                  {widest_band(), 0.})
         .stress;
-    return strain - elastic + elasticity.strain(stress);
+    auto handed_over = elasticity.strain(stress);
+    // up to the peak of compression the law of the run takes a part of it, too
+    for (unsigned int i = 0; i < 40; ++i)
+      {
+        const auto missing = stress - (*this)(handed_over);
+        if (missing.norm() <= 1e-9 * stress.norm())
+          break;
+        handed_over += elasticity.strain(missing);
+      }
+    return strain - elastic + handed_over;
   }
 
 

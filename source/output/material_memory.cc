@@ -45,12 +45,14 @@ namespace Voussoir
      *  material; the band is zero [m] where the point is still elastic. */
     void
     for_each_point(
-      const Material                                         &material,
+      const Solid                                            &solid,
+      const unsigned int                                      m,
       const PointHistory                                     &history,
       const std::function<void(const Discretization::Cell &,
                                const double,
                                const std::vector<double> &)> &visit)
     {
+      const Material           &material = *solid.materials[m];
       const std::vector<double> nothing(names_of(material).size());
       const bool                cracks = reports_cracks(material);
       const std::size_t         largest =
@@ -64,9 +66,19 @@ namespace Voussoir
               {
                 values = material.outputs(history.read(place, q).data(), band);
                 if (cracks)
-                  values.push_back(
-                    1e3 *
-                    CrackOpening(material, history, place, q, largest).now());
+                  {
+                    const CrackOpening opening(solid.discretization,
+                                               material,
+                                               history,
+                                               place,
+                                               solid.discretization.points(m),
+                                               q,
+                                               largest);
+                    values[largest] = opening.largest();
+                    values.push_back(opening.now());
+                    for (const std::size_t i : {largest, values.size() - 1})
+                      values[i] *= 1e3;
+                  }
               }
             visit(cell, band, band > 0. ? values : nothing);
           }
@@ -74,8 +86,36 @@ namespace Voussoir
   } // namespace
 
 
+  template <typename OfPoint>
+  double
+  CrackOpening::of_cell(const OfPoint &of_point) const
+  {
+    if (discretization.degree == 1)
+      return of_point(q);
+    double sum = 0.;
+    for (unsigned int i = 0; i < points.size(); ++i)
+      if (history.band(place, i) > 0.)
+        sum += points.weight(i) * of_point(i);
+    return sum / discretization.crack_share;
+  }
+
+
   double
   CrackOpening::now() const
+  {
+    return of_cell([this](const unsigned int i) { return now_at(i); });
+  }
+
+
+  double
+  CrackOpening::largest() const
+  {
+    return of_cell([this](const unsigned int i) { return largest_at(i); });
+  }
+
+
+  double
+  CrackOpening::now_at(const unsigned int q) const
   {
     const ActivePoint &point = history.active_point(place.batch, q);
     const Lanes across       = point.normal * (point.law_strain * point.normal),
@@ -90,7 +130,7 @@ namespace Voussoir
                                                  elastic.young_modulus,
                                                  elastic.poisson_ratio);
     return std::max(0.,
-                    std::min(largest(),
+                    std::min(largest_at(q),
                              history.band(place, q) *
                                std::min(strain_across,
                                         eigenvalues(strain)[0])));
@@ -98,7 +138,7 @@ namespace Voussoir
 
 
   double
-  CrackOpening::largest() const
+  CrackOpening::largest_at(const unsigned int q) const
   {
     return 1e-3 * material.outputs(history.read(place, q).data(),
                                    history.band(place, q))[number];
@@ -115,8 +155,8 @@ namespace Voussoir
 
   namespace
   {
-    /** Calls visit(material, history, cell, place, point, band) for the points
-     *  of for_each_crack(). */
+    /** Calls visit(number of the material, history, cell, place, point, band)
+     *  for the points of for_each_crack(). */
     template <typename Visit>
     void
     for_each_active(const ObservedRun &run, const Visit &visit)
@@ -130,7 +170,7 @@ namespace Voussoir
           for (const auto &[cell, place] : history->cells())
             for (unsigned int q = 0; q < history->n_points(); ++q)
               if (const double band = history->band(place, q); band > 0.)
-                visit(material, *history, cell, place, q, band);
+                visit(m, *history, cell, place, q, band);
         }
     }
   } // namespace
@@ -142,7 +182,7 @@ namespace Voussoir
                                                  const unsigned int)> &visit)
   {
     for_each_active(run,
-                    [&](const Material &,
+                    [&](const unsigned int,
                         const PointHistory &,
                         const Discretization::Cell &cell,
                         const PointHistory::Place &,
@@ -160,26 +200,42 @@ namespace Voussoir
   {
     const Material *known  = nullptr;
     std::size_t     number = 0;
-    for_each_active(
-      run,
-      [&](const Material             &material,
-          const PointHistory         &history,
-          const Discretization::Cell &cell,
-          const PointHistory::Place  &place,
-          const unsigned int          q,
-          const double                band) {
-        if (&material != known)
-          number = output_number(material, OutputName::largest_opening);
-        known = &material;
-        visit(cell, q, band, {material, history, place, q, number});
-      });
+    for_each_active(run,
+                    [&](const unsigned int          m,
+                        const PointHistory         &history,
+                        const Discretization::Cell &cell,
+                        const PointHistory::Place  &place,
+                        const unsigned int          q,
+                        const double                band) {
+                      const Material       &material = *run.solid.materials[m];
+                      const Discretization &discretization =
+                        run.solid.discretization;
+                      if (&material != known)
+                        number =
+                          output_number(material, OutputName::largest_opening);
+                      known = &material;
+                      visit(cell,
+                            q,
+                            band,
+                            {discretization,
+                             material,
+                             history,
+                             place,
+                             discretization.points(m),
+                             q,
+                             number});
+                    });
   }
 
 
   std::map<std::string, dealii::Vector<float>>
   memory_of_cells(const Solid &solid, const MaterialMemory &memory)
   {
-    const auto n = solid.grid().triangulation().n_active_cells();
+    const auto n          = solid.grid().triangulation().n_active_cells();
+    const bool of_cell    = solid.discretization.degree > 1; // see CrackOpening
+    const auto is_opening = [](const std::string &name) {
+      return name == opening_now || name == OutputName::largest_opening;
+    };
     std::map<std::string, dealii::Vector<float>> result;
     for (unsigned int m = 0; m < solid.materials.size(); ++m)
       {
@@ -190,15 +246,20 @@ namespace Voussoir
             result[name].reinit(n);
         if (history == nullptr)
           continue;
-        for_each_point(*solid.materials[m],
+        for_each_point(solid,
+                       m,
                        *history,
                        [&](const Discretization::Cell &cell,
                            const double                band,
                            const std::vector<double>  &outputs) {
                          for (unsigned int i = 0; band > 0. && i < names.size();
                               ++i)
-                           result[names[i]][cell->active_cell_index()] +=
-                             outputs[i] / history->n_points();
+                           if (float &value =
+                                 result[names[i]][cell->active_cell_index()];
+                               of_cell && is_opening(names[i]))
+                             value = std::max<float>(value, outputs[i]);
+                           else
+                             value += outputs[i] / history->n_points();
                        });
       }
     return result;
@@ -243,7 +304,8 @@ namespace Voussoir
           continue;
         const auto          names = names_of(*run.solid.materials[m]);
         std::vector<double> largest(names.size()), volumes(4);
-        for_each_point(*run.solid.materials[m],
+        for_each_point(run.solid,
+                       m,
                        *history,
                        [&](const Discretization::Cell &cell,
                            const double                band,

@@ -194,17 +194,21 @@ namespace Voussoir
       }
 
       /** Adds the opening [m] of a point to the means of the eighths of its
-       *  cell. */
+       *  cell; in cells of degree 2 and more it is that of the whole cell. */
       void
       add(std::vector<double>        &eighths,
           const Discretization::Cell &cell,
           const unsigned int          q,
           const double                opening)
       {
-        const unsigned int first = 8 * paths->number_of(cell);
-        const auto        &share = shares_of(cell)[q];
+        const unsigned int first      = 8 * paths->number_of(cell);
+        const auto        &share      = shares_of(cell)[q];
+        const bool         is_of_cell = run().solid.discretization.degree > 1;
         for (unsigned int corner = 0; corner < 8; ++corner)
-          eighths[first + corner] += 1e3 * share[corner] * opening;
+          if (double &eighth = eighths[first + corner]; !is_of_cell)
+            eighth += 1e3 * share[corner] * opening;
+          else if (share[corner] > 0.)
+            eighth = std::max(eighth, 1e3 * opening);
       }
 
       /** Whether points that have left the elastic range lead from face to

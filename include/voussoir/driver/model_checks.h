@@ -3,6 +3,7 @@
 
 #include <voussoir/base/log.h>
 #include <voussoir/driver/case.h>
+#include <voussoir/loads/reservoir.h>
 
 namespace Voussoir
 {
@@ -24,9 +25,10 @@ namespace Voussoir
                             Log                     &log);
 
   /** Warns of levels that contradict each other: the loads and the added mass
-   *  of the same water are in separate sections. */
+   *  or the mesh of the same water are in separate sections.
+   *  @param reservoir of compressible water, or null */
   void
-  check_levels(const Case &parameters, Log &log);
+  check_levels(const Case &parameters, const Reservoir *reservoir, Log &log);
 } // namespace Voussoir
 
 #endif

@@ -20,20 +20,28 @@ namespace Voussoir
   reports_cracks(const Material &material);
 
   /** Opening of the crack of an integration point that has left the elastic
-   *  range, evaluated when it is asked for. */
+   *  range, evaluated when it is asked for. In cells of degree 2 and more,
+   * whose strain varies across a crack, it is that of the whole cell: the sum
+   * of w_i l_i e_i / s over its points, with the weights w_i , bands l_i ,
+   * strains e_i and the share s of a row of cells that is the band of a point.
+   */
   class CrackOpening
   {
   public:
     /** @param number of the largest opening among the outputs of the material
      */
-    CrackOpening(const Material            &material,
-                 const PointHistory        &history,
-                 const PointHistory::Place &place,
-                 const unsigned int         q,
-                 const std::size_t          number)
-      : material(material)
+    CrackOpening(const Discretization        &discretization,
+                 const Material              &material,
+                 const PointHistory          &history,
+                 const PointHistory::Place   &place,
+                 const dealii::Quadrature<3> &points,
+                 const unsigned int           q,
+                 const std::size_t            number)
+      : discretization(discretization)
+      , material(material)
       , history(history)
       , place(place)
+      , points(points)
       , q(q)
       , number(number)
     {}
@@ -51,11 +59,24 @@ namespace Voussoir
     largest() const;
 
   private:
-    const Material            &material;
-    const PointHistory        &history;
-    const PointHistory::Place &place;
-    unsigned int               q;
-    std::size_t                number;
+    /** An opening of the cell from those of its points. */
+    template <typename OfPoint>
+    double
+    of_cell(const OfPoint &of_point) const;
+
+    double
+    now_at(const unsigned int point) const;
+
+    double
+    largest_at(const unsigned int point) const;
+
+    const Discretization        &discretization;
+    const Material              &material;
+    const PointHistory          &history;
+    const PointHistory::Place   &place;
+    const dealii::Quadrature<3> &points;
+    unsigned int                 q;
+    std::size_t                  number;
   };
 
   /** Visits the points of this rank's cells that have left the elastic range,

@@ -277,11 +277,12 @@ namespace Voussoir
           const unsigned int,
           const double        band,
           const CrackOpening &opening) {
-        const double wide = ever ? opening.largest() : opening.now();
-        if (wide > widest[0] * band)
+        const double wide   = ever ? opening.largest() : opening.now();
+        const double length = band / run.solid.discretization.crack_share;
+        if (wide > widest[0] * length)
           {
             const Point<3> where = cell->center();
-            widest = {{wide / band, wide, where[0], where[1], where[2]}};
+            widest = {{wide / length, wide, where[0], where[1], where[2]}};
           }
       });
     for (const auto &other :
